@@ -5,12 +5,10 @@ from dataclasses import replace
 
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
-from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.operations import Operations
-from plan_cutters.judged_part import JudgedPart, assembled
+from plan_cutters.judged_part import JudgedPart, assembled, worded
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import AreaEntry, Plan
 from plan_cutters.plan_file.notes import later_stages, run_unfinished
-from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 
 Describe = Callable[[Plan], Plan]
@@ -107,4 +105,4 @@ class Interim:
         result = assembled(part, self._clock, self.answers, self.between)
         note = run_unfinished(absent, work, unexplained=bool(part.unexplained)) if absent else None
         document = result.plan if note is None else noted(result.plan, note)
-        return replace(result, plan=self._clock.stamp(with_text(describe(document))))
+        return worded(replace(result, plan=describe(document)), self._clock)

@@ -20,7 +20,6 @@ from plan_cutters.document.patterns import pattern_entries
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.sharp_edges import sharp_edge_entries
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
@@ -36,6 +35,7 @@ from plan_cutters.judging.setups import within_limits
 from plan_cutters.judging.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.travel import travels
 from plan_cutters.judging.witness import witnesses
+from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.notes import maps_partial
@@ -223,7 +223,7 @@ class JudgedPart:
 
 
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
-    """Put the result together: the choice, the area between the samples, what was answered, the plan.
+    """Put the result together: the choice, the area between the samples, what was answered, the plan, without its text.
 
     Parameters
     ----------
@@ -239,11 +239,8 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
     beyond = ready.somewhere & ~np.logical_or.reduce(within)
     over = part.over_setups()
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, part.travels)
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, part.travels, between)
     selected, chosen = selection(entries, ready.chosen.free_form)
-    for k, e in enumerate(entries):
-        if area := between.get(e.id):
-            entries[k] = e.model_copy(update={"area": area, "seen": e.seen or area.feasible})
     with clock.stage("plan", shown=False):
         shown = selected or nearest(entries).id
         tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
@@ -251,7 +248,7 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
-    return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
+    return Result(document, ready, over, part.travels, answers)
 
 
 def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:
@@ -271,7 +268,14 @@ def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callabl
     document = result.plan
     if maps.unmapped:
         document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
-    return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
+    return replace(result, plan=document, maps=maps)
+
+
+def worded(result: Result, clock: Clock) -> Result:
+    """The result with the text of its plan, once that has all else, and with the seconds so far."""
+    with clock.stage("plan", shown=False):
+        document = with_text(result.plan)
+    return replace(result, plan=clock.stamp(document))
 
 
 def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:

@@ -17,18 +17,16 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.over_setups import OtherSetup
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.interim import Describe, Interim
-from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps
+from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
 from plan_cutters.judging.cached_judge import CachedJudge
 from plan_cutters.judging.classify import classify, regions
 from plan_cutters.judging.judge import Judge, judge
@@ -36,8 +34,8 @@ from plan_cutters.judging.judge_once import JudgeOnce
 from plan_cutters.judging.other_setups import in_setup
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
@@ -194,9 +192,7 @@ class Run:
         result = assembled(part, clock, interim.answers, interim.between)
         if options.posture_maps:
             result = with_maps(result, part, clock, self.compiling)
-        if describe is not _as_it_is:
-            result = replace(result, plan=clock.stamp(with_text(describe(result.plan))))
-        return result
+        return worded(replace(result, plan=describe(result.plan)), clock)
 
     def _answered(self, part: JudgedPart, least: LeastSet | None) -> Operations | None:
         """Answer the questions, and plan the operations beside that: neither needs the other, nor keeps all threads at work."""
@@ -247,7 +243,8 @@ def _operations(
         return None, {}, {}
     from plan_cutters.operations.planning import plan_operations
 
-    return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock.seconds, clock.boxes
+    operations = plan_operations(part.ready, part.everywhere(), least, clock.stage, part.over_setups().reaches)
+    return operations, clock.seconds, clock.boxes
 
 
 def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:

@@ -283,4 +283,4 @@ def _described(
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
-    return noted(plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})
+    return noted(plan, setup_proposed(where, why), setup_proposal=entry)

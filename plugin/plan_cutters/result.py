@@ -13,16 +13,15 @@ from cad_io import Part, SurfaceSamples
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.on_face import OnFace, on_face
 from plan_cutters.document.over_setups import OverSetups
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_maps import PostureMaps
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.scene.clearance import Clearances, clearances_over

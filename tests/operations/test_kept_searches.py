@@ -490,8 +490,8 @@ def spanned(seed, name):
     area = rng.uniform(0.1, 1.0, 160) * (1.0 + piece)
     samples = Counted(point=np.column_stack([2.0 * x, 3.1 * y, 0.1 * x * y]), neighbours=edge.astype(np.int32))
     between = SimpleNamespace(cells=SimpleNamespace(piece=piece, area=area, sample=sample))
-    none = moving_proof._turning(samples, axis, between, None)
-    return [moving_proof._turning(samples, axis, between, machine), [none.piece, none.area, none.steepest, none.low]]
+    turning = partial(moving_proof._turning, samples, axis, between)
+    return [turning(machine, ("first", "second")), turning(None, ())]
 
 
 def test_how_axes_turn(keeps):

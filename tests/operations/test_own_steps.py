@@ -210,7 +210,7 @@ def test_a_step_may_name_a_cutter_where_it_is_forbidden(block):
     mine = np.flatnonzero(result.samples.face == 1)
     (k,) = {*made.label[mine].tolist()}
     assert made.operations[k].step == 1
-    assert made.operations[k].clearance is not None
+    assert result.plan.operations.plans[0].operations[k].clearance_mm is not None
     assert np.isfinite(made.lean[mine]).all()
     assert {made.operations[i].cutter.corner_radius for i in made.label[result.samples.face == 2].tolist()} == {0.0}
 

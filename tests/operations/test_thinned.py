@@ -57,13 +57,13 @@ def test_what_is_chosen_at_some_samples_serves_all_and_takes_hardly_longer(few, 
 def test_what_only_one_cutter_reaches_is_told_of_all_samples(few):
     """A ball of 3 mm does not reach all of a trough that a ball of 2 mm does."""
     result = plan(trough(2.5, 10.0), grid=25, **{**OPTIONS, "cutters": ["R2L60rc2", "R3L60rc3"]})
-    worth, verdicts = result.answers.operations.worth, result.reaches
+    worth, verdicts = result.plan.operations.cutters, result.reaches
     reached = {each: verdicts[each].reached for each in verdicts}
     assert len(worth) == 2
     for each in worth:
-        (other,) = (reached[one] for one in reached if one != each.cutter.id)
-        assert (each.only == np.flatnonzero(reached[each.cutter.id] & ~other)).all()
-    assert max(len(each.only) for each in worth) > 60
+        (other,) = (reached[one] for one in reached if one != each.id)
+        assert each.only_mm2 == pytest.approx(result.samples.area[reached[each.id] & ~other].sum())
+    assert (reached["R2L60rc2"] & ~reached["R3L60rc3"]).sum() > 60
 
 
 def test_the_fastest_alone_says_nothing_of_the_fewest():

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from plan_cutters import pipeline, plan
-from plan_cutters.domain.answers import Answers
+from plan_cutters.outcome import Answers
 from plan_cutters_base import copies
 from tests.support.places import SAMPLES
 
@@ -53,7 +53,7 @@ def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
 def test_the_progress_of_the_copy_is_told_while_it_is_waited_for(monkeypatch):
     told = []
 
-    def slow(ready, everywhere, least, stage):
+    def slow(ready, everywhere, least, stage, over):
         with stage("operations") as tell:
             for done in (1, 3):
                 tell(done, 5)

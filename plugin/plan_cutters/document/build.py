@@ -127,7 +127,7 @@ def _witness_entry(
     )
 
 
-def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
+def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> PartInfo:
     """The part, and what is odd about it."""
     part, orientation = scene.part, scene.orientation
     warnings = list(part.warnings)
@@ -164,6 +164,7 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
         guessed_faces=[] if orientation.confident else [*opened, *of_solids],
         sheets_doubt=on_shell,
         unit_doubt=part.unit_doubt,
+        void_faces=void_faces,
         unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],
     )
 

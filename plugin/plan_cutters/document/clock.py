@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from plan_cutters.plan_file.model import Plan, Run
 from plan_cutters.scene.work import METER
@@ -49,10 +50,10 @@ class Clock:
         """Seconds since the command began, or the clock was made: all stages, and what lies between them."""
         return time.monotonic() - self._began
 
-    def stamp(self, plan: Plan) -> Plan:
-        """The plan with the seconds so far."""
-        run = plan.run.model_copy(update={"seconds": dict(self.seconds), "boxes": dict(self.boxes), "total": self.total})
-        return plan.model_copy(update={"run": run})
+    def stamp(self, plan: Plan, **more: Any) -> Plan:
+        """The plan with the seconds so far, and with more of its fields."""
+        run = Run(time=plan.run.time, seconds=dict(self.seconds), boxes=dict(self.boxes), total=self.total)
+        return plan.model_copy(update={**more, "run": run})
 
     @contextmanager
     def stage(self, name: str, *, shown: bool = True) -> Iterator[Callable[[int, int], None]]:

@@ -11,7 +11,7 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
     """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
-    return [fixture_entry(fixture).model_copy(update={"setups": setups}) for fixture, setups in fixtures_in(each)]
+    return [fixture_entry(fixture, setups) for fixture, setups in fixtures_in(each)]
 
 
 def fixtures_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
@@ -34,8 +34,8 @@ def references(part: Part) -> list[ReferenceEntry]:
     return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
 
 
-def fixture_entry(placed: PlacedFixture) -> FixtureEntry:
-    """A fixture where it stands."""
+def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> FixtureEntry:
+    """A fixture where it stands, in some setups."""
     fixture, source, triangles = placed.fixture, placed.source, placed.obstacles.triangles
     file = None if source is None else source.file
     x, y, z, rx, ry, rz = fixture.placement
@@ -54,4 +54,5 @@ def fixture_entry(placed: PlacedFixture) -> FixtureEntry:
         grips=[] if placed.hold is None else [f"F{number}" for number in placed.hold.grips],
         unheld=[f"F{number}" for number in placed.unheld],
         hidden_mm2=None if placed.hold is None else placed.hold.hidden,
+        setups=list(setups),
     )

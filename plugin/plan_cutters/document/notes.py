@@ -1,6 +1,7 @@
 """The notes of a plan: where each is found; their words stand in `plan_file.notes`."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -48,9 +49,9 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     ]
 
 
-def noted(plan: Plan, note: Note) -> Plan:
-    """The plan with one note more."""
-    return plan.model_copy(update={"notes": [*plan.notes, note.text], "note_codes": [*plan.note_codes, note.code]})
+def noted(plan: Plan, note: Note, **more: Any) -> Plan:
+    """The plan with one note more, and with more of its fields."""
+    return plan.model_copy(update={**more, "notes": [*plan.notes, note.text], "note_codes": [*plan.note_codes, note.code]})
 
 
 def noted_coarser(options: Options, plan: Plan) -> Plan:

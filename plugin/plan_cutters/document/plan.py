@@ -14,22 +14,20 @@ from plan_cutters.document.fixtures import fixture_entries
 from plan_cutters.document.inside import inside_entry, void_faces
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.operations_entry import operations_entry
 from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import linear_entries, travel_entry
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
-from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
-from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.palette import MEANING, PALETTE
 from plan_cutters.plan_file.patterns import PatternEntry
 from plan_cutters.plan_file.reasons import REASONS as WORDS
@@ -61,10 +59,10 @@ def plan_of(
     faces = face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
     remarks = notes_of(ready, entries)
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
-    operations, shown = _operations(ready, answers, over), selected or nearest(entries).id
+    shown = selected or nearest(entries).id
     return Plan(
-        process=process_entry(ready, entries, answers, over, operations, shown, fitting),
-        part=part_info(scene, surroundings).model_copy(update={"void_faces": void_faces(ready)}),
+        process=process_entry(ready, entries, answers, over, shown, fitting),
+        part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
@@ -98,7 +96,7 @@ def plan_of(
         patterns=list(patterns),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
-        operations=operations,
+        operations=None if answers.operations is None else answers.operations.entry,
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
         notes=[each.text for each in remarks],
@@ -112,13 +110,6 @@ def plan_of(
 def _anything_held(ready: Prepared) -> bool:
     """Whether a fixture stands, or a target face is clamped, in any setup."""
     return any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
-
-
-def _operations(ready: Prepared, answers: Answers, over: OverSetups) -> OperationsEntry | None:
-    if answers.operations is None:
-        return None
-    reason = over.reaches[answers.operations.cutters[0].id].reason
-    return operations_entry(answers.operations, ready.samples, ready.finished, reason, ready.options)
 
 
 def machine_entry(ready: Prepared) -> MachineEntry:
@@ -168,13 +159,14 @@ def completed(
     answers: Answers,
     over: OverSetups,
     beyond: NDArray[np.bool_],
-    travels: Mapping[str, Travel] | None = None,
+    travels: Mapping[str, Travel],
+    between: Mapping[str, AreaEntry],
 ) -> list[CutterEntry]:
-    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
+    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was found after them."""
     completed_entries, sources, samples = [], ready.options.sources, ready.samples
     reached_by_none = int(beyond.sum())
     for entry in entries:
-        moved = (travels or {}).get(entry.id)
+        moved, area = travels.get(entry.id), between.get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         here = over.here[entry.id]
         surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
@@ -186,6 +178,8 @@ def completed(
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
             "mend": None if mend is None else advice_entry(mend),
+            "area": area,
+            "seen": entry.seen or (area is not None and area.feasible),
         }
         completed_entries.append(entry.model_copy(update=more))
     return completed_entries

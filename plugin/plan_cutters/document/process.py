@@ -1,7 +1,8 @@
 """Make the process of a plan: its steps, and what they leave by cause."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +12,15 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.remaining import faces_of, reasons, remaining, remaining_entry
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.fillet import Fitting
-from plan_cutters.domain.operations import OperationPlan, Operations
 from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
-from plan_cutters.plan_file.frozen import Vector, vector
+from plan_cutters.outcome import Answers, OperationPlan, Operations
+from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
@@ -42,8 +42,8 @@ _BELOW = -0.01
 
 
 def process_entry(
-    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, operations: OperationsEntry | None,
-    shown: str, fitting: Fitting | None = None,
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str,
+    fitting: Fitting | None = None,
 ) -> ProcessEntry:  # fmt: skip
     """Put together what the given cutters, setups and operations finish.
 
@@ -55,8 +55,6 @@ def process_entry(
     answers : Answers
         The plan of operations is the process where there is one, else the fewest runs of cutters and setups.
     over : OverSetups
-    operations : OperationsEntry, optional
-        As it is in the plan file.
     shown : str
         Id of the cutter that the plan shows: its next steps are told.
     fitting : callable, optional
@@ -64,165 +62,145 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, clamping, name = float(area.sum()) + not_sampled, None, ""
-    if answers.operations is not None and operations is not None:
-        chosen, entry = _preferred(answers.operations.plans, operations.plans)
-        done = (chosen.label >= 0) & ready.finished
-        steps, seconds = _operated(ready, answers.operations, chosen, entry, over, area, requested), entry.seconds
-        name = entry.name
+    requested, clamping, name, seconds = float(area.sum()) + not_sampled, None, "", None
+    parts = _Parts(ready, over, area, requested)
+    if answers.operations is not None:
+        chosen, entry = min(
+            zip(answers.operations.plans, answers.operations.entry.plans, strict=True),
+            key=lambda each: _PREFERRED.index(each[0].name),
+        )
+        done, name, seconds = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds
+        steps = [*parts.own(answers.operations, chosen, entry), *parts.planned(answers.operations, chosen, entry)]
         if seconds is not None:
             clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
             seconds -= clamping
     else:
-        runs, seconds = list(_runs(ready, entries, answers, over)), None
+        runs = list(_runs(ready, entries, answers, over))
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
-        steps = [
-            _step(ready, over, area, requested, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None,
-                  seconds=None, clearance_mm=None)
-            for setup, cutter, mine in runs
-        ]  # fmt: skip
+        none = {"mode": "any", "angles_deg": None, "axis": None, "seconds": None, "clearance_mm": None}
+        steps = [parts.step(mine, None, setup=setup, cutter=cutter, **none) for setup, cutter, mine in runs]
     advice = answers.mends.get(shown)
     left = remaining(
         ready, done, reasons(entries, over, steps, done), area, requested, () if advice is None else advice.steps, fitting
     )
-    finished = float(area[done].sum())
-    share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left)
+    finished, exempt = float(area[done].sum()), None
+    if ready.exempt is not None and ready.exempt.any():
+        at_edges = np.where(ready.inside_bodies, 0.0, sampled)
+        exempt = remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, at_edges, requested)
     return ProcessEntry(
-        steps=steps, plan=name, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=left, seconds=seconds,
-        setup_seconds=clamping, exempt=_exempt(ready, sampled, requested),
+        steps=steps, plan=name, finished_mm2=finished, asked_mm2=requested, left=left, seconds=seconds, setup_seconds=clamping,
+        finished_share=exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left), exempt=exempt,
     )  # fmt: skip
 
 
-def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntry | None:
-    """What is not required at sharp inside edges; None where that is nothing."""
-    if ready.exempt is None or not ready.exempt.any():
-        return None
-    return remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Parts:
+    """Steps are made of this: the areas (n,) of samples, and what is requested of all, mm2."""
 
+    ready: Prepared
+    over: OverSetups
+    area: Floats
+    requested: float
 
-def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
-    """The plan of operations that is recommended, as it was outcome and as it is in the plan file."""
-    k = min(range(len(plans)), key=lambda k: (*_PREFERRED, plans[k].name).index(plans[k].name))
-    return plans[k], entries[k]
+    def step(self, mine: NDArray[np.bool_], made: OperationEntry | None, **fields: Any) -> ProcessStep:
+        """A step that finishes some samples (n,): with one axis, or each with that of its posture.
 
-
-def _operated(
-    ready: Prepared, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry, over: OverSetups, area: Floats,
-    requested: float,
-) -> list[ProcessStep]:  # fmt: skip
-    """The steps of a plan of operations: the planner's own in their order, then by setup, fixed orientations first, by cutter,
-    the largest area first.
-    """
-    by_cutter: dict[tuple[int, str], float] = {}
-    for each in entry.operations:
-        key = each.setup, each.cutter
-        by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
-    rank = {id(each): k for k, each in enumerate(entry.operations)}
-    ordered = sorted(
-        (each for each in entry.operations if each.step is None),
-        key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
-    )
-    alone = _alone(plan, operations.own, len(area))
-    planned = list[ProcessStep]()
-    for same in _together(ordered):
-        first, ranks = same[0], [rank[id(each)] for each in same]
-        mine, seconds, clearance = (
-            np.isin(plan.label, ranks),
-            [each.seconds for each in same],
-            [each.clearance_mm for each in same],
-        )
-        step = _step(
-            ready, over, area, requested, mine, setup=first.setup, mode=first.mode, strategy=first.strategy, cutter=first.cutter,
-            angles_deg=first.angles_deg, axis=first.axis, seconds=_sum(seconds),
-            clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
-            operation=first.id, take="share", alone_mm2=_gone(plan, same, ranks, mine, area, alone if operations.own else None),
+        What is not among the `fields` is as in its operation.
+        """
+        size, ready = float(self.area[mine].sum()), self.ready
+        setup, cutter, axis = (fields[name] if name in fields else getattr(made, name) for name in ("setup", "cutter", "axis"))
+        axes = self.over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
+        below = axes @ ready.setups[setup].setup < _BELOW
+        return filled(
+            ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
+            share=min(1.0, size / max(1e-300, self.requested)), below_mm2=float(self.area[mine][below].sum()),
+            operation="" if made is None else made.id, **fields,
         )  # fmt: skip
-        repeat, by = repeats(ready, same, mine)
-        planned.append(step.model_copy(update={"repeat": repeat, "repeat_deg": by}))
-    # Those that are images of others count with all of them.
-    planned.sort(key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
-    done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
-    own, all_done = [], np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
-    for outcome in operations.own:
-        k, made = done.get(outcome.number, (-2, None))
-        angles = None if outcome.angle is None else dict(zip(operations.names, outcome.angle.tolist(), strict=True))
-        own.append(
-            _step(ready, over, area, requested, plan.label == k, setup=outcome.setup, mode=outcome.mode,
-                  strategy="point" if made is None else made.strategy, cutter=outcome.cutter.id,
-                  angles_deg=angles if outcome.angle is not None and np.isfinite(outcome.angle).all() else None,
-                  axis=None if outcome.axis is None else vector(outcome.axis),
-                  seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
-                  operation="" if made is None else made.id, take=_take(ready, outcome),
-                  alone_mm2=float(area[alone & (plan.label == k)].sum()),
-                  own=_own_entry(ready, over, area, requested, outcome, operations.names, all_done))
+
+    def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
+        """The steps that were planned: by setup, fixed orientations first, by cutter, the largest area first."""
+        by_cutter: dict[tuple[int, str], float] = {}
+        for each in entry.operations:
+            key = each.setup, each.cutter
+            by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
+
+        def place(e: OperationEntry | ProcessStep) -> tuple[object, ...]:
+            return e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2
+
+        # Operations that are images of each other are one step.
+        together = dict[object, list[tuple[int, OperationEntry]]]()
+        for k, each in sorted(enumerate(entry.operations), key=lambda ranked: place(ranked[1])):
+            if each.step is None:
+                together.setdefault(each.id if each.orbit is None else each.orbit, []).append((k, each))
+        alone, planned = _alone(operations, plan), list[ProcessStep]()
+        for images in together.values():
+            images.sort(key=lambda ranked: [angle % 360.0 for angle in (ranked[1].angles_deg or {}).values()])
+            ranks, same = [k for k, _ in images], [each for _, each in images]
+            mine, clearance = np.isin(plan.label, ranks), [each.clearance_mm for each in same]
+            gone = mine & (alone if operations.own else ~np.delete(plan.serves, ranks, axis=1).any(axis=1))
+            single = len(same) == 1 and not operations.own
+            repeat, by = repeats(self.ready, same, mine)
+            planned.append(self.step(
+                mine, same[0], seconds=_sum([each.seconds for each in same]), repeat=repeat, repeat_deg=by, take="share",
+                clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
+                alone_mm2=same[0].exclusive_mm2 if single else float(self.area[gone].sum()),
+            ))  # fmt: skip
+        # Those that are images of others count with all of them.
+        return sorted(planned, key=place)
+
+    def own(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> Iterator[ProcessStep]:
+        """The planner's own steps in their order."""
+        done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
+        all_done = np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
+        alone, process = _alone(operations, plan), self.ready.options.process
+        for outcome in operations.own:
+            k, made = done.get(outcome.number, (-2, None))
+            known = outcome.angle is not None and np.isfinite(outcome.angle).all()
+            none: dict[str, Any] = {"seconds": 0.0, "clearance_mm": None} if made is None else {}
+            yield self.step(
+                plan.label == k, made, setup=outcome.setup, mode=outcome.mode, cutter=outcome.cutter.id,
+                angles_deg=_named(operations, outcome.angle) if known else None,
+                axis=None if outcome.axis is None else vector(outcome.axis),
+                take="first" if process is None else process.steps[outcome.number - 1].take,
+                alone_mm2=float(self.area[alone & (plan.label == k)].sum()),
+                own=self._own(operations, outcome, all_done), **none,
+            )  # fmt: skip
+
+    def _own(self, operations: Operations, outcome: OwnResult, done: Rows) -> OwnStepEntry:
+        """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
+
+        `done` (d,) is what all of them do together.
+        """
+        process, area, near = self.ready.options.process, self.area, outcome.nearest
+        leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
+        missed[outcome.requested] = True
+        missed[done] = False
+        if process is not None and process.steps[outcome.number - 1].faces is not None:
+            verdicts = self.over.each()[outcome.setup][1][outcome.cutter.id]
+            cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
+            for code in np.unique(cause[missed]).tolist():
+                word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
+                leaves.append(remaining_entry(self.ready, word, missed & (cause == code), area, self.requested))
+        return OwnStepEntry(
+            number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
+            leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)),
+            nearest=None if near is None else NearestEntry(
+                angles_deg=_named(operations, near.angle), axis=vector(near.axis), area_mm2=float(area[near.rows].sum())
+            ),
         )  # fmt: skip
-    return [*own, *planned]
 
 
-def _take(ready: Prepared, outcome: OwnResult) -> Literal["first", "share"]:
-    process = ready.options.process
-    return "first" if process is None else process.steps[outcome.number - 1].take
+def _named(operations: Operations, angle: Floats | None) -> dict[str, float]:
+    """The angles of the rotary axes by their names."""
+    return {} if angle is None else dict(zip(operations.entry.rotary, angle.tolist(), strict=True))
 
 
-def _alone(plan: OperationPlan, own: Sequence[OwnResult], count: int) -> NDArray[np.bool_]:
+def _alone(operations: Operations, plan: OperationPlan) -> NDArray[np.bool_]:
     """Samples (n,) that one step alone serves: one of the planner's own serves what it could finish of its faces."""
-    times = np.zeros(count, np.int64)
-    for outcome in own:
+    times = plan.serves[:, [k for k, each in enumerate(plan.operations) if not each.step]].sum(axis=1)
+    for outcome in operations.own:
         times[outcome.serves] += 1
-    planned = [k for k, each in enumerate(plan.operations) if not each.step]
-    return times + plan.serves[:, planned].sum(axis=1) == 1
-
-
-def _own_entry(
-    ready: Prepared, over: OverSetups, area: Floats, requested: float, outcome: OwnResult, names: tuple[str, str], done: Rows
-) -> OwnStepEntry:
-    """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
-
-    `done` (d,) is what all of them do together.
-    """
-    process = ready.options.process
-    leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
-    missed[outcome.requested] = True
-    missed[done] = False
-    if process is not None and process.steps[outcome.number - 1].faces is not None:
-        verdicts = over.each()[outcome.setup][1][outcome.cutter.id]
-        cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
-        for code in np.unique(cause[missed]).tolist():
-            word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
-            leaves.append(remaining_entry(ready, word, missed & (cause == code), area, requested))
-    near = outcome.nearest
-    nearest_ = None if near is None else NearestEntry(
-        angles_deg=dict(zip(names, near.angle.tolist(), strict=True)), axis=vector(near.axis),
-        area_mm2=float(area[near.rows].sum())
-    )  # fmt: skip
-    return OwnStepEntry(
-        number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
-        leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)), nearest=nearest_,
-    )  # fmt: skip
-
-
-def _gone(
-    plan: OperationPlan, same: Sequence[OperationEntry], ranks: Sequence[int], mine: NDArray[np.bool_], area: Floats,
-    alone: NDArray[np.bool_] | None,
-) -> float:  # fmt: skip
-    """What no other step serves of the samples (n,) of one; `alone` (n,) where some steps are the planner's own."""
-    if alone is not None:
-        return float(area[alone & mine].sum())
-    if len(same) == 1:
-        return same[0].exclusive_mm2
-    return float(area[mine & ~np.delete(plan.serves, ranks, axis=1).any(axis=1)].sum())
-
-
-def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]]:
-    """Operations of one step each, those that are images of each other in one."""
-    steps: dict[object, list[OperationEntry]] = {}
-    for each in operations:
-        steps.setdefault(each.id if each.orbit is None else each.orbit, []).append(each)
-    return [sorted(same, key=_first_angles) for same in steps.values()]
-
-
-def _first_angles(operation: OperationEntry) -> list[float]:
-    return [angle % 360.0 for angle in (operation.angles_deg or {}).values()]
+    return np.asarray(times == 1)
 
 
 def _sum(seconds: Sequence[float | None]) -> float | None:
@@ -245,17 +223,3 @@ def _runs(
         done |= mine
         if mine.any():
             yield setup, cutter, mine
-
-
-def _step(
-    ready: Prepared, over: OverSetups, area: Floats, requested: float, mine: NDArray[np.bool_], *, setup: int, cutter: str,
-    axis: Vector | None, **fields: Any,
-) -> ProcessStep:  # fmt: skip
-    """A step that finishes some samples (n,): with one axis, or each with that of its posture."""
-    size = float(area[mine].sum())
-    axes = over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
-    below = axes @ ready.setups[setup].setup < _BELOW
-    return ProcessStep(
-        faces=faces_of(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), setup=setup,
-        cutter=cutter, axis=axis, below_mm2=float(area[mine][below].sum()), **fields,
-    )  # fmt: skip

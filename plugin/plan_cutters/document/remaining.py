@@ -1,7 +1,7 @@
 """Make what a process leaves entries of the plan file, by cause, with what is known to help there."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,23 +82,19 @@ def remaining(
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
         cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
-        entry = remaining_entry(ready, cause, mine, area, requested)
-        update: dict[str, object] = {"helped": _helped(steps, mine, area)}
+        by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
             rows = _speaking(samples.face, np.flatnonzero(mine), area)
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
             fits = None if fitting is None else fitting(cutter, rows, area)
-            update["points"] = _points(ready, rows, area)
-            update["fits"] = None if fits is None else [_fit_entry(fit) for fit in fits]
-        entries.append(entry.model_copy(update=update))
+            by_size["points"] = _points(ready, rows, area)
+            by_size["fits"] = None if fits is None else [_fit_entry(fit) for fit in fits]
+        helped = _helped(steps, mine, area)
+        entries.append(remaining_entry(ready, cause, mine, area, requested, helped=helped, **by_size))
     unjudged = samples.unjudged >= 0
     if unjudged.any() or samples.empty:
-        entry = remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested)
-        missing = sum(ready.scene.part.faces[number - 1].area for number, _ in samples.empty)
-        whole = entry.area_mm2 + (missing if np.isfinite(missing) else 0.0)
-        faces = list(dict.fromkeys([*entry.faces, *(f"F{number}" for number, _ in samples.empty)]))
-        share = min(1.0, whole / max(1e-300, requested))
-        entries.append(entry.model_copy(update={"area_mm2": whole, "share": share, "faces": faces}))
+        empty = [number for number, _ in samples.empty]
+        entries.append(remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested, empty))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
 
 
@@ -136,16 +132,20 @@ def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> lis
     return sorted(each, key=lambda entry: (-entry.share, entry.step))
 
 
-def remaining_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float) -> RemainingEntry:
-    """The entry of some samples (n,) that are left for one cause."""
-    samples, whole = ready.samples, float(area[mine].sum())
+def remaining_entry(
+    ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float, empty: Sequence[int] = (), **more: Any
+) -> RemainingEntry:
+    """The entry of some samples (n,) that are left for one cause, and of faces without samples; with more of its fields."""
+    samples, missing = ready.samples, float(sum(ready.scene.part.faces[number - 1].area for number in empty))
+    whole = float(area[mine].sum()) + (missing if np.isfinite(missing) else 0.0)
     faces, place = faces_of(ready, mine, area), None
     if faces:
         rows = np.flatnonzero(mine & (samples.face == int(faces[0][1:])))
         middle = samples.point[rows].mean(axis=0)
         place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
     share = min(1.0, whole / max(1e-300, requested))
-    return RemainingEntry(cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place)
+    faces = list(dict.fromkeys([*faces, *(f"F{number}" for number in empty)]))
+    return RemainingEntry(cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place, **more)
 
 
 def faces_of(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:

@@ -269,3 +269,12 @@ def listed(names: Sequence[str], most: int = 8) -> str:
     ('F1, F2 and 1 more', 'F1')
     """
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
+def joined(texts: Sequence[str]) -> str:
+    """Texts in a line, `and` before the last one.
+
+    >>> joined(["F1", "F2", "F3"]), joined(["F1", "F2"]), joined(["F1"])
+    ('F1, F2 and F3', 'F1 and F2', 'F1')
+    """
+    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
-from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.operations.plans import costs_with, moving_over
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import speed_of
+from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
 #: Simultaneous motion is taken for less than what is recommended where it saves this share of the time: what it costs to turn

@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from cad_io.part.motion import Motion
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.figures import count, duration
-from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
 from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.fastest import bounded, cheap
+from plan_cutters.operations.entries import Timed
+from plan_cutters.operations.fastest import against_bound, bounded, cheap
 from plan_cutters.operations.plans import plan_with, worth_their_turn
 from plan_cutters.operations.repeated import Copied, repeated, symmetric
-from plan_cutters.operations.rest_areas import by_size, largest_first, worths
+from plan_cutters.operations.rest_areas import Worth, by_size, largest_first, worths
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.task import Task
+from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -33,7 +34,7 @@ _EQUAL = 0.02
 #: what must go with it.
 _MOVING, _MOST_MOVING = 0.05, 0.1
 
-PlansTimed = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
+PlansTimed = tuple[list[OperationPlan], Timed | None, tuple[Worth, ...], tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,9 +131,8 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
         columns = worth_their_turn(offer.one, copied.base.of(largest_first(copied.problem, by_size(task))))
         compared.append(plan_with(offer.task, "fastest", columns))
         plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
-    # What the plan takes that is printed bounds the best from above.
-    bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plan.total, nan=np.inf))
-    timed = Fastest(plan.total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
+    bound = bounded(copied.apart, alone).bound
+    timed = against_bound(plan.total, bound, copied.at_best, *copied.apart.cost.shape), copied.area
     words = (
         "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
         "well, by all samples."

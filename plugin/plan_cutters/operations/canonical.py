@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
-from plan_cutters.domain.operations import Operation
 from plan_cutters.operations.candidates import Orientations, face_directions
 from plan_cutters.operations.plans import clearance_of, costs_with
 from plan_cutters.operations.task import Task
+from plan_cutters.outcome import Operation
 from plan_cutters.scene.threads import Progress
 
 Served = NDArray[np.bool_]
@@ -180,7 +180,7 @@ def _clearance(choice: _Choice, k: int) -> float:
     """The least clearance, mm, of a column at the samples that are cheapest with it."""
     columns, rows = choice.columns, choice.task.rows[choice.own(k)]
     cutter, setup = choice.task.cutters[columns.cutter[k]], int(columns.setup[k])
-    operation = Operation("", "fixed", cutter, setup, columns.axis[k], columns.angle[k], None, rows, rows)
+    operation = Operation("", "fixed", cutter, setup, columns.axis[k], columns.angle[k], None, rows)
     clearance = clearance_of(choice.task, operation)
     return -math.inf if clearance is None else clearance
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.operations.problem import Problem
+from plan_cutters.plan_file.operations import FastestEntry
 
 Which = NDArray[np.int64]
 #: Rounds of leaving out and exchanging.
@@ -30,6 +31,18 @@ _FIRST, _KINDS = 80, 7
 _NEWEST, _GAIN, _PATIENT, _SHORTER, _SHORTEST, _FEWER = 0.2, 2e-4, 8, 0.7, 1e-3, 0.8
 #: Seconds that count as nothing.
 _NOTHING = 1e-9
+
+
+def against_bound(seconds: float, bound: float, at_best: float, samples: int, candidates: int) -> FastestEntry:
+    """How good the fastest plan is, by some samples; seconds are nan where a width is not known.
+
+    No plan that is printed takes less than the best of the candidates: its seconds bound that from above. Simultaneous motion,
+    which is no candidate, may bring a plan below: then the gap is 0.
+    """
+    known, bound = bool(np.isfinite(seconds)), float(min(bound, np.nan_to_num(seconds, nan=np.inf)))
+    gap = max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0
+    return FastestEntry(seconds=seconds if known else None, bound_seconds=bound, at_best_seconds=min(at_best, bound),
+                        gap=gap if known else None, samples=samples, candidates=candidates)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,17 +7,18 @@ weights of rows lie.
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Record
 from plan_cutters.domain.columns import Columns, columns_of
-from plan_cutters.domain.operations import Fewest
 from plan_cutters.operations.candidates import Orientations, apart, neighbours
 from plan_cutters.operations.cover import SECONDS, UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes
+from plan_cutters.plan_file.operations import FewestEntry
 from plan_cutters.scene.threads import Progress
 
 Rows = NDArray[np.int64]
@@ -35,6 +36,61 @@ _NEARLY = 0.97
 _MARGIN = 0.01
 #: Spacing down to which candidates are laid, rad.
 FINEST = math.radians(0.5)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Fewest(Record):
+    """The fewest orientations found, with what proves how few there can be.
+
+    Attributes
+    ----------
+    columns : Columns
+        All candidates.
+    chosen : (k,) int64
+        Of the candidates.
+    rows : (r,) int64
+        Samples in the table.
+    weight : (r,) int64
+        Their weights, in millionths: no candidate serves samples of more than 1,000,000 together.
+    at_least : int
+        No choice among the candidates has fewer.
+    bound, relaxed : float
+        What the weights prove, and the least sum of parts of candidates.
+    spacing : float
+        Between candidates where the weights lie, rad.
+    alone : (s,) int64
+        Samples that no candidate serves.
+    samples : int
+        How many are reached.
+    """
+
+    columns: Columns
+    chosen: Rows
+    rows: Rows
+    weight: Rows
+    at_least: int
+    bound: float
+    relaxed: float
+    spacing: float
+    alone: Rows
+    samples: int
+
+    @property
+    def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
+        """Name the proof that there are no fewer: the weights alone, a solver, or none yet."""
+        if np.ceil(self.bound - 1e-9) >= len(self.chosen):
+            return "weights"
+        return "branch and bound" if self.at_least >= len(self.chosen) else "not closed"
+
+    @property
+    def entry(self) -> FewestEntry:
+        """As the plan file has it."""
+        weights = [(row, weight) for row, weight in zip(self.rows.tolist(), self.weight.tolist(), strict=True) if weight]
+        return FewestEntry(
+            found=len(self.chosen), at_least=self.at_least, proof=self.proof, weights=sorted(weights), bound=self.bound,
+            lp=self.relaxed, samples=self.samples, candidates=len(self.columns), spacing_deg=float(np.degrees(self.spacing)),
+            alone=len(self.alone),
+        )  # fmt: skip
 
 
 class Search:

@@ -1,7 +1,7 @@
 """Simultaneous operations between the samples: where a field of tool axes is proved, and how the machine turns there."""
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,12 @@ from scipy.sparse.csgraph import breadth_first_order
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
-from plan_cutters.domain.operations import Operation
-from plan_cutters.domain.turning import Turning
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.judging.axis_field import angle_between
 from plan_cutters.judging.between import Between, between
 from plan_cutters.operations.moving_axes import fields, moving_axes
+from plan_cutters.outcome import Operation
+from plan_cutters.plan_file.operations import TurningEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
@@ -63,9 +63,9 @@ def proved_moving(
         covered_samples=ready.not_required, axes=fields(samples, axis), own=own, progress=progress,
     )  # fmt: skip
     whole = float(result.surrounding_area[operation.rows].sum())
-    turning = _turning(samples, axis, result, kinematics)
+    turning, piece = _turning(samples, axis, result, kinematics, [each.name for each in context.conditions.machine.rotary])
     share = proved_share(float(result.cells.area.sum()), whole)
-    return replace(operation, proved=share, approaches=len(turning.area), turning=turning)
+    return operation.with_fields((axis, piece), proved_share=share, approaches_proved=len(turning.pieces_mm2), turning=turning)
 
 
 def proved_share(proved: float, whole: float) -> float:
@@ -78,8 +78,10 @@ def counted_pieces(size: Floats) -> int:
     return int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
 
 
-def _turning(samples: SurfaceSamples, axis: Floats, result: Between, kinematics: Kinematics | None) -> Turning:
-    """How the axes turn in what was proved."""
+def _turning(
+    samples: SurfaceSamples, axis: Floats, result: Between, kinematics: Kinematics | None, names: Sequence[str]
+) -> tuple[TurningEntry, Ints]:
+    """How the axes turn in what was proved, and the piece (n,) about each sample; `names` are those of the rotary axes."""
     cells, n = result.cells, len(samples)
     number, which = np.unique(cells.piece, return_inverse=True)
     size = np.asarray(np.bincount(which, cells.area, len(number)), float)
@@ -95,11 +97,15 @@ def _turning(samples: SurfaceSamples, axis: Floats, result: Between, kinematics:
     away = np.linalg.norm(samples.point[edge[:, 0]] - samples.point[edge[:, 1]], axis=1)
     steepest = float((turn / np.maximum(away, 1e-9)).max(initial=0.0))
     about = np.bincount(cells.sample[cells.sample >= 0], cells.area[cells.sample >= 0], n)
-    if kinematics is None or len(kinematics.direction) != 2:
-        return Turning(axis, piece, tuple(sizes[:counted].tolist()), steepest, None, None, 0.0, 0.0, 0.0)
-    low, high, held, both = _held(kinematics, axis, piece, edge, sizes[:counted])
-    near = np.linalg.norm(np.cross(axis, kinematics.direction[0]), axis=1) <= math.sin(SINGULAR)
-    return Turning(axis, piece, tuple(sizes[:counted].tolist()), steepest, low, high, held, both, float(about[near].sum()))
+    spans, held, both, singular = None, 0.0, 0.0, 0.0
+    if kinematics is not None and len(kinematics.direction) == 2:
+        low, high, held, both = _held(kinematics, axis, piece, edge, sizes[:counted])
+        near = np.linalg.norm(np.cross(axis, kinematics.direction[0]), axis=1) <= math.sin(SINGULAR)
+        singular = float(about[near].sum())
+        if low is not None and high is not None:
+            spans = dict(zip(names, zip(low.tolist(), high.tolist(), strict=True), strict=True))
+    return TurningEntry(pieces_mm2=sizes[:counted].tolist(), steepest_deg_mm=steepest, angles_deg=spans, held_share=held,
+                        both_share=both, singular_mm2=singular), piece  # fmt: skip
 
 
 def _pieces(sample: Rows, piece: Rows, area: Floats, n: int) -> Ints:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
 from plan_cutters.domain.own_results import Nearest, OwnResult
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
@@ -20,6 +19,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Problems
 from plan_cutters.operations.walls import Walls
+from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
 #: An orientation that would do is looked for in rings about the one that was written, so far apart and as far as, deg.

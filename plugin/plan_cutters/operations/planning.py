@@ -13,7 +13,6 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import duration, percent
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.operations import Fastest, Fewest, OperationPlan, Operations
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended
@@ -22,8 +21,9 @@ from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker
 from plan_cutters.operations.companions import accompanied
-from plan_cutters.operations.fastest import bounded
-from plan_cutters.operations.fewest import FINEST, Search, search_fewest
+from plan_cutters.operations.entries import operations_entry
+from plan_cutters.operations.fastest import against_bound, bounded
+from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
@@ -43,6 +43,7 @@ from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import thinned
 from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
+from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -51,6 +52,8 @@ Rows = NDArray[np.int64]
 _CUTTERS = 4
 #: Parts of the work whose progress is told as one: what may be repeated, the fewest, the plans, their proof.
 _PARTS = 4
+#: No columns.
+_NONE = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -59,6 +62,7 @@ def plan_operations(
     everywhere: Sequence[Mapping[Cutter, Verdicts]],
     least: LeastSet | None,
     stage: Callable[[str], AbstractContextManager[Progress]],
+    over: Mapping[str, Verdicts],
 ) -> Operations:
     """Plan the operations that finish together all that the cutters reach.
 
@@ -71,11 +75,13 @@ def plan_operations(
         The fewest cutters that reach all that any reaches: they are considered before others.
     stage : callable
         Opens a stage of work by its name; what it gives is told how much of how much is done.
+    over : mapping
+        Of each cutter by its id the verdicts over all setups, with the reasons.
     """
     options = ready.options
     task = _task(ready, everywhere, least)
     if options.process is not None:
-        return _own(task, options.process, stage)
+        return _own(task, options.process, stage, over)
     fewest, alone = None, 0
     with stage("operations") as tell:
         offer = _offer(task, part_of(tell, 0, _PARTS))
@@ -94,9 +100,9 @@ def plan_operations(
             plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 2, _PARTS))
         plans = _proved(task, plans, part_of(tell, 3, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else alone))
-    return Operations(options.operations or "", task.cutters, tuple(plans), fewest, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, timed, worth=worth,
-                      notes=notes, index_from=task.indexing.source)  # fmt: skip
+    entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, fewest, timed, worth)
+    columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
+    return Operations(entry, task.cutters, tuple(plans), columns, chosen)
 
 
 def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
@@ -165,14 +171,16 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
     return notes
 
 
-def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]]) -> Operations:
+def _own(
+    task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]], over: Mapping[str, Verdicts]
+) -> Operations:
     """The planner's own process, with the rest planned behind it as it was requested."""
-    ready, options = task.ready, task.ready.options
+    ready = task.ready
 
     def planned(rest: Task) -> Columns:
         """The fixed orientations of the best plan for what the steps leave."""
         if not len(rest.rows):
-            return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+            return _NONE
         some = thinned(rest)
         search, few = _served(some, part_of(tell, 1, _PARTS))
         plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 0, _PARTS)), part_of(tell, 2, _PARTS))
@@ -181,8 +189,8 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
     with stage("operations") as tell:
         plan, outcomes = own_plan(task, process, planned)
         plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 3, _PARTS))
-    return Operations(options.operations or "", task.cutters, (plan,), None, task.orientations[0].names, task.probes.made,
-                      task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
+    entry = operations_entry(task, [plan], over[task.cutters[0].id].reason)
+    return Operations(entry, task.cutters, (plan,), _NONE, np.zeros(0, np.int64), outcomes)
 
 
 def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
@@ -207,10 +215,9 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
     at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
-    # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
-    bound = min(bounded(choice.problem, choice.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
-    timed = Fastest(fastest.total, bound, min(at_best, bound), choice.area, len(choice.problem.cost), len(choice.columns))
-    return [*printed, fastest], timed, worths(task, plans), notes
+    bound = bounded(choice.problem, choice.safe).bound
+    timed = against_bound(fastest.total, bound, at_best, len(choice.problem.cost), len(choice.columns))
+    return [*printed, fastest], (timed, choice.area), worths(task, plans), notes
 
 
 def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
@@ -245,7 +252,7 @@ def _seconds(plan: OperationPlan) -> float:
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:
     """The columns of the fixed operations of a plan."""
-    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    columns = _NONE
     for each in plan.operations:
         if each.axis is not None and each.angle is not None:
             columns = columns.and_(columns_of(each.axis[None], each.angle[None], task.cutters.index(each.cutter), each.setup))
@@ -279,7 +286,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
 
 def _first(task: Task, spacing: float = STEP) -> Columns:
     """The first candidates of all cutters and setups, with a grid of a spacing, rad."""
-    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    columns = _NONE
     for s, where in enumerate(task.orientations):
         angle, axis = candidates(where, task.ready.samples, task.ready.options.index_step, spacing)
         for c in range(len(task.cutters)):
@@ -289,7 +296,7 @@ def _first(task: Task, spacing: float = STEP) -> Columns:
 
 def _stored(task: Task, rows: Rows) -> Columns:
     """Columns of the postures that were found for samples, rounded as a control shows them."""
-    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    columns = _NONE
     if task.ready.options.index_step is not None:
         return columns
     for s, verdicts in enumerate(task.everywhere):

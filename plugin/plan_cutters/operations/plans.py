@@ -11,7 +11,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
-from plan_cutters.domain.operations import STRATEGIES, Operation, OperationPlan, Workplane, strategy_of
+from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
@@ -19,6 +19,7 @@ from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import costs_of, tip_widths, widths
 from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
@@ -79,7 +80,7 @@ def plan_with(
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
-    operations, order = _fixed(task, columns, finite, label, area, orbit, (0,) * len(columns) if own is None else own.step)
+    operations, order = _fixed(task, columns, label, area, orbit, (0,) * len(columns) if own is None else own.step)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
@@ -98,20 +99,20 @@ def plan_with(
         tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
         strategy[mine] = stands.strategy
         clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
-        operations[k] = replace(operation, clearance=clearance, strategy=word)
+        operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word)
     region = regions_of(number, edge, area)
-    planes = workplanes(operations, task.ready, task.indexing)
-    cutting, other = float(seconds[number >= 0].sum()), _other(task, operations, planes)
+    operations = workplanes(operations, task.ready, task.indexing)
+    cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
-        name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, strategy, contact, cutting, other
+        name, tuple(operations), number, table, strip, seconds, region, tilt_direction, strategy, contact, cutting, other
     )
 
 
-def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workplane | None]) -> float:
+def _other(task: Task, operations: Sequence[Operation]) -> float:
     """Seconds of orientations, and of each cutter and each setup after the first, which are there anyway."""
     options = task.ready.options
     # How simultaneous motion begins is not known: it takes the time of an orientation that no rates tell.
-    turns = sum(task.indexing.constant if plane is None else plane.index for plane in planes)
+    turns = sum(each.fields.get("index_s", task.indexing.constant) for each in operations)
     cutters, setups = len({each.cutter for each in operations}), len({each.setup for each in operations})
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
@@ -127,25 +128,18 @@ def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
 
 
 def _fixed(
-    task: Task,
-    columns: Columns,
-    serves: NDArray[np.bool_],
-    label: NDArray[np.int32],
-    area: Floats,
-    orbit: Rows,
-    step: Sequence[int],
+    task: Task, columns: Columns, label: NDArray[np.int32], area: Floats, orbit: Rows, step: Sequence[int]
 ) -> tuple[list[Operation], list[int]]:
     """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
     mine = label >= 0
     size = np.bincount(label[mine], area[mine], len(columns))
     used = np.flatnonzero(np.bincount(label[mine], minlength=len(columns)))
     order = sorted(used.tolist(), key=lambda k: (-size[k], columns.setup[k], *columns.axis[k].tolist()))
-    times = serves[:, order].sum(axis=1)
     operations = [
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
-            np.flatnonzero(serves[:, k] & (times == 1) & (label == k)), step=step[k], orbit=int(orbit[k]),
+            step=step[k], orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
@@ -190,11 +184,11 @@ def _simultaneous(
         if not len(mine):
             continue
         number[mine], strip[mine] = before + len(operations), width
-        only, column = mine[~table[mine].any(axis=1)], np.zeros((len(number), 1), bool)
+        column = np.zeros((len(number), 1), bool)
         column[mine] = True
         table = np.concatenate([table, column], axis=1)
         name = f"op{before + len(operations) + 1}"
-        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, only, step=step))
+        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, step=step))
     return number, table, strip, operations
 
 

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.judging.between import between
 from plan_cutters.judging.face_cells import Fixed
 from plan_cutters.judging.margin import margin
 from plan_cutters.judging.nodes import tensors
 from plan_cutters.operations.moving_proof import counted_pieces, proved_moving, proved_share
+from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
@@ -101,7 +101,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         piece = np.unique(cells.piece[own], return_inverse=True)[1]
         size = np.sort(np.asarray(np.bincount(piece, cells.area[own]), float))[::-1]
         share = proved_share(float(by_sample[mine].sum()), surrounding_area)
-        result.append(replace(each, proved=share, approaches=counted_pieces(size)))
+        result.append(each.with_fields(proved_share=share, approaches_proved=counted_pieces(size)))
     return result
 
 

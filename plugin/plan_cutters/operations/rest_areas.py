@@ -1,18 +1,40 @@
 """Tell what each cutter of a plan is worth, and choose by a shop's habit, from which the fastest plan is looked for, too."""
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import OperationPlan, Worth
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import cheap
 from plan_cutters.operations.problem import Problem
 from plan_cutters.operations.task import Task
+from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
+
+
+class Worth(NamedTuple):
+    """A cutter is worth this beside the others that were compared.
+
+    Attributes
+    ----------
+    cutter : Cutter
+    only : (n,) int64
+        Samples that none of the others reaches.
+    saves : float, optional
+        Seconds by which the fastest plan found with it is below the fastest one without it, before its own change; None where
+        no plan without it was found.
+    change : float
+        Seconds that its change costs: 0 where it is the only one then.
+    """
+
+    cutter: Cutter
+    only: Rows
+    saves: float | None
+    change: float
 
 
 def by_size(task: Task) -> list[int]:

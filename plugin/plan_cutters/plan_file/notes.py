@@ -6,7 +6,7 @@ To add a note, add its code, its function here, and the call where it is found.
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from plan_cutters.domain.figures import angle, area, count, listed, mm, plainly
+from plan_cutters.domain.figures import angle, area, count, joined, listed, mm, plainly
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
@@ -59,10 +59,9 @@ def run_unfinished(absent: Sequence[str], work: str = "", *, unexplained: bool =
     >>> run_unfinished(["--answers mend", "--operations fewest"], "planning the operations").text
     'The run was interrupted while planning the operations: this plan is without --answers mend and --operations fewest.'
     """
-    without = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
     how = f"was interrupted while {work}" if work else "was not done"
     instead = " What it names in their place forbids most tilts, and need not be what helps." if unexplained else ""
-    return Note("run_unfinished", f"The run {how}: this plan is without {without}.{instead}")
+    return Note("run_unfinished", f"The run {how}: this plan is without {joined(absent)}.{instead}")
 
 
 # Of cutters.

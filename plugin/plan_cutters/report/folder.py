@@ -287,7 +287,7 @@ class _Written:
     def put(self) -> None:
         """Write the plan, with its files as they are now, beside the output."""
         files = {name: self.files[name] for name in WRITERS if name in self.files}
-        self.plan = self.clock.stamp(self.plan.model_copy(update={"files": files, "not_written": dict(self.missing)}))
+        self.plan = self.clock.stamp(self.plan, files=files, not_written=dict(self.missing))
         if self.as_json:
             from plan_cutters.report.to_json import write_plan
 

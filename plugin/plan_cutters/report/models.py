@@ -117,15 +117,14 @@ def verdict_of(piece: Any) -> str:
 
 def rungs(split: Any) -> dict[str, SplitEntry]:
     """How each face of mixed verdicts is shown."""
-    counts = Counter(piece.face for piece in split.pieces)
-    shown = {number: SplitEntry(rung="contour", why=None) for number, count in counts.items() if count > 1}
-    for number, why in split.whole.items():
-        shown[number] = SplitEntry(rung="whole", why=why)
-    for number in split.joined.keys() | split.dropped.keys():
-        entry = shown.get(number) or SplitEntry(rung="contour", why=None)
-        tallies = {"joined": split.joined.get(number, 0), "dropped": split.dropped.get(number, 0)}
-        shown[number] = entry.model_copy(update=tallies)
-    return {f"F{number}": shown[number] for number in sorted(shown)}
+    several = {number for number, count in Counter(piece.face for piece in split.pieces).items() if count > 1}
+    return {
+        f"F{number}": SplitEntry(
+            rung="whole" if number in split.whole else "contour", why=split.whole.get(number),
+            joined=split.joined.get(number, 0), dropped=split.dropped.get(number, 0),
+        )
+        for number in sorted(several | split.whole.keys() | split.joined.keys() | split.dropped.keys())
+    }  # fmt: skip
 
 
 def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from plan_cutters.domain.columns import columns_of
-from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.outcome import OperationPlan
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.to_npz import write_arrays
 
@@ -26,15 +25,14 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     """
     operations = result.answers.operations
     assert operations is not None, "written where operations were requested"
-    few, ids = operations.fewest, [entry.id for entry in result.cutters]
+    ids, columns = [entry.id for entry in result.cutters], operations.candidates
     number = np.array([ids.index(cutter.id) for cutter in operations.cutters], np.int32)
-    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2))) if few is None else few.columns
     arrays: dict[str, Any] = {
         "candidate_cutter": number[columns.cutter],
         "candidate_setup": columns.setup,
         "candidate_angle": columns.angle,
         "candidate_axis": columns.axis,
-        "chosen": np.zeros(0, np.int64) if few is None else few.chosen,
+        "chosen": operations.chosen,
     }
     for k, plan in enumerate(operations.plans):
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""
@@ -43,18 +41,15 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
 
 
 def _columns(plan: OperationPlan) -> dict[str, Any]:
-    alone = np.zeros(len(plan.label), bool)
-    for each in plan.operations:
-        alone[each.only] = True
     axis, piece = np.full((len(plan.label), 3), np.nan), np.full(len(plan.label), -1, np.int32)
     for each in plan.operations:
-        if each.turning is not None:
-            axis[each.rows], piece[each.rows] = each.turning.axis[each.rows], each.turning.piece[each.rows]
+        if each.moving is not None:
+            axis[each.rows], piece[each.rows] = (mine[each.rows] for mine in each.moving)
     return {
         "operation": plan.label.astype(np.int16),
         "strip_mm": plan.strip,
         "seconds": plan.seconds,
-        "exclusive": alone,
+        "exclusive": plan.alone,
         "lean": plan.lean,
         "strategy": plan.strategy,
         "contact": plan.contact,

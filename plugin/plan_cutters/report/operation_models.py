@@ -98,7 +98,7 @@ def _fixtures(result: Judged) -> list[Drawn]:
     fixtures = []
     for k, conditions in enumerate(ready.setups):
         for each in conditions.surroundings.fixtures:
-            facts = fixture_entry(each).model_copy(update={"setups": [k]}).model_dump(mode="json")
+            facts = fixture_entry(each, [k]).model_dump(mode="json")
             fixtures.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
     return fixtures
 

@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
     from cad_io import Part, SurfaceSamples
     from cad_io.arrays import Floats, Ints
-    from plan_cutters.domain.answers import Answers
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.kinematics import Kinematics
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.domain.travel import Travel
     from plan_cutters.domain.verdicts import Verdicts
+    from plan_cutters.outcome import Answers
     from plan_cutters.plan_file.model import CutterEntry, Plan
     from plan_cutters.scene.clearance import Clearances
     from plan_cutters.scene.conditions import Conditions

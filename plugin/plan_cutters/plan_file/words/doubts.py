@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.domain.figures import ROUNDING, consecutive, count, listed, mm, ranges, size
+from plan_cutters.domain.figures import ROUNDING, consecutive, count, joined, listed, mm, ranges, size
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.part_info import UnitEntry
 from plan_cutters.plan_file.words.names import named
@@ -163,4 +163,4 @@ def _runs(numbers: Sequence[int]) -> str:
     ('2 to 6', '1 and 2', '1 and 3 to 5')
     """
     texts = [text for run in consecutive(numbers) for text in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run))]
-    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
+    return joined(texts)

@@ -30,8 +30,10 @@ def kind(cutter: "Cutter | CutterEntry") -> str:
     return _BALL if cutter.corner_radius >= cutter.radius else _BULL
 
 
-def called(cutter: "Cutter | CutterEntry") -> str:
+def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
     """A cutter by its description and diameter, mm or inches as it was given: its name where a person or a library gave one.
+
+    `plainly`: as if nobody had given a name.
 
     >>> from plan_cutters.domain.cutter import Cutter
     >>> called(Cutter.parse("R6L80")), called(Cutter.parse("D12L80rc1")), called(Cutter(3, 40, 3, name="Finisher"))
@@ -45,13 +47,14 @@ def called(cutter: "Cutter | CutterEntry") -> str:
     from plan_cutters.domain.spec import is_spec, notation
 
     # As it was typed: a D12 is called so in an inch shop, too. Tools of libraries have only names.
-    inches = notation(cutter.name).inches if not cutter.name or is_spec(cutter.name) else in_inches()
+    name = "" if plainly and not is_spec(cutter.name) else cutter.name
+    inches = notation(name).inches if not name or is_spec(name) else in_inches()
 
     def size(length: float, digits: int = 5) -> str:
         return f"{length / 25.4:.{digits}g}in" if inches else f"{length:.{digits}g}"
 
     across = size(2.0 * cutter.radius)
-    name = cutter.name.removesuffix(_BUILT_IN_MARK).strip()
+    name = name.removesuffix(_BUILT_IN_MARK).strip()
     if name and not is_spec(name):
         # Where the name says the diameter itself, it need not be said again.
         match = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
@@ -96,7 +99,7 @@ def described(entry: "CutterEntry", name: str) -> str:
     from plan_cutters.domain.lengths import INCH, in_inches
     from plan_cutters.domain.spec import notation
 
-    what = called_plainly(entry)
+    what = called(entry, plainly=True)
     text = f"{'' if what in name else f'{what}, '}{_word(entry)}, "
     length = notation(entry.name).mm(round(entry.length, 6))
     holder = [stage for stage in entry.stages if stage.part == "holder"]
@@ -112,13 +115,6 @@ def _word(entry: "CutterEntry") -> str:
     from plan_cutters.domain.spec import parted, typed
 
     return parted(typed(entry.id, entry.name))[0]
-
-
-def called_plainly(entry: "CutterEntry") -> str:
-    """The same as `called` for one without a name."""
-    from plan_cutters.domain.spec import is_spec
-
-    return called(entry if is_spec(entry.name) else entry.model_copy(update={"name": ""}))
 
 
 def named(plan: "Plan", text: str) -> str:

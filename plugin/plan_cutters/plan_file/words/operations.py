@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import ROUNDING, bound, duration, listed, percent, some
+from plan_cutters.domain.figures import ROUNDING, bound, count, duration, joined, listed, percent, some
 from plan_cutters.domain.figures import area as size
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
@@ -55,7 +55,7 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
         if each.mode == "simultaneous" and first.orientations < most:
             yield (
                 f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
-                f"{_count(first.orientations)} leave{'s' * (first.orientations == 1)} it."
+                f"{count(first.orientations, 'fixed orientation')} leave{'s' * (first.orientations == 1)} it."
             )
         elif each.mode == "simultaneous":
             yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
@@ -66,20 +66,13 @@ def _fewest(operations: OperationsEntry) -> Iterator[str]:
     if few is None:
         plan = operations.plans[0]
         whose = "The planner's own process" if plan.name == "process" else "The plan, of one copy and its repeats,"
-        yield f"{whose} has {_count(plan.orientations)}."
+        yield f"{whose} has {count(plan.orientations, 'fixed orientation')}."
         return
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
         return
-    yield f"{_times(few.found)} everything that is reached{_proved(few)}"
-
-
-def _times(number: int) -> str:
-    return f"{_count(number)} {'finishes' if number == 1 else 'finish'}"
-
-
-def _count(number: int) -> str:
-    return f"{number} fixed orientation{'s' * (number != 1)}"
+    verb = "finishes" if few.found == 1 else "finish"
+    yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{_proved(few)}"
 
 
 def _proved(few: FewestEntry) -> str:
@@ -98,7 +91,7 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
     if plan is not first and _choice(plan) == _choice(first):
         yield f"The {plan.name} plan is the same."
         return
-    yield f"The {plan.name} plan: {_count(plan.orientations)}, {_work(plan)}."
+    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {_work(plan)}."
     small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
     for each in small[:_SMALL]:
         yield f"  {each.id} is there for {_little(each)}: {_faces(each)}."
@@ -126,7 +119,7 @@ def _work(plan: OperationPlanEntry) -> str:
     cutters = len({each.cutter for each in plan.operations})
     setups = len({each.setup for each in plan.operations})
     what = [word for word, there in (("orientations", True), ("cutters", cutters > 1), ("setups", setups > 1)) if there]
-    return f"{duration(plan.cutting_seconds)} of cutting and {duration(plan.other_seconds)} for {_joined(what)}"
+    return f"{duration(plan.cutting_seconds)} of cutting and {duration(plan.other_seconds)} for {joined(what)}"
 
 
 def share_text(share: float) -> str:
@@ -173,7 +166,7 @@ def _by_cutter(operations: OperationsEntry) -> Iterator[str]:
     taken = [(use.id, use.takes_mm2["fastest"]) for use in operations.cutters if use.takes_mm2.get("fastest", 0.0) > 0.0]
     whole = sum(area for _, area in taken)
     if len(taken) > 1:
-        yield f"Of what is cut, the fastest plan cuts {_joined([f'{share_text(area / whole)} with {id}' for id, area in taken])}."
+        yield f"Of what is cut, the fastest plan cuts {joined([f'{share_text(area / whole)} with {id}' for id, area in taken])}."
 
 
 def _worth(operations: OperationsEntry, use: CutterUse) -> Iterator[str]:
@@ -267,10 +260,6 @@ def _strategy(each: OperationEntry) -> str:
 
 def _faces(each: OperationEntry) -> str:
     return listed([face.face for face in each.faces], _FACES)
-
-
-def _joined(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _factor(ratio: float) -> str:

@@ -2,20 +2,27 @@
 
 import shlex
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import (
+    NOT_PLANNED,
+    OTHER_ORIENTATION,
+    UNJUDGED_CAUSE,
+    NextEntry,
+    ProcessEntry,
+    ProcessStep,
+    RemainingEntry,
+)
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.needs import needs
 from plan_cutters.plan_file.words.next_steps import is_excluded
-from plan_cutters.plan_file.words.own_steps import angles_text, fault, own_steps
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
@@ -30,6 +37,10 @@ _LITTLE = 0.005
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
 _OTHER_CAUSES = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step"}
+#: Steps of the planner's own whose faults are told.
+_OWN_STEPS = 3
+#: A step that leaves less of what it is asked does all, as a share: crumbs at borders are no fault.
+_MINOR = 0.001
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +129,8 @@ def with_process_words(plan: Plan) -> Plan:
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
         for k, step in enumerate(plan.process.steps, 1)
     ]
-    process = plan.process.model_copy(update={"steps": steps, "left": needed, "doubts": doubts(plan)})
-    plan = plan.model_copy(update={"process": process})
-    return plan.model_copy(update={"process": process.model_copy(update={"next": list(_next_entries(plan))})})
+    words = {"steps": steps, "left": needed, "doubts": doubts(plan), "next": list(_next_entries(plan, plan.process, needed))}
+    return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
 def cause_text(cause: str) -> str:
@@ -186,10 +196,9 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
-def _next_entries(plan: Plan) -> Iterator[NextEntry]:
-    """The best next steps of the cutter that the plan shows, or the answer to ask for."""
-    process = plan.process
-    if process is None or all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in process.left):
+def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:
+    """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
+    if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
     if advice is not None:
@@ -243,3 +252,63 @@ def wrapped(texts: list[str], most: int) -> list[str]:
             mine[-1] = f"  {mine[-1]}" if most > 1 else mine[-1]
         lines += mine
     return lines
+
+
+def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
+    """Rotary axes with their angles, and by how much some turn from one time to the next.
+
+    >>> angles_text({"C": 0.0, "A": 12.5}, {"C": 36.0})
+    'C 0 + 36 A 12.5'
+    """
+    return " ".join(f"{name} {angle:g}" + (f" + {by[name]:g}" if by and name in by else "") for name, angle in angles.items())
+
+
+def own_steps(process: ProcessEntry) -> Iterator[str]:
+    """Sentences on the planner's own steps, first which they are, then what is wrong with each; none where all were planned."""
+    own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
+    if not own:
+        return
+    planned = len(process.steps) - len(own)
+    mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
+    behind = f"; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned" if planned else ""
+    yield f"{mine if planned else 'All steps are'} yours{behind}."
+    yield from (text for k, step in own.items() if (text := fault(k, step)))
+
+
+def shortened(sentences: Sequence[str]) -> list[str]:
+    """The first of the sentences on the planner's own steps, and how many more there are.
+
+    >>> shortened(["Steps 1 to 5 are yours.", *(f"Step {k} leaves 3 mm²." for k in range(1, 6))])[3:]
+    ['Step 3 leaves 3 mm².', '2 more steps of yours leave something: the review page and plan.json say what.']
+    """
+    rest = len(sentences) - _OWN_STEPS - 1
+    more = [f"{count(rest, 'more step')} of yours leave something: the review page and plan.json say what."] if rest > 0 else []
+    return [*sentences[: _OWN_STEPS + 1], *more]
+
+
+def fault(number: int, step: ProcessStep) -> str:
+    """Say what is wrong with a step; empty where it does what it is asked, and where it was planned."""
+    own = step.own
+    if own is None:
+        return ""
+    near = "" if own.nearest is None else f": {angles_text(own.nearest.angles_deg)} would take {area(own.nearest.area_mm2)}"
+    if own.wrong:
+        return f"Step {number}: {own.wrong}{near}."
+    left = sum(each.area_mm2 for each in own.leaves)
+    if left > _MINOR * own.asked_mm2:
+        worst = own.leaves[0]
+        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
+        return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
+    if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
+        return f"Step {number} does nothing: steps that share its faces are quicker."
+    if step.area_mm2 <= 0.0:
+        return (
+            f"Step {number} finds nothing left to do."
+            if own.asked_mm2 <= 0.0
+            else f"Step {number} reaches nothing that is left{near}."
+        )
+    return ""
+
+
+def _cause(code: str) -> str:
+    return REASONS[code].name if code in REASONS else code.replace("_", " ")

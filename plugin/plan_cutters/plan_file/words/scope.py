@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from plan_cutters.domain.figures import mm, percent, size
+from plan_cutters.domain.figures import joined, mm, percent, size
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.part_info import Scope
@@ -64,8 +64,7 @@ def _listed(kinds: dict[str, int]) -> str:
     others = sum(kinds.values()) - free - blends
     simple = "plane and round" if 0 < plane < others else "plane" if plane else "round"
     each = [_counted(free, "free-form face"), _counted(others, f"{simple} face"), _counted(blends, "fillet")]
-    texts = [text for text in each if text]
-    return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
+    return joined([text for text in each if text])
 
 
 def _counted(number: int, word: str) -> str:

@@ -6,9 +6,8 @@ from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictTe
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
 from plan_cutters.plan_file.words.cutters import CutterStory
 from plan_cutters.plan_file.words.doubts import repeated_warnings
-from plan_cutters.plan_file.words.own_steps import shortened
 from plan_cutters.plan_file.words.patterns import in_summary
-from plan_cutters.plan_file.words.process import with_process_words, wrapped
+from plan_cutters.plan_file.words.process import shortened, with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.undecided import undecided

@@ -7,7 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import OPERATIONS, operation_colour

@@ -1,0 +1,163 @@
+"""Plans of operations as the plan file has them: areas, lengths and times, made once of what was found."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.domain.verdicts import NO_REASON, REASONS
+from plan_cutters.operations.fewest import Fewest
+from plan_cutters.operations.rest_areas import Worth
+from plan_cutters.operations.task import Task
+from plan_cutters.outcome import Operation, OperationPlan
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.operations import (
+    AssumedEntry,
+    CutterUse,
+    FastestEntry,
+    OperationEntry,
+    OperationFace,
+    OperationPlanEntry,
+    OperationRegion,
+    OperationsEntry,
+    RestEntry,
+    runs,
+)
+from plan_cutters.plan_file.palette import operation_colour
+
+#: The fastest plan against a bound, with the area, mm2, that the samples compared stand for.
+Timed = tuple[FastestEntry, float]
+#: Areas differ by less, as a share, where they are of the same samples.
+_SAME_AREA = 1e-3
+#: Fields of an operation that are not known where nothing was looked at, or where it is simultaneous.
+_UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s", "index_from"))
+
+
+def operations_entry(
+    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str] = (),
+    fewest: Fewest | None = None, timed: Timed | None = None, worth: Sequence[Worth] = (),
+) -> OperationsEntry:  # fmt: skip
+    """Make the entry of plans.
+
+    Parameters
+    ----------
+    task : Task
+    plans : sequence of OperationPlan
+    reason : (n,) uint8
+        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
+    notes : sequence of str
+    fewest : Fewest, optional
+    timed : (FastestEntry, float), optional
+    worth : sequence of Worth
+        Of each cutter, the largest first.
+    """
+    options, feed = task.ready.options, task.paths.feed
+    area = np.where(task.ready.finished, np.nan_to_num(task.ready.samples.area), 0.0)
+    entries = [_plan(task, each, area, reason, timed) for each in plans]
+    return OperationsEntry(
+        asked=options.operations or "",  # type: ignore[arg-type]
+        rotary=task.orientations[0].names,
+        plans=entries,
+        fewest=None if fewest is None else fewest.entry,
+        fastest=None if timed is None else timed[0],
+        cutters=[
+            CutterUse(
+                id=each.cutter.id,
+                takes_mm2={
+                    str(one.name): sum(its.area_mm2 for its in one.operations if its.cutter == each.cutter.id) for one in entries
+                },
+                only_mm2=float(area[each.only].sum()), saves_seconds=each.saves, change_seconds=each.change,
+            )
+            for each in worth
+        ],
+        assumed=AssumedEntry(
+            feed_mm_min=None if feed is None else {cutter.id: each for cutter, each in feed.items()}, scallop_mm=options.scallop,
+            stepover=options.stepover, overlap_mm=options.overlap, index_s=task.indexing.constant,
+            index_from=task.indexing.source, change_s=options.change_time, setup_s=options.setup_time,
+        ),
+        probes=task.probes.made,
+        notes=list(notes),
+    )  # fmt: skip
+
+
+def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint8], timed: Timed | None) -> OperationPlanEntry:
+    whole, alone, rest = float(area.sum()), plan.alone, task.ready.finished & (plan.label < 0)
+    operations = [
+        _operation(k, each, plan, area[alone & (plan.label == k)], task, area, whole) for k, each in enumerate(plan.operations)
+    ]
+    codes, counts = np.unique(reason[rest & (reason != NO_REASON)], return_counts=True)
+    unserved = float(area[rest].sum())
+    known = bool(np.isfinite(plan.cutting))
+    held = [each for each in operations if each.proved_share is not None]
+    size = sum(each.area_mm2 for each in held)
+    return OperationPlanEntry(
+        name=plan.name,  # type: ignore[arg-type]
+        orientations=sum(each.mode == "fixed" for each in operations),
+        cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations),
+        seconds=plan.total if known else None,
+        cutting_seconds=plan.cutting if known else None,
+        other_seconds=plan.other,
+        changes=max(0, len({each.cutter for each in operations}) - 1),
+        pieces=len(np.unique(plan.region[plan.region >= 0])),
+        ratio_at_most=_ratio(operations, timed),
+        proved_share=sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None,
+        approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
+        operations=operations,
+        rest=RestEntry(
+            samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
+            reason_counts={REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)},
+        ),
+    )  # fmt: skip
+
+
+def _ratio(operations: Sequence[OperationEntry], timed: Timed | None) -> float | None:
+    """Cutting of the fixed operations over that at best; only where both are about the same area."""
+    fixed = [each for each in operations if each.mode == "fixed"]
+    if timed is None or timed[0].at_best_seconds <= 0.0 or any(each.seconds is None for each in fixed):
+        return None
+    if abs(sum(each.area_mm2 for each in fixed) - timed[1]) > _SAME_AREA * timed[1]:
+        return None
+    return max(1.0, sum(each.seconds or 0.0 for each in fixed) / timed[0].at_best_seconds)
+
+
+def _operation(
+    number: int, operation: Operation, plan: OperationPlan, alone: Floats, task: Task, area: Floats, whole: float
+) -> OperationEntry:
+    rows, samples = operation.rows, task.ready.samples
+    strip, mine, seconds = plan.strip[rows], area[rows], plan.seconds[rows]
+    known = np.isfinite(strip) & (strip > 0.0)
+    angles, others = (
+        None if angle is None else dict(zip(task.orientations[0].names, angle.tolist(), strict=True))
+        for angle in (operation.angle, operation.other_angle)
+    )
+    return OperationEntry(
+        id=operation.name, step=operation.step or None, mode=operation.mode, cutter=operation.cutter.id, setup=operation.setup,
+        axis=None if operation.axis is None else vector(operation.axis), angles_deg=angles, other_angles_deg=others,
+        samples=len(rows), area_mm2=float(mine.sum()), share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0,
+        exclusive_mm2=float(alone.sum()),
+        strip_mm=tuple(np.percentile(strip[known], (10, 50, 90)).tolist()) if known.any() else None,
+        cut_length_mm=float((mine[known] / strip[known]).sum()) if known.all() else None,
+        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None,
+        orbit=None if operation.orbit < 0 else operation.orbit, faces=_faces(rows, samples, area),
+        regions=[_region(k, np.flatnonzero(plan.region == k), samples, area) for k in np.unique(plan.region[rows]).tolist()],
+        colour=operation_colour(number), **{**_UNKNOWN, **operation.fields},
+    )  # fmt: skip
+
+
+def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> OperationRegion:
+    point = samples.point[rows]
+    return OperationRegion(
+        id=number, samples=len(rows), area_mm2=float(area[rows].sum()), faces=_faces(rows, samples, area),
+        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=runs(rows),
+    )  # fmt: skip
+
+
+def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[OperationFace]:
+    number, which, count = np.unique(samples.face[rows], return_inverse=True, return_counts=True)
+    size = np.bincount(which, area[rows], len(number))
+    faces = [
+        OperationFace(face=f"F{f}", samples=n, area_mm2=a)
+        for f, n, a in zip(number.tolist(), count.tolist(), size.tolist(), strict=True)
+    ]
+    return sorted(faces, key=lambda each: -each.area_mm2)
