@@ -90,7 +90,7 @@ def command(request: McpRequest) -> int:
         raise OptionError(f"the extra is not installed: {extra_hint('mcp')}")
     if sys.stdin is None or sys.stdout is None:
         raise OptionError("standard input or output is closed: a client talks over them")
-    from plan_cutters_agents.limits import Limits
+    from plan_cutters_agents.access import Limits
     from plan_cutters_agents.server import serve, service_of
 
     limits = Limits(file_mb=request.most_mb, samples=request.most_samples, cutters=request.most_cutters,

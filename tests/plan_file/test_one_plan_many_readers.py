@@ -91,7 +91,7 @@ def test_the_notebook_shows_it(result, first, lost):
 
 
 def test_agents_read_it(result):
-    answer = planned(result.plan, 0, 9, {})
+    answer = planned(result.plan, 0, {})
     assert answer.told == "\n".join([result.plan.text.headline, *result.plan.text.lines])
     assert {c.id: c.text for c in answer.cutters} == result.plan.text.cutters
 

@@ -54,7 +54,7 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
         read["part"]["file"] = "part.step"
         found = plan_of(json.dumps(read), "plan.json")
         assert (shown_of(found).id, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
-        assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, 9, {}).told
+        assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, {}).told
     summary(document, verbose=True)
     said = " ".join(capsys.readouterr().out.split())
     assert "Where flat end D10 x 60 fails" in said
