@@ -37,8 +37,7 @@ from plan_cutters_ci.changed_report import (
 from plan_cutters_ci.repository import Changed, changed, content
 
 if TYPE_CHECKING:
-    from plan_cutters_batch.content import Content
-    from plan_cutters_batch.job import Handed, Settings
+    from plan_cutters_batch.job import Content, Handed, Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -184,7 +183,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     if part.new is None or request is None:
         return Row(part)
     from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_batch.content import content as all_of
+    from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
     from plan_cutters_ci.plans import compare, unreachable
     from plan_cutters_ci.review import PAGE, Side, page, picture_of
@@ -223,9 +222,10 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
 
 def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there; a PlanError where it cannot be planned."""
+    from plan_cutters_batch.rows_of_plans import row_of
+
     from plan_cutters.plan_file.load import load_plan
     from plan_cutters_batch import keys, work
-    from plan_cutters_batch.rows_of_plans import row_of
     from plan_cutters_batch.store import Store
 
     name = Path(path).name

@@ -14,7 +14,7 @@ from plan_cutters.plan_file.words.story import shown as shown_of
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from plan_cutters_agents.plan_answers import planned, ranked
-from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.row import row_of
 from tests.support import shapes
 from tests.support.plan_files import cutter, face, made, verdicts
 
