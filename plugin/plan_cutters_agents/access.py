@@ -1,4 +1,4 @@
-"""What a call may cost, read and write: whoever starts the server sets it, whoever calls does not; all else is refused."""
+"""A call may cost, read and write so much: whoever starts the server sets it, whoever calls does not; all else is refused."""
 
 import os
 import stat
@@ -8,7 +8,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from plan_cutters.errors import PlanError
-from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion, Sampling
+from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
 
 
 class CallError(PlanError):
@@ -17,32 +17,21 @@ class CallError(PlanError):
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Largest values of a call.
+    """Largest values of a call."""
 
-    Attributes
-    ----------
-    file_mb : float
-        Size of a file that is read, millions of bytes.
-    samples : int
-        Samples of a plan, all target faces together.
-    cutters : int
-        Cutters of a call, those of a library included.
-    seconds : float
-        Of a call, by the clock, waiting for its turn included.
-    characters : int
-        Of an answer, as JSON. Lists are cut until it fits.
-    calls : int
-        That work at the same time; the others wait.
-    memory_gb : float, optional
-        Of each process; None: what the command takes by default.
-    """
-
+    #: Size of a file that is read, millions of bytes.
     file_mb: float = 200.0
+    #: Samples of a plan, all target faces together.
     samples: int = 200_000
+    #: Cutters of a call, those of a library included.
     cutters: int = 50
+    #: Of a call, by the clock, waiting for its turn included.
     seconds: float = 900.0
+    #: Of an answer, as JSON. Lists are cut until it fits.
     characters: int = 40_000
+    #: That work at the same time; the others wait.
     calls: int = 2
+    #: Of each process; None: what the command takes by default.
     memory_gb: float | None = None
 
 
@@ -153,7 +142,10 @@ class Permissions:
             raise CallError(
                 f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
             )
-        options = [self.file(question.part), *self.conditions(question), *_sampling(question), f"--faces={question.faces}"]
+        # The area between the samples is not looked at.
+        options = [self.file(question.part), *self.conditions(question), "--area-budget=0", f"--faces={question.faces}"]
+        options += [f"--grid={question.grid}"] if question.grid is not None else []
+        options += [f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else []
         options += [f"--cutter={each}" for each in question.cutters]
         return options + [f"--setup={each}" for each in question.setup]
 
@@ -204,10 +196,3 @@ class Permissions:
         # Placement and unit are said, so that nothing in the path of a root is taken for them.
         where = ",".join(repr(x) for x in placed.placement)
         return f"{placed.source}@{where}{f':{placed.unit}' if placed.unit else ''}"
-
-
-def _sampling(question: Sampling) -> list[str]:
-    """Words for how densely a surface is looked at; the area between the samples is not."""
-    options = ["--area-budget=0"]
-    options += [f"--grid={question.grid}"] if question.grid is not None else []
-    return options + ([f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else [])

@@ -184,8 +184,8 @@ class PlanAnswer(OfPlan):
     steps: list[StepAnswer] = Field(default=[], description="of the process, in their order")
     left: list[Remaining] = Field(default=[], description="what no step finishes, the largest area first")
     notes: list[Note] = Field(description="what these verdicts do not say")
-    files: dict[str, str] = Field(default={}, description="format -> path, where `out` was given")
-    not_written: dict[str, str] = Field(default={})
+    files: dict[str, str] = Field({}, description="format -> path, where `out` was given")
+    not_written: dict[str, str] = Field({})
 
 
 class FaceRow(Entry):

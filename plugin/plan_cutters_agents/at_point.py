@@ -1,4 +1,4 @@
-"""What is known at a point: all postures of a cutter there, and the nearest sample of a plan, whose arrays stand beside it."""
+"""A point has postures of a cutter, all of them, and a nearest sample in a plan, whose arrays stand beside it."""
 
 import json
 import math
@@ -79,8 +79,10 @@ def nearest_sample(file: str, plan: Plan, cutter: str, question: ExplainQuestion
     row = int(np.nanargmin(off))
     most, face = max(question.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
     if not off[row] <= most:
-        why = f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm of one"
-        raise CallError(f"{why}, or a face", file=file)
+        raise CallError(
+            f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm of one, or a face",
+            file=file,
+        )
     code = int(reasons[row])
     return Sample(
         point=tuple(points[row].tolist()),

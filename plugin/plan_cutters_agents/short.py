@@ -1,4 +1,4 @@
-"""What an agent reads is short: numbers in four significant digits, lists up to a length, schemas without what need not be read.
+"""Agents read short answers: numbers in four significant digits, lists up to a length, schemas without what need not be read.
 
 Angles and axes that an agent hands back, and tilts that are free, stay as they are: rounded, they might not be safe.
 """

@@ -213,12 +213,16 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
     _report(request.case_files, rows)
     if not request.quiet:
         many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
-        # No browser opens an address on object storage.
-        page = f"{out.root_url}/{PAGE}"
-        where = f"The table is {page}: copy the folder to this machine to open it, or give --out a folder."
-        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", f"Look at them in a browser: {page}" if out.local else where)
+        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out, PAGE))
         terminal.all_shown()
     return code
+
+
+def _where(out: "Store", page: str) -> str:
+    """Say how to look at the table: no browser opens an address on object storage."""
+    if out.local:
+        return f"Look at them in a browser: {out.root_url}/{page}"
+    return f"The table is {out.root_url}/{page}: copy the folder to this machine to open it, or give --out a folder."
 
 
 def _report(files: "CaseFiles | None", rows: "Sequence[PartRow]") -> None:

@@ -79,47 +79,30 @@ def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
 
 @dataclass(frozen=True)
 class Settings:
-    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file.
-
-    Attributes
-    ----------
-    options : Options
-    formats : tuple of str
-        Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
-    step_schema : str
-    read_timeout : float
-        Seconds that reading may take.
-    read : tuple of str
-        SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
-    cache : bool
-        Keep what stages make of a part in the cache folder of each worker's user.
-    """
+    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
 
     options: Options
+    #: Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
     formats: tuple[str, ...] = ("json",)
     step_schema: str = "ap242"
+    #: Seconds that reading may take.
     read_timeout: float = 120.0
+    #: SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
     read: tuple[str, ...] = ()
+    #: Keep what stages make of a part in the cache folder of each worker's user.
     cache: bool = True
 
 
 @dataclass(frozen=True)
 class Job:
-    """A part to plan.
+    """A part to plan."""
 
-    Attributes
-    ----------
-    name : str
-        Among all parts: its folder below the output is `<name>-plan`.
-    file : str
-        Path or URL.
-    part : bytes, optional
-        The pickled `cad_io.Part`, where it is no file.
-    """
-
+    #: Among all parts: its folder below the output is `<name>-plan`.
     name: str
+    #: Path or URL.
     file: str
     settings: Settings
+    #: The pickled `cad_io.Part`, where it is no file.
     part: bytes | None = None
 
 
@@ -140,20 +123,13 @@ class Fault:
 
 @dataclass(frozen=True)
 class Handed:
-    """The settings of a part, ready to travel.
+    """The settings of a part, ready to travel."""
 
-    Attributes
-    ----------
-    options : bytes
-        Pickled.
-    files : tuple of (str, bytes)
-        Of fixtures, by the names that these have there.
-    outside : tuple of (str, str or None)
-        Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
-    """
-
+    #: Pickled.
     options: bytes
+    #: Of fixtures, by the names that these have there.
     files: tuple[tuple[str, bytes], ...]
+    #: Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
     outside: tuple[tuple[str, str | None], ...] = ()
 
 

@@ -24,38 +24,26 @@ class FaceTools(BaseModel):
 
 
 class PartTools(BaseModel):
-    """The part of a plan from which the tools of many parts are chosen: sets that finish the part beyond doubt.
-
-    Attributes
-    ----------
-    names : dict
-        How people call each tool that was judged, by its id: the same dimensions, the same id.
-    finished : bool
-        Whether the tools finish the part beyond doubt (exit code 0). All but `used`, `share` and `needs` is empty where not.
-    alone : tuple of str
-        Ids of the tools each of which reaches every judged sample.
-    together : tuple of tuples of str
-        Sets that the plan states to finish the part: its process, its least set.
-    faces : tuple of FaceTools
-        What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
-        setups: the plan counts the samples of a face in the first one alone.
-    used : tuple of str
-        Tools of the steps of the plan, whatever it finishes.
-    share : float, optional
-        Of what is requested, that all tools finish together, 0 to 1.
-    needs : tuple of str
-        What would finish more, the best first.
-    """
+    """The part of a plan from which the tools of many parts are chosen: sets that finish the part beyond doubt."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    #: How people call each tool that was judged, by its id: the same dimensions, the same id.
     names: dict[str, str]
+    #: Whether the tools finish the part beyond doubt (exit code 0). All but `used`, `share` and `needs` is empty where not.
     finished: bool = False
+    #: Ids of the tools each of which reaches every judged sample.
     alone: tuple[str, ...] = ()
+    #: Sets that the plan states to finish the part: its process, its least set.
     together: tuple[tuple[str, ...], ...] = ()
+    #: What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
+    #: setups, for the plan counts the samples of a face in the first one alone.
     faces: tuple[FaceTools, ...] = ()
+    #: Tools of the steps of the plan, whatever it finishes.
     used: tuple[str, ...] = ()
+    #: Of what is requested, that all tools finish together, 0 to 1.
     share: float | None = None
+    #: What would finish more, the best first.
     needs: tuple[str, ...] = ()
 
     def finished_by(self, tools: Iterable[str]) -> bool:
@@ -69,63 +57,43 @@ class PartTools(BaseModel):
 
 
 class PartRow(BaseModel):
-    """What came of one part.
-
-    Attributes
-    ----------
-    name : str
-        Of the part among all, and of its folder.
-    file : str
-        Path or URL, as it was given.
-    key : str
-        Of the content of the file, the effective options, tools, machine and version: SHA-256; empty where it is not known.
-    status : str
-    code : int
-        Exit code, as of a single plan (`docs/command.md`).
-    verdict : str
-        The headline of the plan: one sentence.
-    cutter : str, optional
-        The cutter selected, or the one that leaves the least area.
-    share : float, optional
-        Of the area to machine that this cutter reaches, 0 to 1.
-    reason : str, optional
-        The reason, a code of the plan's, by which it loses most.
-    cutters, samples, faces : int, optional
-        How many were judged.
-    seconds : float
-        By the clock, of the run that made it.
-    folder : str, optional
-        With the files of a single plan, below the output.
-    page, picture : str, optional
-        The review page and the picture, below the output, where they were written.
-    error : str, optional
-        One line: file, face, cause, what to try.
-    coarser : str, optional
-        The part was sampled more coarsely than requested: what was requested, and what was done in its place.
-    tools : PartTools, optional
-        Which tools finish the part, alone or together; in no table.
-    """
+    """A row says what came of one part."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
+    #: Of the part among all, and of its folder.
     name: str
+    #: Path or URL, as it was given.
     file: str
+    #: Of the content of the file, the effective options, tools, machine and version: SHA-256; empty where it is not known.
     key: str = ""
     status: Status
+    #: Exit code, as of a single plan (`docs/command.md`).
     code: int
+    #: The headline of the plan: one sentence.
     verdict: str = ""
+    #: The cutter selected, or the one that leaves the least area.
     cutter: str | None = None
+    #: Of the area to machine that this cutter reaches, 0 to 1.
     share: float | None = None
+    #: The reason, a code of the plan's, by which it loses most.
     reason: str | None = None
+    #: How many were judged.
     cutters: int | None = None
     samples: int | None = None
     faces: int | None = None
+    #: By the clock, of the run that made it.
     seconds: float = 0.0
+    #: With the files of a single plan, below the output.
     folder: str | None = None
+    #: The review page and the picture, below the output, where they were written.
     page: str | None = None
     picture: str | None = None
+    #: One line: file, face, cause, what to try.
     error: str | None = None
+    #: The part was sampled more coarsely than requested: what was requested, and what was done in its place.
     coarser: str | None = None
+    #: Which tools finish the part, alone or together; in no table.
     tools: PartTools | None = None
 
 

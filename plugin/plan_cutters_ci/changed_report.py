@@ -1,4 +1,4 @@
-"""What became of the parts of a branch: rows, by which rule each fails, its test cases, the summary, and lines for a job."""
+"""A branch has a row for each part that changed: by which rule it fails, its test cases, its lines for a job, and the summary."""
 
 import hashlib
 import json

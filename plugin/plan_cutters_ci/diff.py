@@ -140,10 +140,7 @@ def command(request: DiffRequest) -> int:
 def plans_in(folder: Path) -> dict[str, Path]:
     """Plan files by name: of a file or plan folder one without a name, of a folder of many theirs by their folders below it.
 
-    Raises
-    ------
-    PlanError
-        There is none.
+    A PlanError where there is none.
     """
     from plan_cutters.plan_file.load import PLAN
 
@@ -164,10 +161,7 @@ def plans_in(folder: Path) -> dict[str, Path]:
 def compare_folders(old: Path, new: Path, *, slack: float, despite: Collection[str] = ()) -> "Comparison":
     """Compare all plans of two folders, or two plans; a plan that cannot be read makes them not comparable.
 
-    Raises
-    ------
-    PlanError
-        A side holds no plan, or one is a single plan and the other is not.
+    A PlanError where a side holds no plan, or one is a single plan and the other is not.
     """
     from plan_cutters.plan_file.load import load_plan
     from plan_cutters_ci.model import Comparison
@@ -199,10 +193,7 @@ def compare_folders(old: Path, new: Path, *, slack: float, despite: Collection[s
 def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[str, Path]:
     """Write a page for each pair of plans that differ, and for two plans whether they differ or not; where each is, by name.
 
-    Raises
-    ------
-    PlanError
-        A page would take the place of a plan's own, or cannot be written; a plan cannot be read any more.
+    A PlanError where a page would take the place of a plan's own or cannot be written, or a plan cannot be read any more.
     """
     from plan_cutters.plan_file.load import PLAN, load_plan
     from plan_cutters_base.whole import whole

@@ -60,22 +60,17 @@ class _Surroundings:
         """The paired neighbours of a new face."""
         return frozenset(name for name in face.neighbours or () if name in self._pair)
 
-    def _on_one_side(self, a: FaceEntry, b: FaceEntry) -> bool:
-        """Whether two faces lie on the same side of each plane that both adjoin: a wall of a pocket and one of a boss do not."""
-        for name in self.of_old(a) & self.of_new(b):
-            sides = [_height(face, plane) for face, plane in zip((a, b), self._pair[name], strict=True)]
-            if min(abs(side) for side in sides) > _OFF * self._size and (sides[0] > 0.0) != (sides[1] > 0.0):
-                return False
-        return True
-
     def supports(self, a: FaceEntry, b: FaceEntry) -> bool:
         """Whether two faces on one carrier are rather one face than two: their neighbours agree, or they are near."""
         mine, theirs = self.of_old(a), self.of_new(b)
         if len(mine) > 1 and mine == theirs:
             # Whatever the box of a spline says of where its middle is.
             return True
-        if not self._on_one_side(a, b):
-            return False
+        for name in mine & theirs:
+            # On the same side of each plane that both adjoin: a wall of a pocket and one of a boss are not.
+            sides = [_height(face, plane) for face, plane in zip((a, b), self._pair[name], strict=True)]
+            if min(abs(side) for side in sides) > _OFF * self._size and (sides[0] > 0.0) != (sides[1] > 0.0):
+                return False
         if mine and theirs:
             return len(mine & theirs) >= _SHARED * min(len(mine), len(theirs))
         return _near(a, b)

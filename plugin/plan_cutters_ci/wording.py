@@ -112,8 +112,8 @@ def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
         return
     for c in difference.cutters:
         changed = ", ".join(change(each) for each in c.changes)
-        lost, won = (listed([called(*pair) for pair in pairs], _MOST) for pairs in (c.faces_lost, c.faces_won))
-        yield mark(c), c.name, _state(c.was), _state(c.now), lost, won, changed
+        faces = (listed([called(*pair) for pair in pairs], _MOST) for pairs in (c.faces_lost, c.faces_won))
+        yield mark(c), c.name, _state(c.was), _state(c.now), *faces, changed
 
 
 def mark(each: FaceDifference | CutterDifference) -> str:

@@ -131,7 +131,7 @@ rows_of_all_kinds = st.builds(
     share=st.none() | st.floats(),
     reason=st.none() | st.sampled_from(["holder", "neck", "unheard_of"]),
     samples=st.none() | st.integers(0, 10**9),
-    seconds=st.floats(),
+    seconds=st.floats(-1e9, 1e9) | st.sampled_from([math.nan, math.inf, -math.inf]),
     page=st.none() | st.text(st.characters(), max_size=20),
     error=st.none() | st.text(max_size=20),
 )
