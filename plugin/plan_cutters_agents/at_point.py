@@ -80,7 +80,8 @@ def nearest_sample(file: str, plan: Plan, cutter: str, question: ExplainQuestion
     most, face = max(question.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
     if not off[row] <= most:
         raise CallError(
-            f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm of one, or a face",
+            f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
+            "of one, or a face",
             file=file,
         )
     code = int(reasons[row])
