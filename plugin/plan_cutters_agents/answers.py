@@ -1,9 +1,9 @@
 """The answers to an agent: their fields are the output schemas of the tools, and what of a plan file they are made of.
 
-Lengths are mm, angles deg, part coordinates; shares are of an area, 0 to 1. A list that was cut says how much it leaves out.
+Lengths are mm, angles deg, part coordinates; shares are of an area, 0 to 1. Lists are whole here: `short` cuts them.
 """
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -11,7 +11,6 @@ FORMAT_VERSION = 1
 Vector = tuple[float, float, float]
 #: Which faces a change was judged on.
 About = Literal["this face", "all faces of the plan", "nothing"]
-Value = float | tuple[float, ...] | tuple[str, ...] | str | None
 
 
 class Entry(BaseModel):
@@ -82,7 +81,6 @@ class CutterAnswer(Entry):
     undecided: float
     lost_by: dict[str, float] = Field(description="code of a reason -> share of the area")
     faces: list[Lost] = Field(description="the worst first")
-    more_faces: int = 0
     next: Help | None = Field(default=None, description="the step that gains most, where `mend` was requested")
 
 
@@ -103,9 +101,8 @@ class Samples(Entry):
     """Shares of two answers about one part and its faces can be compared where both have the same samples."""
 
     count: int
-    spacing_mm: float | None = Field(
-        default=None, description="the widest of any face; give it as `spacing_mm` in each call to have the same samples in all"
-    )
+    #: The widest of any face; given as `spacing_mm` in each call, all have the same samples.
+    spacing_mm: float | None = None
     sampled_by: str = Field(default="default", description="default: by curvature and the smallest cutter; else the option")
     max_gap_mm: float | None = None
     unjudged: int = 0
@@ -125,24 +122,19 @@ class OfPlan(Answer):
     selected: str | None = Field(description="id of the cutter to take")
     samples: Samples
     cutters: list[CutterAnswer] = Field(description="those that reach most first")
-    more_cutters: int = 0
     not_judged: list[Note] = Field(default=[], description="target faces that could not be judged, and why: `code` is the face")
-    more_not_judged: int = 0
     missing: list[Missing] = Field(default=[])
-    more_missing: int = 0
 
 
 class Remaining(Entry):
     """An area that no step finishes, for one cause."""
 
-    cause: str = Field(
-        description="code of a reason; `unjudged`; `not_planned`: reached, and in no step; `orientation`, of what a step leaves: "
-        "its cutter reaches it in this setup at other angles"
-    )
+    #: Code of a reason; `unjudged`; `not_planned`: reached, and in no step; `orientation`: reached by the step's cutter in this
+    #: setup at other angles.
+    cause: str
     area_mm2: float
     share: float
     faces: list[str] = Field(description="the one with the most of it first")
-    more_faces: int = 0
     place_mm: Vector | None = Field(default=None, description="a sample in the middle of it, on the first of the faces")
     needs: str = Field(default="", description="what would help, in words")
 
@@ -163,7 +155,6 @@ class OwnStepAnswer(Entry):
     asked_mm2: float
     wrong: str = Field(default="", description="why it does nothing; empty where it can be judged")
     leaves: list[Remaining]
-    more_leaves: int = 0
     nearest: NearestOrientation | None = None
 
 
@@ -176,7 +167,6 @@ class StepAnswer(Entry):
     axis: Vector | None = Field(description="of a fixed orientation without angles; else null")
     cutter: str
     faces: list[str] = Field(description="the one with the most of it first")
-    more_faces: int = Field(default=0, description="left out here: take all from plan.json before you give the step back")
     take: Literal["first", "share"] = Field(description="as in `process`: share: by time, with other steps that share its faces")
     area_mm2: float
     share: float = Field(description="of `asked_mm2`")
@@ -192,13 +182,10 @@ class PlanAnswer(OfPlan):
     finished_share: float | None = Field(default=None, description="by all steps together; 1 only where nothing is left")
     seconds: float | None = Field(default=None, description="of all steps, turns and changes of cutters; null without a feed")
     steps: list[StepAnswer] = Field(default=[], description="of the process, in their order")
-    more_steps: int = 0
     left: list[Remaining] = Field(default=[], description="what no step finishes, the largest area first")
-    more_left: int = 0
     notes: list[Note] = Field(description="what these verdicts do not say")
-    more_notes: int = 0
-    files: dict[str, str] = Field(default={}, description="format -> path, where `out` was given")
-    not_written: dict[str, str] = Field(default={})
+    files: dict[str, str] = Field({}, description="format -> path, where `out` was given")
+    not_written: dict[str, str] = Field({})
 
 
 class FaceRow(Entry):
@@ -225,7 +212,6 @@ class LeastSet(Entry):
 class Comparison(OfPlan):
     format: Literal["plan-cutters-agent-comparison"] = "plan-cutters-agent-comparison"
     differ: list[FaceRow] = Field(description="faces of which cutters reach different shares, the widest difference first")
-    more_differ: int = 0
     together: LeastSet | None = Field(default=None, description="the fewest of them that reach all that any of them reaches")
 
 
@@ -250,12 +236,10 @@ class Postures(Entry):
     undecided_share: float
     forbidden: dict[str, float] = Field(description="code of a cause -> share of the postures; causes overlap")
     rotations: list[RotationRow]
-    more_rotations: int = 0
     missing: int = Field(default=0, description="obstacles that are missing or guessed")
     flank_axis: Vector | None = Field(default=None, description="tool axis with which the flank lies along the surface, free")
-    under_flat_mm: Vector | None = Field(
-        default=None, description="upright the tool is free with the point under its flat: from its axis to the point"
-    )
+    #: Upright the tool is free with the point under its flat: from its axis to the point.
+    under_flat_mm: Vector | None = None
 
 
 class MapAnswer(Answer):
@@ -287,24 +271,18 @@ class Explanation(Answer):
     format: Literal["plan-cutters-agent-explanation"] = "plan-cutters-agent-explanation"
     cutter: str
     face: str
-    reached: bool | None = Field(
-        description="every judged sample of the face; null: what is left is undecided, or cannot be judged"
-    )
+    reached: bool | None = Field(description="every judged sample of the face; null: undecided, or not to be judged")
     lost_share: float = Field(description="of the face")
     counts: dict[str, int] = Field(description="samples of the face by verdict")
     reasons: list[Reason] = Field(description="the one that loses most first")
     in_the_way: list[InTheWay]
-    more_in_the_way: int = 0
     witnesses: list[Witness] = Field(description="worst spots, the deepest first; with a point, the nearest first")
-    more_witnesses: int = 0
     would_help: list[Help] = Field(description="changes that gain something, the best first")
-    more_would_help: int = 0
     help_is_about: About = "nothing"
     no_help: str = Field(default="", description="why `would_help` is empty")
     postures: Postures | None = Field(default=None, description="at the point, where a part was given")
     sample: Sample | None = Field(default=None, description="nearest to the point, where a plan with samples.npz was given")
     missing: list[Missing] = Field(default=[])
-    more_missing: int = 0
 
 
 class Picture(OfPlan):
@@ -338,11 +316,8 @@ class ShopAnswer(Answer):
     format: Literal["plan-cutters-agent-shop"] = "plan-cutters-agent-shop"
     library: str = Field(description="empty: the built-in set")
     tools: list[ToolRow]
-    more_tools: int = 0
     unused: list[str] = Field(default=[], description="entries of the library that cannot be judged, and why")
-    more_unused: int = 0
     machines: list[MachineRow]
-    more_machines: int = 0
 
 
 class ChangedRow(Entry):
@@ -363,17 +338,5 @@ class PlanDifferenceAnswer(Answer):
     won: bool | None
     selected: list[str | None] = Field(description="ids of the cutters to take, old and new")
     faces: list[ChangedRow] = Field(description="the worst first")
-    more_faces: int = 0
     cutters: list[ChangedRow]
-    more_cutters: int = 0
     unreachable: list[str] = Field(default=[], description="target faces of the new plan that no cutter reaches whole")
-    more_unreachable: int = 0
-
-
-def first(entries: list[Any], most: int) -> tuple[list[Any], int]:
-    """The first of a list, and how many more there are.
-
-    >>> first([1, 2, 3], 2)
-    ([1, 2], 1)
-    """
-    return entries[:most], max(0, len(entries) - most)

@@ -1,4 +1,4 @@
-"""The command as a process of a call: its progress is passed on, and it ends with the call, whatever ends that."""
+"""A call works by commands, each in a process: its progress is passed on, and it ends with the call, whatever ends that."""
 
 import json
 import os
@@ -7,12 +7,17 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
 import anyio
 from anyio.to_thread import run_sync
 
-from plan_cutters_agents.limits import CallError, Limits
+from plan_cutters.files.pictures import draws_pictures
+from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.model import Plan
+from plan_cutters_agents.access import CallError, Limits, Permissions
+from plan_cutters_agents.requests import MapQuestion
+from plan_cutters_agents.shop import tools_in
 from plan_cutters_base.user_files import WITHIN
 from plan_cutters_base.workers.assignment import Assignment
 from plan_cutters_base.workers.child import Child, command
@@ -35,15 +40,6 @@ _OUTPUT, _LOG = 256 << 20, 1 << 20
 MOST_SAMPLES = "PLAN_CUTTERS_MOST_SAMPLES"
 
 
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """How a command ended: its exit code, its standard output, and its lines about what went wrong."""
-
-    code: int
-    output: bytes
-    faults: tuple[str, ...]
-
-
 async def run(
     words: Sequence[str],
     cwd: Path,
@@ -52,16 +48,11 @@ async def run(
     *,
     within: Sequence[Path],
     answers: Sequence[int] = (0, 1, 4),
-) -> Ended:
-    """Run `plan-cutters` with some words.
+) -> tuple[bytes, int]:
+    """Run `plan-cutters` with some words; its standard output and its exit code.
 
     It ends with this call, however that ends, and with this process. It reads files in the folders `within` alone, those that
-    are named by files, too.
-
-    Raises
-    ------
-    CallError
-        Its exit code is none of `answers`: with its own last line.
+    are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
     """
     more = [] if limits.memory_gb is None or words[0] != "plan" else [f"--memory={limits.memory_gb!r}"]
     name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
@@ -81,20 +72,17 @@ async def run(
             await run_sync(child.end, _GRACE)
     if len(output) > _OUTPUT:
         raise CallError("the answer of the command is too long: choose fewer faces or cutters")
-    faults = tuple(line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line))
+    faults = [line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line)]
     if code not in answers:
-        raise CallError(_line(faults[-1]) if faults else f"the command ended with exit code {code} and wrote nothing")
-    return Ended(code, bytes(output), faults)
+        # Without the command's name: faults of a call stand for themselves.
+        last = faults[-1].partition(": ")[2][:2000] if faults else f"the command ended with exit code {code} and wrote nothing"
+        raise CallError(last)
+    return bytes(output), code
 
 
 def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
     folders = json.dumps([*map(str, within)])
     return {**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
-
-
-def _line(fault: str) -> str:
-    """A fault without the command's name; those of a call stand for themselves."""
-    return fault.partition(": ")[2][:2000]
 
 
 async def _pieces(pipe: IO[bytes] | None) -> AsyncIterator[bytes]:
@@ -117,3 +105,48 @@ async def _listen(pipe: IO[bytes] | None, output: bytearray, tell: ProgressListe
         for line in lines:
             if step := _STEP.match(line.decode(errors="replace")):
                 await tell(float(step[1]), step[2], None if step[3] is None else float(step[3]))
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call that is worked on: what it may touch, a folder of its own that goes with it, and who is told of its progress."""
+
+    permissions: Permissions
+    cwd: Path
+    tell: ProgressListener
+
+    async def _run(self, words: Sequence[str], **more: Any) -> tuple[bytes, int]:
+        more = {"within": self.permissions.roots.folders, **more}
+        return await run(words, self.cwd, self.permissions.limits, self.tell, **more)
+
+    async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
+        """Plan a part; the plan and the exit code."""
+        output, code = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
+        return plan_of(output, "the plan", CallError), code
+
+    async def plan_in(self, file: str) -> Plan:
+        """Read a plan that is there."""
+        path = Path(self.permissions.file(file))
+        return plan_of(await run_sync(path.read_bytes), file, CallError)
+
+    async def listed(self, command: str, *words: str) -> bytes:
+        """What a command lists, as JSON."""
+        return (await self._run([command, *words, "--json"], answers=(0,)))[0]
+
+    async def map(self, question: MapQuestion, spec: str | None = None) -> tuple[bytes, int]:
+        """Map the postures at a point; the map as JSON and the exit code."""
+        words = [*self.permissions.map(question), *([f"--cutter={spec}"] if spec else []), "--json=-"]
+        words += [f"--out={self.cwd / 'map.png'}"] if question.picture or draws_pictures() else []
+        return await self._run(["map", *words])
+
+    async def tools_of(self, library: str) -> list[tuple[str, str]]:
+        """Id and name of each cutter of a library that may be judged; a CallError where there are too many."""
+        rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
+        libraries = [(each.id, each.name) for each in rows]
+        if len(libraries) > self.permissions.limits.cutters:
+            raise CallError(
+                f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
+                "make a library of those in question",
+                file=library,
+            )
+        return libraries

@@ -50,12 +50,9 @@ class McpRequest:
     ),
 )
 @_access(
-    "--root",
-    "roots",
-    type=Folder("DIR"),
-    multiple=True,
+    "--root", "roots", type=Folder("DIR"), multiple=True,
     help="Folder in which calls may read and write; all else is refused. Repeatable.  [default: those that the client offers]",
-)
+)  # fmt: skip
 @_access("--client-roots", is_flag=True, help="With --root: folders that the client offers are roots as well.")
 @_limits(
     "--most-mb", type=click.FloatRange(0, min_open=True), default=200.0, metavar="MB", help="Size of a file.  [default: 200]"
@@ -65,12 +62,9 @@ class McpRequest:
     "--most-cutters", type=click.IntRange(1), default=50, metavar="N", help="Cutters, with those of a library.  [default: 50]"
 )
 @_limits(
-    "--most-characters",
-    type=click.IntRange(2000),
-    default=40_000,
-    metavar="N",
+    "--most-characters", type=click.IntRange(2000), default=40_000, metavar="N",
     help="Length of an answer: lists are cut, and the answer says how much is left out.  [default: 40000]",
-)
+)  # fmt: skip
 @_limits("--timeout", type=click.FloatRange(0, min_open=True), default=900.0, metavar="S", help="Seconds.  [default: 900]")
 @_limits(
     "--memory", type=click.FloatRange(2), metavar="GB", help="Memory of each process that plans.  [default: 3/4 of the machine's]"
@@ -90,7 +84,7 @@ def command(request: McpRequest) -> int:
         raise OptionError(f"the extra is not installed: {extra_hint('mcp')}")
     if sys.stdin is None or sys.stdout is None:
         raise OptionError("standard input or output is closed: a client talks over them")
-    from plan_cutters_agents.limits import Limits
+    from plan_cutters_agents.access import Limits
     from plan_cutters_agents.server import serve, service_of
 
     limits = Limits(file_mb=request.most_mb, samples=request.most_samples, cutters=request.most_cutters,

@@ -2,17 +2,9 @@
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidatorFunctionWrapHandler,
-    WithJsonSchema,
-    WrapValidator,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
+from pydantic import ValidatorFunctionWrapHandler as Handler
+from pydantic.functional_validators import AfterValidator, WrapValidator
 
 from plan_cutters.domain.answer_kinds import ANSWERS, KINDS
 from plan_cutters.errors import OptionError
@@ -38,7 +30,7 @@ def _answer(word: str) -> str:
 Answer = Annotated[str, AfterValidator(_answer), WithJsonSchema({"type": "string", "enum": [*ANSWERS]})]
 
 
-def _process(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+def _process(value: Any, handler: Handler) -> Any:
     """The planner's own steps; what is wrong with them is said as of a file, with the place."""
     try:
         table = handler(value)

@@ -9,18 +9,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import anyio
+import anyio.to_thread
 from pydantic import ValidationError
 
 from plan_cutters import __version__
 from plan_cutters.errors import PlanError
 from plan_cutters.files.temporary import require_temporary
-from plan_cutters_agents.limits import CallError, Limits
+from plan_cutters_agents.access import CallError, Limits, Permissions, Roots
+from plan_cutters_agents.child import Call
 from plan_cutters_agents.requests import PlanQuestion
-from plan_cutters_agents.roots import Roots
-from plan_cutters_agents.schemas import answer_schema, question_schema
-from plan_cutters_agents.tools import TOOLS, Call, Reply, Tool
-from plan_cutters_agents.words import Permissions
+from plan_cutters_agents.short import answer_schema, question_schema
+from plan_cutters_agents.tools import TOOLS, Reply, Tool, fitting
 
 if TYPE_CHECKING:
     import mcp.types as types
@@ -60,7 +59,17 @@ class Service:
     async def list_tools(self, context: Any, params: Any) -> "types.ListToolsResult":
         import mcp.types as types
 
-        return types.ListToolsResult(tools=[_declared(tool) for tool in TOOLS])
+        return types.ListToolsResult(
+            tools=[
+                types.Tool(
+                    name=tool.name, title=tool.title, description=tool.description,
+                    input_schema=question_schema(tool.question, PlanQuestion), output_schema=answer_schema(tool.answer),
+                    annotations=types.ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=tool.writes,
+                                                      idempotent_hint=True, open_world_hint=False),
+                )
+                for tool in TOOLS
+            ]
+        )  # fmt: skip
 
     async def call_tool(self, context: Any, params: "types.CallToolRequestParams") -> Any:
         import mcp.types as types
@@ -81,6 +90,7 @@ class Service:
                     self._working.discard(scope)
             if scope.cancelled_caught:
                 raise CallError("the server was ended")
+            answer = await anyio.to_thread.run_sync(fitting, reply.answer, self.limits.characters)
         except PlanError as error:
             return _failed(str(error))
         except TimeoutError:
@@ -91,11 +101,11 @@ class Service:
         except Exception as error:
             logging.getLogger(__name__).debug("internal error", exc_info=True)
             return _failed(f"internal error ({type(error).__name__}: {error})")
-        content: list[Any] = [types.TextContent(text=json.dumps(reply.answer, ensure_ascii=False))]
+        content: list[Any] = [types.TextContent(text=json.dumps(answer, ensure_ascii=False))]
         if reply.picture is not None:
             content.append(types.ImageContent(data=base64.b64encode(reply.picture).decode(), mime_type="image/png"))
         content += [_link(what, Path(file)) for what, file in reply.files.items()]
-        return types.CallToolResult(content=content, structured_content=reply.answer)
+        return types.CallToolResult(content=content, structured_content=answer)
 
     async def end(self) -> None:
         """Cancel all calls, and wait until nothing of them is left."""
@@ -143,13 +153,7 @@ class Service:
 
 
 def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
-    """The question as its model has it.
-
-    Raises
-    ------
-    CallError
-        With the first thing that is wrong, and how many more there are.
-    """
+    """The question as its model has it; a CallError with the first thing that is wrong, and how many more there are."""
     try:
         return tool.question.model_validate(arguments)
     except ValidationError as error:
@@ -157,21 +161,6 @@ def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
         place = ".".join(map(str, faults[0]["loc"]))
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         raise CallError(f"{place + ': ' if place else ''}{faults[0]['msg'].removeprefix('Value error, ')}{more}") from None
-
-
-def _declared(tool: Tool) -> "types.Tool":
-    import mcp.types as types
-
-    return types.Tool(
-        name=tool.name,
-        title=tool.title,
-        description=tool.description,
-        input_schema=question_schema(tool.question, PlanQuestion),
-        output_schema=answer_schema(tool.answer),
-        annotations=types.ToolAnnotations(
-            read_only_hint=not tool.writes, destructive_hint=tool.writes, idempotent_hint=True, open_world_hint=False
-        ),
-    )
 
 
 def _link(what: str, file: Path) -> "types.ResourceLink":
@@ -191,13 +180,7 @@ def _failed(line: str) -> "types.CallToolResult":
 
 
 def service_of(folders: Sequence[str], limits: Limits, *, client_roots: bool) -> Service:
-    """The service of some roots.
-
-    Raises
-    ------
-    CallError
-        A root is no folder.
-    """
+    """The service of some roots; a CallError where one is no folder."""
     return Service(Roots.of(folders), limits, client_roots=client_roots or not folders)
 
 

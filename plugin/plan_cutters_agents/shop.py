@@ -1,10 +1,9 @@
 """List what there is to plan with: the tools of a library or the built-in set, and machines."""
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
-from plan_cutters_agents.answers import MachineRow, ShopAnswer, ToolRow, first
+from plan_cutters_agents.answers import MachineRow, ToolRow
 
 
 def tools_in(output: bytes) -> tuple[list[ToolRow], list[str]]:
@@ -40,21 +39,6 @@ def machines_in(output: bytes) -> list[MachineRow]:
         )
         for each in json.loads(output)["machines"]
     ]
-
-
-def shop_answer(
-    library: str, tools: Sequence[ToolRow], unused: Sequence[str], machines: Sequence[MachineRow], most: int
-) -> ShopAnswer:
-    """The lists, none longer than `most`."""
-    shown, more = first([*tools], most)
-    named, more_named = first([*machines], most)
-    lines, more_lines = first([*unused], most)
-    what = library or "the built-in set, for a first look: nobody's tools"
-    text = f"{len(tools)} tools of {what}; {len(machines)} built-in machines; `unlimited` and `tilt:DEG` are others."
-    return ShopAnswer(
-        part="", told=text, library=library, tools=shown, more_tools=more, unused=lines, more_unused=more_lines, machines=named,
-        more_machines=more_named,
-    )  # fmt: skip
 
 
 def _tool(cutter: dict[str, Any]) -> ToolRow:

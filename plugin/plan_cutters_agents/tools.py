@@ -3,8 +3,8 @@
 import contextlib
 import json
 import shutil
-from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,112 +12,29 @@ import anyio.to_thread
 
 from plan_cutters.domain.figures import percent
 from plan_cutters.errors import CutterError
-from plan_cutters.files.pictures import draws_pictures
-from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
-from plan_cutters_agents.answers import (
-    Answer,
-    Comparison,
-    Explanation,
-    MapAnswer,
-    Picture,
-    PlanAnswer,
-    PlanDifferenceAnswer,
-    ShopAnswer,
-)
-from plan_cutters_agents.child import Ended, ProgressListener, run
-from plan_cutters_agents.cutter_names import chosen, cutter_of
-from plan_cutters_agents.digits import short
-from plan_cutters_agents.limits import CallError
-from plan_cutters_agents.nearest_sample import nearest_sample
-from plan_cutters_agents.plan_answers import compared, explained, pictured, planned
-from plan_cutters_agents.plan_difference import difference
-from plan_cutters_agents.postures import postures_of
-from plan_cutters_agents.requests import (
-    CompareQuestion,
-    Conditions,
-    DifferenceQuestion,
-    ExplainQuestion,
-    MapQuestion,
-    PartQuestion,
-    PlanQuestion,
-    Question,
-    RenderQuestion,
-    ShopQuestion,
-)
-from plan_cutters_agents.shop import built_in_tools, machines_in, shop_answer, tools_in
-from plan_cutters_agents.words import Permissions
+from plan_cutters_agents import answers, requests
+from plan_cutters_agents.access import CallError
+from plan_cutters_agents.at_point import nearest_sample, postures_of
+from plan_cutters_agents.child import Call
+from plan_cutters_agents.plan_answers import chosen, compared, cutter_of, difference, explained, pictured, planned
+from plan_cutters_agents.shop import built_in_tools, machines_in, tools_in
+from plan_cutters_agents.short import LISTS, short
 
-#: How long lists may be, until the answer is short enough.
-_LENGTHS = (60, 30, 12, 5, 2, 0)
+#: How long lists may be, until the answer is short enough; of rotations in an explanation.
+_LENGTHS, _ROTATIONS = (60, 30, 12, 5, 2, 0), 12
 #: Largest picture that is handed over, bytes.
 _PICTURE = 8 << 20
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """An answer as JSON, and a picture (PNG) where there is one."""
+    """An answer, and a picture (PNG) where there is one."""
 
-    answer: dict[str, Any]
+    answer: answers.Answer
     picture: bytes | None = None
     #: Written files, by what they are.
     files: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A call that is worked on: what it may touch, a folder of its own that goes with it, and who is told of its progress."""
-
-    permissions: Permissions
-    cwd: Path
-    tell: ProgressListener
-
-    async def _run(self, words: Sequence[str], **more: Any) -> Ended:
-        more = {"within": self.permissions.roots.folders, **more}
-        return await run(words, self.cwd, self.permissions.limits, self.tell, **more)
-
-    async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
-        """Plan a part; the plan and the exit code."""
-        ended = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
-        return plan_of(ended.output, "the plan", CallError), ended.code
-
-    async def plan_in(self, file: str) -> Plan:
-        """Read a plan that is there."""
-        path = Path(self.permissions.file(file))
-        return plan_of(await anyio.to_thread.run_sync(path.read_bytes), file, CallError)
-
-    async def listed(self, command: str, *words: str) -> bytes:
-        """What a command lists, as JSON."""
-        return (await self._run([command, *words, "--json"], answers=(0,))).output
-
-    async def map(self, question: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
-        """Map the postures at a point; the map as JSON and the exit code."""
-        words = [
-            *self.permissions.map(question),
-            *([f"--cutter={spec}"] if spec else []),
-            "--json=-",
-            *([f"--out={self.cwd / 'map.png'}"] if question.picture or draws_pictures() else []),
-        ]
-        ended = await self._run(["map", *words])
-        return ended.output, ended.code
-
-    async def tools_of(self, library: str) -> list[tuple[str, str]]:
-        """Id and name of each cutter of a library that may be judged.
-
-        Raises
-        ------
-        CallError
-            There are too many.
-        """
-        rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
-        libraries = [(each.id, each.name) for each in rows]
-        if len(libraries) > self.permissions.limits.cutters:
-            raise CallError(
-                f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
-                "make a library of those in question",
-                file=library,
-            )
-        return libraries
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,28 +44,29 @@ class Tool:
     name: str
     title: str
     description: str
-    question: type[Question]
-    answer: type[Answer]
+    question: type[requests.Question]
+    answer: type[answers.Answer]
     work: Callable[[Any, Call], Awaitable[Reply]]
     writes: bool = False
 
 
-def fitting(make: Callable[[int], Answer], characters: int, picture: bytes | None = None) -> Reply:
-    """The answer with the longest lists with which it is short enough.
-
-    Raises
-    ------
-    CallError
-        It is too long even without them.
-    """
+def fitting(answer: answers.Answer, characters: int) -> dict[str, Any]:
+    """The answer as JSON, with the longest lists with which it is short enough; a CallError where it is too long without them."""
+    whole = answer.model_dump(mode="json")
     for most in _LENGTHS:
-        answer = short(make(most).model_dump(mode="json"))
-        if len(json.dumps(answer, ensure_ascii=False)) <= characters:
-            return Reply(answer, picture)
+        lengths = dict.fromkeys(LISTS, most)
+        if isinstance(answer, answers.Explanation):
+            lengths["rotations"] = min(most, _ROTATIONS)
+        made = short(whole, lengths)
+        for row in made.get("differ", ()):
+            names = {each["id"] for each in made["cutters"]}
+            row["reached"] = {name: share for name, share in row["reached"].items() if name in names}
+        if len(json.dumps(made, ensure_ascii=False)) <= characters:
+            return made
     raise CallError(f"the answer has more than {characters} characters even without its lists: ask about fewer faces or cutters")
 
 
-async def plan_part(question: PlanQuestion, call: Call) -> Reply:
+async def plan_part(question: requests.PlanQuestion, call: Call) -> Reply:
     """Plan a part, into a folder where one is named."""
     words = await _part(question, call)
     words += [f"--answers={','.join(question.answers)}"] if question.answers else []
@@ -168,17 +86,16 @@ async def plan_part(question: PlanQuestion, call: Call) -> Reply:
         with _whole(out):
             plan, code = await call.plan([*words, f"--out={out}", f"--formats={formats}"])
         files = {"json": str(out / "plan.json"), **{name: str(out / each.name) for name, each in plan.files.items()}}
-    reply = fitting(lambda most: planned(plan, code, most, files), call.permissions.limits.characters)
-    return replace(reply, files=files)
+    return Reply(planned(plan, code, files), files=files)
 
 
-async def compare_cutters(question: CompareQuestion, call: Call) -> Reply:
+async def compare_cutters(question: requests.CompareQuestion, call: Call) -> Reply:
     """Judge some cutters and tell them apart."""
     plan, code = await call.plan(await _part(question, call))
-    return fitting(lambda most: compared(plan, code, most), call.permissions.limits.characters)
+    return Reply(compared(plan, code))
 
 
-async def render(question: RenderQuestion, call: Call) -> Reply:
+async def render(question: requests.RenderQuestion, call: Call) -> Reply:
     """Draw the part with the verdicts of the cutter that the plan selects, or that comes nearest."""
     out = call.cwd / "review"
     plan, code = await call.plan([*await _part(question, call), f"--out={out}", "--formats=json,png"])
@@ -187,31 +104,26 @@ async def render(question: RenderQuestion, call: Call) -> Reply:
         raise CallError(plan.not_written.get("png", "the picture was not written"), file=plan.part.file)
     if picture.stat().st_size > _PICTURE:
         raise CallError(f"the picture has more than {_PICTURE >> 20} MB", file=plan.part.file)
-    return fitting(lambda most: pictured(plan, code, most), call.permissions.limits.characters, picture.read_bytes())
+    return Reply(pictured(plan, code), picture.read_bytes())
 
 
-async def posture_map(question: MapQuestion, call: Call) -> Reply:
+async def posture_map(question: requests.MapQuestion, call: Call) -> Reply:
     """Map all postures of a cutter at a point."""
     if question.library is not None:
         await call.tools_of(question.library)
     spec = await _spec(question.cutter, question, call) if question.library is None else None
-    output, code = await call.map(question, 0, spec)
+    output, code = await call.map(question, spec)
     picture = (call.cwd / "map.png").read_bytes() if question.picture else None
-    part, cutter = Path(question.part).name, json.loads(output)["cutter"]
-
-    def make(most: int) -> Answer:
-        postures = postures_of(output, most)
-        free = f"{percent(postures.free_share)} of the postures searched are free, {percent(postures.undecided_share)} undecided"
-        text = f"{cutter} at ({', '.join(f'{x:.6g}' for x in postures.point)}) on {postures.face}: {free}."
-        return MapAnswer(part=part, told=text, cutter=cutter, exit_code=code, postures=postures)
-
-    return fitting(make, call.permissions.limits.characters, picture)
+    cutter, postures = json.loads(output)["cutter"], postures_of(output)
+    free = f"{percent(postures.free_share)} of the postures searched are free, {percent(postures.undecided_share)} undecided"
+    text = f"{cutter} at ({', '.join(f'{x:.6g}' for x in postures.point)}) on {postures.face}: {free}."
+    part = Path(question.part).name
+    return Reply(answers.MapAnswer(part=part, told=text, cutter=cutter, exit_code=code, postures=postures), picture)
 
 
-async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
+async def explain_sample(question: requests.ExplainQuestion, call: Call) -> Reply:
     """Say why a cutter does not reach a face or a point, and what would help."""
-    postures: bytes | None = None
-    sample = None
+    postures = sample = None
     if question.plan is not None:
         plan = await call.plan_in(question.plan)
         cutter, face = cutter_of(plan, question.cutter), question.face
@@ -223,15 +135,11 @@ async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
         cutter = cutter_of(plan, name)
     if face is None:
         raise CallError("which place? give a face or a point")
-
-    def make(most: int) -> Answer:
-        judged = None if postures is None else postures_of(postures, min(most, 12))
-        return explained(plan, cutter, face, most, point=question.point, postures=judged, sample=sample)
-
-    return fitting(make, call.permissions.limits.characters)
+    at = None if postures is None else postures_of(postures)
+    return Reply(explained(plan, cutter, face, point=question.point, postures=at, sample=sample))
 
 
-async def list_tools_and_machines(question: ShopQuestion, call: Call) -> Reply:
+async def list_tools_and_machines(question: requests.ShopQuestion, call: Call) -> Reply:
     """List the tools of a library, or the built-in ones, and the built-in machines."""
     unused: list[str] = []
     if question.library is None:
@@ -240,40 +148,40 @@ async def list_tools_and_machines(question: ShopQuestion, call: Call) -> Reply:
         tools, unused = tools_in(await call.listed("tools", call.permissions.file(question.library)))
     machines = machines_in(await call.listed("machines")) if question.machines else []
     library = "" if question.library is None else Path(question.library).name
-    return fitting(lambda most: shop_answer(library, tools, unused, machines, most), call.permissions.limits.characters)
+    what = library or "the built-in set, for a first look: nobody's tools"
+    text = f"{len(tools)} tools of {what}; {len(machines)} built-in machines; `unlimited` and `tilt:DEG` are others."
+    return Reply(answers.ShopAnswer(part="", told=text, library=library, tools=tools, unused=unused, machines=machines))
 
 
-async def compare_plans(question: DifferenceQuestion, call: Call) -> Reply:
+async def compare_plans(question: requests.DifferenceQuestion, call: Call) -> Reply:
     """Compare two plans that are there."""
     old, new = [await call.plan_in(file) for file in (question.old, question.new)]
-    return await anyio.to_thread.run_sync(
-        lambda: fitting(lambda most: difference(old, new, most), call.permissions.limits.characters)
-    )
+    return Reply(await anyio.to_thread.run_sync(difference, old, new))
 
 
-async def _judged(question: ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
+async def _judged(question: requests.ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
     """Judge the face in question with the cutter in question: the plan, the cutter, the face, and the map at the point."""
     if question.part is None:
         raise CallError("give either `part` or `plan`")
     spec = await _spec(question.cutter, question, call)
     face, postures = question.face, None
-    under = {name: getattr(question, name) for name in Conditions.model_fields if name != "library"}
+    under = {name: getattr(question, name) for name in requests.Conditions.model_fields if name != "library"}
     if question.point is not None:
         if question.setup[0] == "auto":
             raise CallError("setup: `auto` proposes one for a plan; for a point, name the direction")
-        at = MapQuestion(
+        at = requests.MapQuestion(
             part=question.part, cutter=spec, point=question.point, within_mm=question.within_mm, setup=question.setup[0], **under
         )
-        postures, _ = await call.map(at, 0)
+        postures, _ = await call.map(at)
         face = json.loads(postures)["face"]
-    one = PartQuestion(part=question.part, cutters=[spec], setup=question.setup, faces=face or "", grid=question.grid,
+    one = requests.PartQuestion(part=question.part, cutters=[spec], setup=question.setup, faces=face or "", grid=question.grid,
                        spacing_mm=question.spacing_mm, **under)  # fmt: skip
     plan, _ = await call.plan([*call.permissions.part(one), "--answers=mend"])
     # An id may have been given a holder.
     return plan, plan.cutters[0].id, face or "", postures
 
 
-async def _part(question: PartQuestion, call: Call) -> list[str]:
+async def _part(question: requests.PartQuestion, call: Call) -> list[str]:
     """Words of a question about a part, once it is known that its cutters are not too many."""
     words = call.permissions.part(question)
     if question.library is not None:
@@ -281,7 +189,7 @@ async def _part(question: PartQuestion, call: Call) -> list[str]:
     return words
 
 
-async def _spec(name: str, question: Conditions, call: Call) -> str:
+async def _spec(name: str, question: requests.Conditions, call: Call) -> str:
     """A cutter by words, where a tool of a library or of the built-in set may be meant."""
     from plan_cutters.domain.cutter import Cutter
 
@@ -328,41 +236,41 @@ TOOLS = (
         "Judge cutters on a part (STEP, IGES, BREP) without any toolpath: which finish its sculptured faces without gouging or "
         "collision, what each one reaches, where and why the others fail; with `operations`, in which steps; with `process`, "
         "what your own steps do and leave. Writes files only where `out` is given. Takes seconds to minutes.",
-        PlanQuestion, PlanAnswer, plan_part, writes=True,
+        requests.PlanQuestion, answers.PlanAnswer, plan_part, writes=True,
     ),
     Tool(
         "posture_map", "All postures at a point",
         "Map the free tilts of one cutter at one point of a part, rotation by rotation, and what forbids the others.",
-        MapQuestion, MapAnswer, posture_map,
+        requests.MapQuestion, answers.MapAnswer, posture_map,
     ),
     Tool(
         "explain_sample", "Why a cutter does not reach a face or point, and what would help",
         "Say in one call why a cutter does not reach a face (F12) or a point: reasons with codes, the worst places, what is in "
         "the way, and which changes would help by how much, each of them judged. Give `part` to judge it now, or `plan` (a "
         "plan.json) to read what is known.",
-        ExplainQuestion, Explanation, explain_sample,
+        requests.ExplainQuestion, answers.Explanation, explain_sample,
     ),
     Tool(
         "compare_cutters", "How cutters differ on a part",
         "Judge several cutters on a part: what each one reaches, on which faces they differ, and the fewest of them that reach "
         "all that any of them reaches.",
-        CompareQuestion, Comparison, compare_cutters,
+        requests.CompareQuestion, answers.Comparison, compare_cutters,
     ),
     Tool(
         "render", "A picture of the verdicts",
         "Draw a part in four views (PNG), coloured by the verdicts of the cutter that is selected, or that comes nearest: give "
         "one cutter to see its verdicts.",
-        RenderQuestion, Picture, render,
+        requests.RenderQuestion, answers.Picture, render,
     ),
     Tool(
         "list_tools_and_machines", "Which tools and machines there are",
         "List the tools of a library, or the built-in ones, by id, kind and size, and the built-in machines: words for "
         "`cutters`, `cutter` and `machine`.",
-        ShopQuestion, ShopAnswer, list_tools_and_machines,
+        requests.ShopQuestion, answers.ShopAnswer, list_tools_and_machines,
     ),
     Tool(
         "compare_plans", "What changed from one plan to another",
         "Compare two plan.json files, as before and after a change of the part: which faces and cutters reach less or more.",
-        DifferenceQuestion, PlanDifferenceAnswer, compare_plans,
+        requests.DifferenceQuestion, answers.PlanDifferenceAnswer, compare_plans,
     ),
 )  # fmt: skip

@@ -20,14 +20,7 @@ _ANSWER, _JOIN = 5, 30
 def workers_of(count: int | None, memory: float | None, threads: int) -> tuple[int, int]:
     """How many workers this machine has room for, and the bytes of memory of each.
 
-    Parameters
-    ----------
-    count : int, optional
-        As asked for; default by cores and memory.
-    memory : float, optional
-        Bytes for a part.
-    threads : int
-        Of a part.
+    `count` as asked for, default by cores and memory; `memory` in bytes and `threads` are those of a part.
     """
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
@@ -42,10 +35,7 @@ def workers_of(count: int | None, memory: float | None, threads: int) -> tuple[i
 def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
     """A client of a cluster: the one of an address or a scheduler's file, or workers of this machine that end with the block.
 
-    Raises
-    ------
-    PlanError
-        There is no scheduler, it has no workers, or versions differ.
+    A PlanError where there is no scheduler, it has no workers, or versions differ.
     """
     try:
         import distributed
@@ -55,7 +45,13 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
         stack.enter_context(_quiet())
         if address is None:
             require_temporary()
-            client = stack.enter_context(_local(distributed, workers))
+            with _deaf():
+                # Memory is that of the children, which dask does not see: it is limited there.
+                cluster = stack.enter_context(
+                    distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+                                             dashboard_address=":0", silence_logs=logging.CRITICAL)
+                )  # fmt: skip
+            client = stack.enter_context(distributed.Client(cluster))
         else:
             client = stack.enter_context(_reached(distributed, address))
             _same(client)
@@ -79,18 +75,6 @@ def _quiet() -> Iterator[None]:
     finally:
         for logger, level in zip(loggers, before, strict=True):
             logger.setLevel(level)
-
-
-@contextlib.contextmanager
-def _local(distributed: Any, workers: int) -> Iterator[Any]:
-    with contextlib.ExitStack() as stack:
-        with _deaf():
-            # Memory is that of the children, which dask does not see: it is limited there.
-            cluster = stack.enter_context(
-                distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
-                                         dashboard_address=":0", silence_logs=logging.CRITICAL)
-            )  # fmt: skip
-        yield stack.enter_context(distributed.Client(cluster))
 
 
 @contextlib.contextmanager
@@ -148,17 +132,10 @@ def _same(client: Any) -> None:
 
 def facts(client: Any) -> dict[str, object]:
     """Say of a cluster what the table names: its address, workers and threads, and where dask shows it."""
-    threads = client.nthreads()
-    return {
-        "address": client.scheduler.address,
-        "workers": len(threads),
-        "threads": sum(threads.values()),
-        "dashboard": dashboard(client),
-    }
-
-
-def dashboard(client: Any) -> str | None:
-    """Address of the dashboard; None where dask has none, since bokeh is not there."""
     from importlib.util import find_spec
 
-    return str(client.dashboard_link) if find_spec("bokeh") and client.dashboard_link else None
+    threads = client.nthreads()
+    # Where bokeh is not there, dask has none.
+    board = str(client.dashboard_link) if find_spec("bokeh") and client.dashboard_link else None
+    address = client.scheduler.address
+    return {"address": address, "workers": len(threads), "threads": sum(threads.values()), "dashboard": board}

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.
 _OF_A_PART = {"Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Answers", "Plan of operations"}
-#: The picture is what the table shows of a part.
-
 _many = heading("Many parts")
 
 
@@ -83,35 +81,20 @@ class BatchRequest(PlanningRequest, Reported):
     "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time",
     "change_time", "setup_time", "overlap", "most_operations", "max_orientations", "no_patterns",
 )  # fmt: skip
-@_many(
-    "--cluster",
-    brief="Scheduler of a running Dask cluster, or its scheduler file.",
-    metavar="tcp://HOST:PORT|FILE",
-    type=Words("ADDRESS", files=True),
-    help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]",
-)
-@_many(
-    "--workers",
-    brief="Workers of this machine, each for one part at a time.",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]",
-)
+@_many("--cluster", brief="Scheduler of a running Dask cluster, or its scheduler file.", metavar="tcp://HOST:PORT|FILE",
+       type=Words("ADDRESS", files=True),
+       help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
+@_many("--workers", brief="Workers of this machine, each for one part at a time.", type=click.IntRange(min=1), metavar="N",
+       help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip
 @_many("--timeout-part", "--timeout", "timeout_part", brief="Seconds for the whole of a part.", type=float, metavar="S",
        help="Seconds for the whole of a part; one that takes longer has failed, with exit code 124.")  # fmt: skip
+@_many("--limit-memory", type=float, metavar="GB",
+       help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
 @_many(
-    "--limit-memory",
-    type=float,
-    metavar="GB",
-    help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]",
-)
-@_many(
-    "--fail-on",
-    brief="Outcomes that give an exit code other than 0.",
-    metavar="WORD[,...]",
+    "--fail-on", brief="Outcomes that give an exit code other than 0.", metavar="WORD[,...]",
     help="What gives an exit code other than 0: unreadable (or crashed), late (--timeout-part), refused (its options), "
     "unfinished, unsure; none: nothing does.  [default: all of them]",
-)
+)  # fmt: skip
 @_many("--force", brief=True, is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", brief=True, is_flag=True, help="Say what would be planned, and do nothing.")
 @options("no_cache", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
@@ -139,7 +122,7 @@ def command(request: BatchRequest) -> int:
     if len(faults) == len(parts):
         _report(files, faults)
         for row in faults:
-            _progress_line(row.error or "")
+            terminal.error(f"{_SELF}: {row.error or ''}")
         return max(_code(row, fail_on) for row in faults)
     memory = None if request.limit_memory is None else request.limit_memory * 1e9
     for word in ("timeout_part", "limit_memory", "read_timeout"):
@@ -198,9 +181,7 @@ def _code(row: "PartRow", fail_on: frozenset[str]) -> int:
     return code_of(row) if fault(row) in fail_on else FEASIBLE
 
 
-def _all(
-    parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]
-) -> int:  # fmt: skip
+def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]) -> int:
     """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
     from plan_cutters.domain.figures import count as counted
     from plan_cutters_batch import cluster
@@ -248,7 +229,7 @@ def _report(files: "CaseFiles | None", rows: "Sequence[PartRow]") -> None:
     """Write the test cases of the parts, where a file for them is named."""
     if files is None:
         return
-    from plan_cutters_batch.cases import part_case
+    from plan_cutters_batch.summary import part_case
 
     files.write(_SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
 
@@ -264,17 +245,12 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
     return code
 
 
-def _progress_line(line: str) -> None:
-    terminal.error(f"{_SELF}: {line}")
-
-
 def _parts(request: BatchRequest) -> "list[Job | Fault]":
     """Jobs of all that is meant, with the settings of each."""
     from plan_cutters.command.piped import listed
     from plan_cutters.errors import PlanError
     from plan_cutters_batch.job import Fault, Job
-    from plan_cutters_batch.manifest import manifest
-    from plan_cutters_batch.sources import sources
+    from plan_cutters_batch.sources import manifest, sources
 
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
     settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
@@ -324,7 +300,7 @@ def _relative_to(word: str, folder: str) -> str:
 
 @functools.cache
 def _formats() -> tuple[str, ...]:
-    return with_pictures(DEFAULT_FORMATS, _progress_line)
+    return with_pictures(DEFAULT_FORMATS, lambda line: terminal.error(f"{_SELF}: {line}"))
 
 
 def _settings(request: BatchRequest) -> "Settings":
@@ -339,11 +315,7 @@ def _settings(request: BatchRequest) -> "Settings":
         requested = options_of(replace(request, jobs=request.jobs or 1))
     look_at(requested)
     formats = _formats() if request.formats is None else read_formats(request.formats)
+    read = tuple(filter(None, files.values()))
     return Settings(
-        requested,
-        tuple(dict.fromkeys(("json", *formats))),
-        request.step_schema,
-        request.read_timeout,
-        tuple(filter(None, files.values())),
-        request.cache,
+        requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout, read, request.cache
     )

@@ -1,19 +1,22 @@
-"""Each part of a batch has its settings, or the reason for which it cannot be planned."""
+"""A part of a batch and what travels for it: the content of its files, and its settings, or why it cannot be planned."""
 
 import contextlib
 import copy
 import os
 import pickle
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from pathlib import PurePath, PureWindowsPath
+from pathlib import Path, PurePath, PureWindowsPath
 from typing import Any
 
+from cad_io.read.references import followed
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.errors import OptionError
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files import folder as folders
 from plan_cutters.options import Options
 from plan_cutters_base import user_files
-from plan_cutters_batch.content import content
+from plan_cutters_base.user_files import checksum, checksums, fingerprint
 from plan_cutters_batch.row import PartRow
 
 #: Exit codes of a batch: as of a single plan (`docs/command.md`).
@@ -21,49 +24,85 @@ USAGE, UNREADABLE = 2, 3
 
 
 @dataclass(frozen=True)
-class Settings:
-    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file.
+class Content:
+    """The bytes of a CAD file, and of the files that it refers to, are one content."""
 
-    Attributes
-    ----------
-    options : Options
-    formats : tuple of str
-        Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
-    step_schema : str
-    read_timeout : float
-        Seconds that reading may take.
-    read : tuple of str
-        SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
-    cache : bool
-        Keep what stages make of a part in the cache folder of each worker's user.
+    data: bytes
+    #: Bytes of each of the others, by its path from the file's folder; None: it is not there.
+    references: tuple[tuple[str, bytes | None], ...] = ()
+
+    @property
+    def key(self) -> str:
+        """Checksum of all of it."""
+        return fingerprint(checksum(self.data), checksums(self.references))
+
+    def write(self, file: Path) -> None:
+        """Write the file, and those that it refers to where they lie in or below its folder.
+
+        What lies elsewhere is missing there, or read where it lies if its whole path is given.
+        """
+        file.write_bytes(self.data)
+        for name, data in self.within():
+            there = file.parent / name
+            there.parent.mkdir(parents=True, exist_ok=True)
+            there.write_bytes(data)
+
+    def within(self) -> Iterator[tuple[str, bytes]]:
+        """The files in or below its folder that it refers to, and that are there."""
+        return ((name, data) for name, data in self.references if data is not None and _is_within(name))
+
+    def outside(self) -> tuple[tuple[str, str | None], ...]:
+        """Checksums of the other files that it refers to, by their paths; None: not there."""
+        return checksums((name, data) for name, data in self.references if not _is_within(name))
+
+
+def _is_within(name: str) -> bool:
+    return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
+
+
+def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
+    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read.
+
+    One whose whole path is given lies on this machine.
     """
+    folder, slash, _ = file.rpartition("/")
+
+    def other(name: str) -> bytes | None:
+        try:
+            return folders.read(name) if os.path.isabs(name) else read(f"{folder}{slash}{name}")
+        except PlanError:
+            return None
+
+    data = read(file)
+    return Content(data, tuple(followed(data, other)))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
 
     options: Options
+    #: Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
     formats: tuple[str, ...] = ("json",)
     step_schema: str = "ap242"
+    #: Seconds that reading may take.
     read_timeout: float = 120.0
+    #: SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
     read: tuple[str, ...] = ()
+    #: Keep what stages make of a part in the cache folder of each worker's user.
     cache: bool = True
 
 
 @dataclass(frozen=True)
 class Job:
-    """A part to plan.
+    """A part to plan."""
 
-    Attributes
-    ----------
-    name : str
-        Among all parts: its folder below the output is `<name>-plan`.
-    file : str
-        Path or URL.
-    settings : Settings
-    part : bytes, optional
-        The pickled `cad_io.Part`, where it is no file.
-    """
-
+    #: Among all parts: its folder below the output is `<name>-plan`.
     name: str
+    #: Path or URL.
     file: str
     settings: Settings
+    #: The pickled `cad_io.Part`, where it is no file.
     part: bytes | None = None
 
 
@@ -84,30 +123,20 @@ class Fault:
 
 @dataclass(frozen=True)
 class Handed:
-    """The settings of a part, ready to travel.
+    """The settings of a part, ready to travel."""
 
-    Attributes
-    ----------
-    options : bytes
-        Pickled.
-    files : tuple of (str, bytes)
-        Of fixtures, by the names that these have there.
-    outside : tuple of (str, str or None)
-        Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
-    """
-
+    #: Pickled.
     options: bytes
+    #: Of fixtures, by the names that these have there.
     files: tuple[tuple[str, bytes], ...]
+    #: Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
     outside: tuple[tuple[str, str | None], ...] = ()
 
 
 def handed(options: Options) -> Handed:
     """Pack options for another machine, with the content of the files that fixtures are read from.
 
-    Raises
-    ------
-    OptionError
-        A fixture's file cannot be read, or faces are given as objects, which belong to one process.
+    An OptionError where one cannot be read, or where faces are given as objects, which belong to one process.
     """
     files: dict[str, bytes] = {}
     names: dict[str, str] = {}
@@ -171,13 +200,10 @@ def faced(job: Settings, part: Any) -> Settings:
     changed: dict[str, Any] = {}
     for word in ("faces", "ignore"):
         value = getattr(options, word)
-        if value is None or isinstance(value, str) or not value or _plain(value):
+        if value is None or isinstance(value, str) or not value:
             continue
+        with contextlib.suppress(TypeError):
+            if all(isinstance(each, str | int) for each in value):
+                continue
         changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
     return replace(job, options=_with(options, **changed)) if changed else job
-
-
-def _plain(value: Any) -> bool:
-    with contextlib.suppress(TypeError):
-        return all(isinstance(each, str | int) for each in value)
-    return False

@@ -18,19 +18,13 @@ from plan_cutters_batch.row import PartRow
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
-    from plan_cutters_batch.run import Terms
 
 
 @dataclass(frozen=True)
 class Planned:
     """A result holds what came of one of many parts.
 
-    Attributes
-    ----------
-    row : PartRow
-        Its line of the table: `name`, `code`, `cutter`, `share`, `error` and so on.
-    files : dict
-        Its files by name, where no output was named.
+    `row`: its line of the table (`name`, `code`, `cutter`, `share`, `error` ...); `files`: by name, where no output was named.
     """
 
     row: PartRow
@@ -117,7 +111,7 @@ def plan_many(
             client = stack.enter_context(cluster.opened(None, count))
         faults: list[PartRow] = []
         terms = Terms(force, timeout_part, memory)
-        jobs = _jobs(parts, settings, terms, faults)
+        jobs = _jobs(parts, settings, faults)
         for outcome in outcomes(jobs, client, terms, out=store, token=token):
             yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)
             while faults:
@@ -126,8 +120,10 @@ def plan_many(
             yield Planned(row)
 
 
-def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list[PartRow]) -> Iterator[Job]:
+def _jobs(parts: Iterable[Any], settings: Settings, faults: list[PartRow]) -> Iterator[Job]:
     """Jobs of parts as they are requested; those that cannot be planned are put aside."""
+    from cad_io import read_part
+
     names: set[str] = set()
     for number, entry in enumerate(parts, 1):
         name, part = entry if isinstance(entry, tuple) and len(entry) == 2 and isinstance(entry[0], str) else (None, entry)
@@ -143,16 +139,9 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
             if is_file:
                 yield Job(name, file, settings)
             else:
-                own, packed = _packed(part, settings)
-                yield Job(name, file, own, packed)
+                result = read_part(part, settings.options.unit)
+                yield Job(name, file, faced(settings, result), pickle.dumps(result, protocol=5))
         except PlanError as error:
             faults.append(Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row)
         except Exception as error:
             faults.append(Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row)
-
-
-def _packed(part: Any, settings: Settings) -> tuple[Settings, bytes]:
-    from cad_io import read_part
-
-    result = read_part(part, settings.options.unit)
-    return faced(settings, result), pickle.dumps(result, protocol=5)

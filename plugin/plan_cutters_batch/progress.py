@@ -33,17 +33,8 @@ class Screen(Console):
 class Board:
     """A board shows what came of parts, and how many there still are; several threads may use it.
 
-    Failures are always told, each in a line with its cause. It never raises for a stream that cannot be written to: the files
-    and the exit code say all.
-
-    Parameters
-    ----------
-    quiet : bool
-        Tell failures alone.
-    total : int, optional
-        Parts there are; None where that is not known yet.
-    console : Screen, optional
-        Where to; default standard error.
+    Failures are always told, each in a line with its cause; `quiet`: nothing else is. `total`: parts there are; None where that
+    is not known yet. It never raises for a stream that cannot be written to: the files and the exit code say all.
     """
 
     def __init__(self, quiet: bool, total: int | None, *, console: Screen | None = None) -> None:
@@ -128,11 +119,6 @@ class Board:
         return max(self.total or 0, self.done) <= EACH
 
     @property
-    def _counts(self) -> str:
-        of = f" of {self.total:,}" if self.total is not None else ""
-        return f"{self.done:,}{of} {self._so_far}"
-
-    @property
     def _so_far(self) -> str:
         rest = [f"{self.running:,} in work"] * bool(self.running) + [f"{self.failed:,} failed"] * bool(self.failed)
         return ", ".join(["parts done", *rest])
@@ -142,7 +128,7 @@ class Board:
             return
         if self._bar is not None:
             with contextlib.suppress(OSError, ValueError):
-                self._bar.update(self._task, completed=self.done, total=self.total, description=self._counts)
+                self._bar.update(self._task, completed=self.done, total=self.total, description=self._counts())
             return
         now = time.monotonic()
         if not self._each and now - self._spoke > (_SOON if now - self._began < 60.0 else _LATER):
@@ -163,4 +149,8 @@ class Board:
         )
         with contextlib.suppress(OSError, ValueError):
             self._bar.start()
-        self._task = self._bar.add_task(self._counts, total=self.total)
+        self._task = self._bar.add_task(self._counts(), total=self.total)
+
+    def _counts(self) -> str:
+        of = f" of {self.total:,}" if self.total is not None else ""
+        return f"{self.done:,}{of} {self._so_far}"

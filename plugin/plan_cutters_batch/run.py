@@ -25,7 +25,7 @@ _LOOK, _GONE = 1.0, 20.0
 
 
 class ProgressListener(Protocol):
-    """Who is told how far a run is: `batch.progress.Board`."""
+    """Who is told how far a run is: `progress.Board`."""
 
     def progress(self, done: int, running: int, total: int | None) -> None:
         """So many parts are done and so many are with workers, of all."""
@@ -36,17 +36,7 @@ class ProgressListener(Protocol):
 
 @dataclass
 class Terms:
-    """On what terms parts are planned.
-
-    Attributes
-    ----------
-    force : bool
-        Plan what is done, too.
-    timeout : float, optional
-        Seconds for a part.
-    memory : float, optional
-        Bytes for a part.
-    """
+    """On what terms parts are planned: `force` what is done, too; seconds and bytes for a part."""
 
     force: bool = False
     timeout: float | None = None
@@ -64,35 +54,12 @@ class Terms:
 
 
 def run_batch(
-    parts: Sequence[Job | Fault],
-    client: Any,
-    out: Store,
-    terms: Terms,
-    *,
-    board: ProgressListener | None = None,
+    parts: Sequence[Job | Fault], client: Any, out: Store, terms: Terms, *, board: ProgressListener | None = None,
     title: str = "plan-cutters batch",
-) -> Iterator[PartRow]:
-    """Plan parts on a cluster, and write the table of all when the last one is done.
+) -> Iterator[PartRow]:  # fmt: skip
+    """Plan parts on a cluster (`distributed.Client`), and write the table of all when the last one is done.
 
-    Parameters
-    ----------
-    parts : sequence of (Job or Fault)
-    client : distributed.Client
-    out : Store
-    terms : Terms
-    board : Told, optional
-    title : str
-        Of the table.
-
-    Yields
-    ------
-    PartRow
-        As they come, one for each part, the failed ones too.
-
-    Raises
-    ------
-    PlanError
-        The output cannot be written.
+    Rows come as they are made, one for each part, the failed ones too; a PlanError where the output cannot be written.
     """
     from plan_cutters_batch.index import write_index
 
@@ -134,9 +101,12 @@ def outcomes(
             except PlanError as error:
                 faulty.append(Outcome(_failed(job, str(error), USAGE), {}))
                 continue
-            yield Task(job.name, job.file, job.part, there,
-                       _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
-                       job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
+            settings = job.settings
+            words = ["--formats", ",".join(settings.formats), "--step-schema", settings.step_schema,
+                     "--read-timeout", repr(settings.read_timeout), *([] if settings.cache else ["--no-cache"]),
+                     *([] if terms.memory is None else ["--memory", repr(terms.memory / 1e9)])]  # fmt: skip
+            yield Task(job.name, job.file, job.part, there, tuple(words), key, where, token, terms.force, terms.timeout,
+                       versions, job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
 
     for task, outcome in handed_out(client, tasks(), work, board=board, total=total):
         if isinstance(outcome, BaseException):
@@ -149,13 +119,9 @@ def outcomes(
 
 
 def handed_out(
-    client: Any,
-    tasks: Iterator[Any],
-    function: Callable[[Any], Any],
-    *,
-    board: ProgressListener | None = None,
+    client: Any, tasks: Iterator[Any], function: Callable[[Any], Any], *, board: ProgressListener | None = None,
     total: int | None = None,
-) -> Iterator[tuple[Any, Any]]:
+) -> Iterator[tuple[Any, Any]]:  # fmt: skip
     """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
 
     What is asked of dask never grows with the number of tasks, so that neither this process nor the scheduler does. A task
@@ -189,13 +155,7 @@ def handed_out(
 
 
 class _Flight:
-    """Tasks that a cluster works on, and what comes of them.
-
-    Attributes
-    ----------
-    tasks : dict
-        By their futures.
-    """
+    """Tasks that a cluster works on, by their futures, and what comes of them."""
 
     def __init__(self, client: Any, tasks: Iterator[Any], function: Callable[[Any], Any]) -> None:
         self.tasks: dict[Any, Any] = {}
@@ -238,7 +198,11 @@ class _Flight:
             return None
         if future not in self.tasks:
             return None
-        task, outcome = self.tasks.pop(future), _result(future)
+        task = self.tasks.pop(future)
+        try:
+            outcome = future.result(timeout=60)
+        except Exception as error:
+            outcome = error
         future.release()
         return task, outcome
 
@@ -269,13 +233,6 @@ def _threads(client: Any) -> dict[str, int]:
         return {}
 
 
-def _result(future: Any) -> Any:
-    try:
-        return future.result(timeout=60)
-    except Exception as error:
-        return error
-
-
 def _lost_worker(task: Task, error: BaseException) -> str:
     name = type(error).__name__
     if name == "KilledWorker":
@@ -287,13 +244,6 @@ def _lost_worker(task: Task, error: BaseException) -> str:
 
 def _failed(job: Job | Task, why: str, code: int) -> PartRow:
     return PartRow(name=job.name, file=job.file, status="failed", code=code, error=why)
-
-
-def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
-    words = ["--formats", ",".join(settings.formats), "--step-schema", settings.step_schema, "--read-timeout",
-             repr(settings.read_timeout)]  # fmt: skip
-    words += [] if settings.cache else ["--no-cache"]
-    return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
 
 
 def foreseen(parts: Iterable[Job | Fault], out: Store, terms: Terms) -> Iterator[PartRow]:

@@ -5,24 +5,18 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from plan_cutters_batch.part_tools import PartTools
+from plan_cutters_batch.row import PartTools
 
 #: Seconds that each of the two searches may take; then the best set so far is reported, with the bound that is proved by then.
 _SECONDS = 10.0
 
 
 class Fewest(NamedTuple):
-    """The fewest tools that the plans state to finish all parts together.
+    """The fewest tools that the plans state to finish all parts together."""
 
-    Attributes
-    ----------
-    tools : tuple of str
-        Ids, the one that finishes most parts alone first.
-    at_least : int
-        No fewer finish all of the parts, however they would share faces: a proved lower bound.
-    """
-
+    #: Ids, the one that finishes most parts alone first.
     tools: tuple[str, ...]
+    #: No fewer finish all of the parts, however they would share faces: a proved lower bound.
     at_least: int
 
     @property
@@ -44,12 +38,7 @@ def fewest(parts: Sequence[PartTools]) -> Fewest:
     A set counts as finishing a part if the plan says so: a tool that does so alone, the tools of its process or of its least set,
     or tools of which one reaches each face whole. Tools that share a face in some other way might do as well; the plans do not
     state it, so the lower bound allows for it: whatever finishes a part has on each face a tool that reaches it whole, or two
-    that reach some of it.
-
-    Parameters
-    ----------
-    parts : sequence of PartTools
-        Those that are not finished are left out.
+    that reach some of it. Parts that are not finished are left out.
 
     Examples
     --------

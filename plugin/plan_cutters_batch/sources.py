@@ -1,38 +1,45 @@
-"""Where parts come from: files, folders, globs and lists, here or at a URL. Names are made from paths alone, so they stay."""
+"""Where parts come from: files, folders, globs, lists and manifests, here or at a URL. Names are made from paths, so they stay.
 
+A manifest has the parts of a batch in a TOML or CSV file, with options of each; or it is a plain list of files, one a line.
+"""
+
+import csv
+import io
+import itertools
+import posixpath
+import re
+import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import PurePosixPath
 from typing import Any
 
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
 from plan_cutters.errors import PlanError
-from plan_cutters.files.folder import cause, file_system
+from plan_cutters.files.folder import cause, file_system, read
 from plan_cutters_batch.job import UNREADABLE, USAGE, Fault
 
 #: What files of parts are called.
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MANIFESTS = (".toml", ".csv", ".txt")
 _MAGIC = frozenset("*?[")
+#: Most bytes of a manifest: a hundred thousand parts with long options.
+_LARGEST = 64 << 20
+_TABLE = re.compile(r"^[ \t]*\[\[?[ \t]*([\w.-]+)[ \t]*\]\]?", re.MULTILINE)
+Value = bool | int | float | str | list[bool | int | float | str]
 
 
 @dataclass(frozen=True)
 class Source:
-    """A part as it was requested.
-
-    Attributes
-    ----------
-    name : str
-    file : str
-        Path or URL.
-    options : dict
-        Of this part alone, as the manifest has them.
-    place : str
-        Where that is said, for errors: `parts.csv:7`.
-    """
+    """A part as it was requested: its name, and its path or URL."""
 
     name: str
     file: str
+    #: Of this part alone, as the manifest has them.
     options: dict[str, Any] = field(default_factory=dict)
+    #: Where that is said, for errors: `parts.csv:7`.
     place: str = ""
 
 
@@ -63,21 +70,21 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]
     fs, path = file_system(word)
     try:
         if _MAGIC & set(word) and not fs.exists(path):
-            base = PurePosixPath(*_plain(path)).as_posix()
-            return _listed(
-                word,
-                base,
-                [each for each in sorted(fs.glob(path)) if _is_part(each)],
-                fs,
-                "no STEP, IGES or BREP file matches it",
-            )
+            # The folders of a glob before the first that is none.
+            plain = itertools.takewhile(lambda part: not _MAGIC & set(part), PurePosixPath(path).parts[:-1])
+            files = [each for each in sorted(fs.glob(path)) if _is_part(each)]
+            return _listed(word, PurePosixPath(*plain).as_posix(), files, fs, "no STEP, IGES or BREP file matches it")
         if word.lower().endswith(MANIFESTS):
-            return _read(word, manifest)
+            try:
+                return manifest(word)
+            except PlanError as error:
+                # A mistake of the command, not a part that cannot be read.
+                return [Fault(word, word, str(error))]
         if fs.isdir(path):
             base = path.rstrip("/")
-            own = _own(fs, out)
+            there, own = file_system(out)
             files = [each for each in sorted(fs.find(path)) if _is_part(each) and not _ours(each[len(base) :])]
-            files = [each for each in files if own is None or not each.startswith(f"{own}/")]
+            files = [each for each in files if type(there) is not type(fs) or not each.startswith(f"{own.rstrip('/')}/")]
             return _listed(word, base, files, fs, "the folder holds no STEP, IGES or BREP file")
         if not fs.exists(path):
             raise PlanError(f"no such file{', folder or bucket' if '://' in word else ' or folder'}", file=word)
@@ -88,31 +95,12 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]
     return [Source(PurePosixPath(path).stem, word)]
 
 
-def _read(word: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> Sequence[Source | Fault]:
-    """The parts of a manifest or list; one that is wrong is a mistake of the command, not a part that cannot be read."""
-    try:
-        return manifest(word)
-    except PlanError as error:
-        return [Fault(word, word, str(error))]
-
-
 def _listed(word: str, base: str, files: Sequence[str], fs: Any, nothing: str) -> list[Source | Fault]:
     if not files:
         return [Fault(word, word, f"{word}: {nothing}")]
+    stems = [PurePosixPath(file[len(base) :].lstrip("/")).with_suffix("").as_posix() for file in files]
     whole = "://" in word
-    return [Source(_stem(file[len(base) :].lstrip("/")), fs.unstrip_protocol(file) if whole else file) for file in files]
-
-
-def _stem(path: str) -> str:
-    return PurePosixPath(path).with_suffix("").as_posix()
-
-
-def _plain(path: str) -> Iterator[str]:
-    """The folders of a glob before the first that is none."""
-    for part in PurePosixPath(path).parts[:-1]:
-        if _MAGIC & set(part):
-            return
-        yield part
+    return [Source(stem, fs.unstrip_protocol(file) if whole else file) for stem, file in zip(stems, files, strict=True)]
 
 
 def _is_part(path: str) -> bool:
@@ -122,11 +110,6 @@ def _is_part(path: str) -> bool:
 def _ours(path: str) -> bool:
     """Whether a file lies in the folder of a plan, or in a hidden one."""
     return any(part.startswith(".") or part.endswith("-plan") for part in PurePosixPath(path).parts[:-1])
-
-
-def _own(fs: Any, out: str) -> str | None:
-    there, path = file_system(out)
-    return path.rstrip("/") if type(there) is type(fs) else None
 
 
 def _named_once(sources: Sequence[Source | Fault]) -> list[Source | Fault]:
@@ -152,14 +135,171 @@ def _unusable(source: Source, same: Sequence[str]) -> str:
     """Why a name cannot be a folder's; empty where it can."""
     if len(same) > 1:
         others = [file for file in same if file != source.file] or [source.file]
-        more = f" and {len(others) - 1} more" if len(others) > 1 else ""
-        return (
-            f"has the name {source.name!r}, as {others[0]}{more}: none of them is planned; rename one, or give names in "
-            "a manifest"
-        )
+        other = others[0] + (f" and {len(others) - 1} more" if len(others) > 1 else "")
+        return f"has the name {source.name!r}, as {other}: none of them is planned; rename one, or give names in a manifest"
     parts = source.name.split("/")
     if any(part in ("", ".", "..") or part != part.strip() for part in parts) or not source.name.isprintable():
         return f"the name {source.name!r} cannot be a folder's; give another in a manifest"
     if "\\" in source.name or any(part.endswith("-plan") for part in parts[:-1]) or parts[0].startswith("."):
         return f"the name {source.name!r} would lie in the folder of another plan, or in a hidden one; give another"
     return ""
+
+
+class Entry(BaseModel):
+    """A part: its file, its name, and beside them options that are called as on the command line."""
+
+    model_config = ConfigDict(extra="allow", frozen=True, strict=True)
+    __pydantic_extra__: dict[str, Value] = Field(init=False)
+
+    file: str = Field(min_length=1)
+    name: str | None = Field(default=None, min_length=1)
+
+
+class Whole(BaseModel):
+    """The tables of a manifest: `[options]` for all of its parts, and a `[[part]]` for each."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    options: dict[str, Value] = {}
+    part: list[dict[str, Any]] = Field(min_length=1)
+
+
+def manifest(file: str, known: Sequence[str]) -> list[Source | Fault]:
+    """The parts of a manifest (path or URL; by its suffix TOML, CSV, or a list of files), and what is wrong with some of them.
+
+    `known`: options that a part may have. A PlanError where it cannot be read, or is no manifest: none of its parts is known.
+    """
+    data = read(file)
+    if len(data) > _LARGEST:
+        raise PlanError(f"is larger than {_LARGEST >> 20} MB: divide it", file=file)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise PlanError(f"is no text in UTF-8 (byte {error.start}): save it so", file=file) from None
+    kind = PurePosixPath(file.lower()).suffix
+    entries = _toml(file, text, known) if kind == ".toml" else (_csv if kind == ".csv" else _list)(file, text)
+    parts = [_part(file, line, fields, known) for line, fields in entries]
+    if not parts:
+        raise PlanError("names no part", file=file)
+    return parts
+
+
+def _part(file: str, line: int, fields: dict[str, Any] | str, known: Sequence[str]) -> Source | Fault:
+    place = f"{file}:{line}"
+    if isinstance(fields, str):
+        return Fault(place, "", f"{place}: {fields}", USAGE)
+    shown = str(fields.get("name") or fields.get("file") or place)
+    try:
+        entry = Entry.model_validate(fields)
+    except ValidationError as error:
+        return Fault(f"{shown} (line {line})", str(fields.get("file", "")), f"{place}: {_why(error)}", USAGE)
+    path = entry.file if "://" in entry.file or posixpath.isabs(entry.file) else "".join(file.rpartition("/")[:2]) + entry.file
+    named = PurePosixPath(entry.file)
+    inside = "://" not in entry.file and not named.is_absolute() and ".." not in named.parts
+    # Without a name, its path from the manifest without the suffix, or the file's name alone.
+    name = entry.name or (named.with_suffix("").as_posix() if inside else named.stem)
+    options = dict(entry.model_extra or {})
+    for word in options:
+        if why := _unknown(word, known):
+            there = getattr(line, "fields", {}).get(word, line)
+            return Fault(name, path, f"{file}:{there}: {why}", USAGE)
+    try:
+        fs, there = file_system(path)
+        # Elsewhere this would be a question over the network for each part: there it is asked when the part is read.
+        if type(fs).__name__ == "LocalFileSystem" and not fs.isfile(there):
+            return Fault(name, path, f"{place}: no such file: {path}", UNREADABLE)
+    except PlanError as error:
+        return Fault(name, path, f"{place}: {error}", UNREADABLE)
+    return Source(name, path, options, place)
+
+
+def _unknown(word: str, known: Sequence[str]) -> str:
+    """Why a word is no option of a part; empty where it is one."""
+    if word.replace("_", "-") in known:
+        return ""
+    near = get_close_matches(word.replace("_", "-"), known, 1)
+    return f"no option of a part is called {word}{f'; {near[0]}?' if near else ''}"
+
+
+def _toml(file: str, text: str, known: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+    try:
+        whole = Whole.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise PlanError(f"is no TOML: {error}", file=file) from None
+    except ValidationError as error:
+        first = str(error.errors()[0]["loc"][0]) if error.errors()[0]["loc"] else ""
+        raise PlanError(_why(error), file=f"{file}:{_line(text, first)}") from None
+    for word in whole.options:
+        if why := _unknown(word, known):
+            raise PlanError(why, file=f"{file}:{_line(text, word)}")
+    starts = [m for m in _TABLE.finditer(text) if m[1] == "part"]
+    line, seen = 1, 0
+    for number, fields in enumerate(whole.part):
+        if len(starts) == len(whole.part):
+            begin = starts[number].start()
+            line, seen = line + text.count("\n", seen, begin), begin
+            end = next((each.start() for each in starts[number + 1 : number + 2]), len(text))
+            at = _Lines(line)
+            at.fields = {}
+            for name in fields:
+                key = re.compile(rf"^[ \t]*[\"']?{re.escape(name)}[\"']?[ \t]*=", re.MULTILINE).search(text, begin, end)
+                if key:
+                    at.fields[name] = line + text.count("\n", begin, key.start())
+            yield at, {**whole.options, **fields}
+        else:
+            yield line, {**whole.options, **fields}
+
+
+class _Lines(int):
+    """The line of a part, and those of its fields."""
+
+    fields: dict[str, int]
+
+
+def _line(text: str, word: str) -> int:
+    """The line of a table or a key, from 1."""
+    match = re.compile(rf"^[ \t]*\[{{0,2}}[ \t]*[\"']?{re.escape(word)}\b", re.MULTILINE).search(text)
+    return text.count("\n", 0, match.start()) + 1 if match else 1
+
+
+def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
+    head = text.partition("\n")[0]
+    # Where a comma parts decimals, tables are written with semicolons.
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in head and "," not in head else ",", strict=True)
+    names: list[str] = []
+    try:
+        for row in rows:
+            cells = [cell.strip() for cell in row]
+            if not any(cells) or cells[0].startswith("#"):
+                continue
+            if not names:
+                names = cells
+                if "file" not in names or len(set(names)) < len(names) or "" in names:
+                    raise PlanError(
+                        "its first line must name the columns, each once, with `file` among them", file=f"{file}:{rows.line_num}"
+                    )
+                continue
+            if len(cells) > len(names):
+                yield (rows.line_num, f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes")
+                continue
+            fields: dict[str, Any] = {name: cell for name, cell in zip(names, cells, strict=False) if cell}
+            for name, cell in fields.items():
+                if name not in ("file", "name") and "|" in cell:
+                    fields[name] = [each.strip() for each in cell.split("|")]
+            yield rows.line_num, fields
+    except csv.Error as error:
+        raise PlanError(f"is no CSV: {error}", file=f"{file}:{rows.line_num}") from None
+
+
+def _list(file: str, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
+    for number, line in enumerate(text.splitlines(), 1):
+        if (word := line.strip()) and not word.startswith("#"):
+            yield number, {"file": word}
+
+
+def _why(error: ValidationError) -> str:
+    """One line of what is wrong with a table."""
+    first = error.errors()[0]
+    place = ".".join(str(each) for each in first["loc"] if not isinstance(each, int) and each not in ("bool", "int", "str"))
+    word = "is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
+    return f"{place}: {word}" if place else word

@@ -30,18 +30,7 @@ _MARKER_BYTES = 16 << 20
 
 
 class Store(Folder):
-    """The output of a batch.
-
-    Parameters
-    ----------
-    url : str
-        Path or URL of its folder.
-
-    Raises
-    ------
-    PlanError
-        There is no such file system.
-    """
+    """The output of a batch, by the path or URL of its folder; a PlanError where there is no such file system."""
 
     def __init__(self, url: str) -> None:
         super().__init__(url)
@@ -51,12 +40,8 @@ class Store(Folder):
     def begin(self) -> str:
         """Make sure that files can be written, and drop what a run that was killed left unfinished; a token for workers.
 
-        On this machine nobody else can begin there until `end`. Called again, it gives the same token.
-
-        Raises
-        ------
-        PlanError
-            Nothing can be written there, or another run writes there.
+        On this machine nobody else can begin there until `end`. Called again, it gives the same token. A PlanError where nothing
+        can be written, or another run writes there.
         """
         if not self._token:
             if self.local:
@@ -88,13 +73,7 @@ class Store(Folder):
         return self._content(f"{_STAGING}/token") == token.encode()
 
     def put(self, name: str, data: bytes) -> None:
-        """Write a file, whole or not at all.
-
-        Raises
-        ------
-        PlanError
-            It cannot be written.
-        """
+        """Write a file, whole or not at all; a PlanError where it cannot be written."""
         try:
             super().put(name, data)
         except Exception as error:
@@ -121,10 +100,7 @@ class Store(Folder):
     def publish(self, folder: str, files: Mapping[str, Path | bytes], row: PartRow) -> None:
         """Put the files of a part into its folder, in place of all that is there, and mark it as done.
 
-        Raises
-        ------
-        PlanError
-            They cannot be written: the part is not done.
+        A PlanError where they cannot be written: the part is not done.
         """
         try:
             options = {"row": row.model_dump(mode="json"), "sha256": {name: checksum_of(what) for name, what in files.items()}}

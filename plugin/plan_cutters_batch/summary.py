@@ -4,13 +4,14 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from plan_cutters.cases import case
+from plan_cutters.cases.case import Case
 from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch.part_tools import PartTools
-from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.row import PartRow, PartTools
 from plan_cutters_batch.shop import fewest
 
 FORMAT_VERSION = 1
@@ -20,12 +21,11 @@ NAMED = 100
 #: What came of a part, from worst to best.
 Outcome = Literal["failed", "not_finished", "not_sure", "finished"]
 #: The same in words for people.
-OUTCOMES: dict[Outcome, str] = {
-    "failed": "failed",
-    "not_finished": "not finished",
-    "not_sure": "not sure",
-    "finished": "finished",
-}
+OUTCOMES: dict[Outcome, str] = {word: word.replace("_", " ") for word in get_args(Outcome)}
+#: What is not sure is neither reached nor known not to be.
+_AS_CASES: dict[Outcome, case.Outcome] = {
+    "failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"
+}  # fmt: skip
 #: By the exit code of a single plan; every other code is a failure.
 _OF_CODES: dict[int, Outcome] = {0: "finished", 1: "not_finished", 4: "not_sure"}
 
@@ -73,6 +73,21 @@ def fault(row: PartRow) -> str:
 def cause(row: PartRow) -> str:
     """Why a part failed: never empty."""
     return row.error or f"no cause was reported (exit code {row.code})"
+
+
+def part_case(row: PartRow) -> Case:
+    """The case of a part: an error without an answer or where the answer is not sure, a failure where it is not finished.
+
+    >>> part_case(PartRow(name="a", file="in/a.step", status="failed", code=124, error="not done within 9 s")).outcome
+    'error'
+    """
+    result = outcome(row)
+    if result == "finished":
+        return Case(row.file, row.name, seconds=row.seconds)
+    text = cause(row) if result == "failed" else row.verdict
+    kind = f"exit_code_{row.code}" if result == "failed" else row.reason or result
+    details = row.error or "" if result != "failed" else ""
+    return Case(row.file, row.name, _AS_CASES[result], kind, text, details, row.seconds)
 
 
 class _Entry(BaseModel):
@@ -203,19 +218,14 @@ def summary_of(
         title=title,
         code=max(map(code_of, rows), default=0),
         parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **_counts(Counter(outcomes))),
-        by_cutter=[
-            CutterParts(cutter=name, **_counts(result))
-            for name, result in sorted(cutters.items(), key=lambda each: (-each[1].total(), each[0]))
-        ],
-        by_reason=[
-            ReasonParts(reason=code, parts=parts) for code, parts in sorted(reasons.items(), key=lambda each: (-each[1], each[0]))
-        ],
+        by_cutter=[CutterParts(cutter=name, **_counts(cutters[name]))
+                   for name in sorted(cutters, key=lambda name: (-cutters[name].total(), name))],
+        by_reason=[ReasonParts(reason=code, parts=reasons[code])
+                   for code in sorted(reasons, key=lambda code: (-reasons[code], code))],
         shop=_shop(rows, outcomes),
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
-        files=dict(files),
-        versions=dict(versions),
-        run=run,
-    )
+        files=dict(files), versions=dict(versions), run=run,
+    )  # fmt: skip
 
 
 def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
@@ -230,24 +240,16 @@ def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
     unfinished = [row for row, result in zip(rows, outcomes, strict=True) if result == "not_finished"]
     return ShopTools(
         tools=[ToolParts(tool=names[tool], id=tool, judged=judged[tool], alone=alone[tool], used=used[tool]) for tool in order],
-        least=None
-        if not best.tools
-        else LeastTools(
-            tools=[names[tool] for tool in best.tools],
-            parts=sum(part.finished_by(best.tools) for part in parts),
-            at_least=best.at_least,
-            proven=best.proven,
-        ),
+        least=None if not best.tools else
+        LeastTools(tools=[names[tool] for tool in best.tools], parts=sum(part.finished_by(best.tools) for part in parts),
+                   at_least=best.at_least, proven=best.proven),
         never_used=[names[tool] for tool in order if not used[tool]],
         unfinished=[
-            UnfinishedPart(
-                name=row.name, share=row.tools.share if row.tools else None, needs=list(row.tools.needs) if row.tools else []
-            )
-            for row in unfinished[:NAMED]
+            UnfinishedPart(name=row.name, share=tools.share if tools else None, needs=list(tools.needs) if tools else [])
+            for row, tools in ((row, row.tools) for row in unfinished[:NAMED])
         ],
-        unfinished_count=len(unfinished),
-        not_known=len(rows) - len(parts),
-    )
+        unfinished_count=len(unfinished), not_known=len(rows) - len(parts),
+    )  # fmt: skip
 
 
 def _names(parts: Sequence[PartTools]) -> dict[str, str]:

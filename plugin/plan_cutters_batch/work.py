@@ -10,19 +10,15 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from plan_cutters.errors import PlanError
 from plan_cutters_base.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
 from plan_cutters_base.workers.child import Child, can_supervise, compiler
 from plan_cutters_base.workers.supervise import WRITING
 from plan_cutters_batch import keys, store
-from plan_cutters_batch.content import Content, content
-from plan_cutters_batch.job import UNREADABLE, USAGE, Handed
-from plan_cutters_batch.row import PartRow
-
-if TYPE_CHECKING:
-    from plan_cutters.plan_file.model import Plan
+from plan_cutters_batch.job import UNREADABLE, USAGE, Content, Handed, content
+from plan_cutters_batch.row import PartRow, row_of
 
 PLAN = "plan.json"
 #: Exit codes with which a plan is there.
@@ -35,44 +31,26 @@ _LONGEST = 600
 
 @dataclass(frozen=True)
 class Task:
-    """All that a worker needs for a part.
-
-    Attributes
-    ----------
-    name, file : str
-        As of the `Job`.
-    part : bytes, optional
-        The pickled part, where it is no file.
-    handed : Handed
-    words : tuple of str
-        Of the command line, for what is no option of the plan.
-    settings : str
-        `keys.settings_key`.
-    store : str, optional
-        URL of the output; None: the files come back with the row.
-    token : str
-        Lies in the output: a worker that does not see it writes elsewhere.
-    force : bool
-    timeout : float, optional
-        Seconds for the part.
-    versions : mapping
-        Of where the batch was begun.
-    source : str
-        The file as workers find it, in whatever folder they run.
-    """
+    """All that a worker needs for a part: what is not said here is as of the `Job`."""
 
     name: str
     file: str
     part: bytes | None
     handed: Handed
+    #: Of the command line, for what is no option of the plan.
     words: tuple[str, ...]
+    #: Their `keys.settings_key`.
     settings: str
+    #: URL of the output; None: the files come back with the row.
     store: str | None
+    #: Lies in the output: a worker that does not see it writes elsewhere.
     token: str
     force: bool
+    #: Seconds for the part.
     timeout: float | None
+    #: Of where the batch was begun.
     versions: Mapping[str, str]
-
+    #: The file as workers find it, in whatever folder they run.
     source: str = ""
 
     @property
@@ -83,18 +61,11 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """An outcome holds the row of a part, and its files where the worker could not write them.
-
-    Attributes
-    ----------
-    row : PartRow
-    files : mapping
-    unfit : str
-        Address of the worker where no part can be planned, whatever it is: `row.error` says why. The part is for another one.
-    """
+    """An outcome holds the row of a part, and its files where the worker could not write them."""
 
     row: PartRow
     files: Mapping[str, bytes]
+    #: Address of the worker where no part can be planned, whatever it is: `row.error` says why. The part is for another one.
     unfit: str = ""
 
 
@@ -103,12 +74,9 @@ def work(task: Task) -> Outcome:
     began = time.monotonic()
 
     def failed(why: str, code: int, key: str = "") -> Outcome:
-        line = " ".join(why.split())[:_LONGEST]
+        line, seconds = " ".join(why.split())[:_LONGEST], time.monotonic() - began
         return Outcome(
-            PartRow(
-                name=task.name, file=task.file, key=key, status="failed", code=code, error=line, seconds=time.monotonic() - began
-            ),
-            {},
+            PartRow(name=task.name, file=task.file, key=key, status="failed", code=code, error=line, seconds=seconds), {}
         )
 
     def unfit(why: str) -> Outcome:
@@ -132,14 +100,18 @@ def work(task: Task) -> Outcome:
         key = keys.key(content.key, task.settings)
         if output is not None and not task.force and (row := cached(output, task.folder, key, task.name, task.file)):
             return Outcome(row, {})
-        with tempfile.TemporaryDirectory(prefix="plan-", dir=_scratch(), ignore_cleanup_errors=True) as name:
+        # The worker's folder, which dask clears when the worker was killed.
+        scratch = getattr(_worker(), "local_directory", None)
+        with tempfile.TemporaryDirectory(prefix="plan-", dir=scratch, ignore_cleanup_errors=True) as name:
             folder = Path(name)
             code, line = planned(task, content, folder)
             late = code == TIMED_OUT and (folder / "out" / PLAN).is_file()
             if late:
                 line = _late(task, folder / "out")
             made = files_of(folder / "out")
-            if PLAN not in made or not (late or code in _PLANNED) or (late and _is_done(output, task, key)):
+            # A partial plan does not take the place of a whole one of an earlier run with the same key.
+            done = late and output is not None and cached(output, task.folder, key, task.name, task.file) is not None
+            if PLAN not in made or not (late or code in _PLANNED) or done:
                 return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
             row = _row(task, made[PLAN].read_bytes(), key, code, time.monotonic() - began)
             if late:
@@ -157,13 +129,7 @@ def work(task: Task) -> Outcome:
 
 
 def content_of(task: Task) -> Content:
-    """Of the part of a task.
-
-    Raises
-    ------
-    PlanError
-        It cannot be read.
-    """
+    """Of the part of a task; a PlanError where it cannot be read."""
     return Content(task.part) if task.part else content(task.source or task.file)
 
 
@@ -178,10 +144,8 @@ def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> 
 def _unfit(versions: Mapping[str, str]) -> str:
     """Why this worker cannot plan as the others do; empty where it can."""
     for name, here in keys.versions().items():
-        if name in versions and versions[name] != here:
-            return (
-                f"{_here()}: {name} {here} on this worker, {versions[name]} where the batch was begun: install the same on both"
-            )
+        if (there := versions.get(name, here)) != here:
+            return f"{_here()}: {name} {here} on this worker, {there} where the batch was begun: install the same on both"
     return _ready()
 
 
@@ -229,12 +193,6 @@ def _worker() -> Any:
         return get_worker()
     except (ImportError, ValueError):
         return None
-
-
-def _scratch() -> str | None:
-    """The worker's folder, which dask clears when the worker was killed."""
-    worker = _worker()
-    return None if worker is None else str(worker.local_directory)
 
 
 def _wanted() -> Callable[[], bool]:
@@ -313,32 +271,20 @@ def _late(task: Task, out: Path) -> str:
     return f"{_out_of_time(task)}. Late: the plan so far is there. {text}".rstrip()
 
 
-def _is_done(output: store.Store | None, task: Task, key: str) -> bool:
-    """Whether the whole plan of an earlier run with the same key stands in the output: a partial one does not take its place."""
-    return output is not None and cached(output, task.folder, key, task.name, task.file) is not None
-
-
-def coarser(plan: "Plan") -> str | None:
-    """Say how a part was sampled more coarsely than requested, for that would have taken too many samples; else None."""
-    noted = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
-    return None if noted is None else f"{noted[:1].lower()}{noted[1:].removesuffix('.')}"
-
-
 def files_of(folder: Path) -> dict[str, Path]:
     """Files of a plan, the plan itself last."""
     files = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
-    return {name: path for name, path in files.items() if name != PLAN} | {
-        name: path for name, path in files.items() if name == PLAN
-    }
+    return dict(sorted(files.items(), key=lambda each: each[0] == PLAN))
 
 
 def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> PartRow:
     """The line of the table that a plan makes; what could not be written beside it is said there."""
     from plan_cutters.plan_file.load import plan_of
-    from plan_cutters_batch.rows_of_plans import row_of
 
     plan = plan_of(content, PLAN)
     row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
-    row = row.model_copy(update={"coarser": coarser(plan)})
+    # Sampled more coarsely than requested: that would have taken too many samples.
+    noted = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
+    row = row.model_copy(update={"coarser": None if noted is None else f"{noted[:1].lower()}{noted[1:].removesuffix('.')}"})
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

@@ -1,16 +1,14 @@
 """Find the parts that changed in a git repository, and compare their plans."""
 
-import hashlib
-import json
 import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
@@ -18,19 +16,28 @@ from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import PlanRequest, Reported, takes
-from plan_cutters.command.terminal import error, hand_out, say
+from plan_cutters.command.terminal import error, say
 from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.pictures import with_pictures
 from plan_cutters.files.temporary import require_temporary
 from plan_cutters_base.whole import whole
-from plan_cutters_ci.annotations import KINDS, annotations, requested
-from plan_cutters_ci.changed_row import RULES, Row, row_cases
-from plan_cutters_ci.repository import Changed, changed, content, publish
+from plan_cutters_ci.changed_report import (
+    KINDS,
+    RULES,
+    Row,
+    annotations,
+    artifacts,
+    hand_on,
+    links_of,
+    requested,
+    row_cases,
+    summary,
+)
+from plan_cutters_ci.repository import Changed, changed, content
 
 if TYPE_CHECKING:
-    from plan_cutters_batch.content import Content
-    from plan_cutters_batch.job import Handed, Settings
+    from plan_cutters_batch.job import Content, Handed, Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -43,29 +50,16 @@ _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule
 
 @dataclass(frozen=True)
 class PartRequest:
-    """How the parts are planned: the options after `--`, read once, so that all parts have the same tools.
-
-    Attributes
-    ----------
-    settings : Settings
-    handed : Handed
-    words : tuple of str
-        Of the command line, for what is no option of the plan.
-    """
+    """How the parts are planned: the options after `--`, read once, so that all parts have the same tools."""
 
     settings: "Settings"
     handed: "Handed"
+    #: Of the command line, for what is no option of the plan.
     words: tuple[str, ...]
 
     @classmethod
     def of(cls, words: Sequence[str]) -> "PartRequest":
-        """Read the options, and every file that they name.
-
-        Raises
-        ------
-        CadIoError, OptionError, PlanError
-            An option has no meaning, or a file cannot be used.
-        """
+        """Read the options, and every file that they name; an error where an option has no meaning or a file cannot be used."""
         from plan_cutters.command.cli import command as plan
         from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
         from plan_cutters_base.user_files import noted
@@ -120,11 +114,8 @@ class ChangedRequest(Reported):
     ),
 )
 @click.argument("plan_options", nargs=-1, metavar="[-- OPTION...]")
-@_commits(
-    "--base",
-    metavar="COMMIT",
-    help="Compare with where HEAD began on this.  [default: the pull request's base, of GITHUB_BASE_REF]",
-)
+@_commits("--base", metavar="COMMIT",
+          help="Compare with where HEAD began on this.  [default: the pull request's base, of GITHUB_BASE_REF]")  # fmt: skip
 @_commits("--head", default="HEAD", metavar="COMMIT", help="The commit to look at.  [default: HEAD]")
 @_commits("--staged", is_flag=True, help="Look at what is staged for the next commit, in place of a commit.")
 @_rules(
@@ -134,19 +125,13 @@ class ChangedRequest(Reported):
     help="lost: a face or cutter is lost, or a part cannot be planned; unreachable: or no cutter reaches some face whole; "
     "not-comparable: or plans are not comparable; none: never.  [default: lost]",
 )
-@_output(
-    "-o",
-    "--out",
-    type=Folder("DIR"),
-    default="plan-cutters-changed",
-    help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
-)
+@_output("-o", "--out", type=Folder("DIR"), default="plan-cutters-changed",
+         help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]")  # fmt: skip
 @_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
 @_output(
-    "--annotations",
-    type=click.Choice(KINDS),
+    "--annotations", type=click.Choice(KINDS),
     help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
-)
+)  # fmt: skip
 @_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
 @options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."},
          sarif={})  # fmt: skip
@@ -176,12 +161,12 @@ def command(request: ChangedRequest) -> int:
     links: dict[Path, str] = {}
     if request.pictures_branch and rows:
         try:
-            links = _links(rows, request.pictures_branch)
+            links = links_of(rows, request.pictures_branch)
         except PlanError as fault:
             error(f"{_SELF}: pictures are in {out} alone: {fault}")
     failing = [row for row in rows if row.breaks(request.fail_on)]
-    text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
-    _hand_on(rows, out, text, job, failing)
+    text, job = (summary(rows, request.fail_on, failing, links, began, at) for at in ("", artifacts()))
+    hand_on(rows, out, text, job, failing)
     cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
     if files is not None:
         files.write(_SELF, [case for _, each in cases for case in each])
@@ -198,12 +183,10 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     if part.new is None or request is None:
         return Row(part)
     from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_batch.content import content as all_of
+    from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
-    from plan_cutters_ci.pictures import picture_of
-    from plan_cutters_ci.plans import compare
-    from plan_cutters_ci.review import PAGE, Side, page
-    from plan_cutters_ci.states import unreachable
+    from plan_cutters_ci.plans import compare, unreachable
+    from plan_cutters_ci.review import PAGE, Side, page, picture_of
 
     pages: dict[str, Path] = {}
     why: dict[str, str] = {}
@@ -232,28 +215,17 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
             sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
             temporary.write_bytes(page(difference, *sides))
     return Row(
-        part,
-        pages.get("before"),
-        pages.get("after"),
-        difference=difference,
-        beside=side_page if (out / side_page).is_file() else None,
-        unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
-        failed=why.get("after", ""),
-        unread=why.get("before", ""),
-    )
+        part, pages.get("before"), pages.get("after"), difference, side_page if (out / side_page).is_file() else None,
+        tuple(unreachable(plans["after"])) if "after" in plans else (), why.get("after", ""), why.get("before", ""),
+    )  # fmt: skip
 
 
 def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
-    """The folder of a plan of a part in the cache, planned unless it is there.
+    """The folder of a plan of a part in the cache, planned unless it is there; a PlanError where it cannot be planned."""
+    from plan_cutters_batch.rows_of_plans import row_of
 
-    Raises
-    ------
-    PlanError
-        It cannot be planned.
-    """
     from plan_cutters.plan_file.load import load_plan
     from plan_cutters_batch import keys, work
-    from plan_cutters_batch.rows_of_plans import row_of
     from plan_cutters_batch.store import Store
 
     name = Path(path).name
@@ -273,104 +245,6 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
         plan = load_plan(made[work.PLAN])
         store.publish(folder, made, row_of(plan, name=name, file=path, code=code, key=key, folder=folder, seconds=0.0))
     return cache / folder
-
-
-def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
-    """Addresses of the pictures of folders, once they are pushed."""
-    data = {
-        folder: (folder / "review.png").read_bytes()
-        for row in rows
-        for folder in (row.before, row.after)
-        if folder is not None and (folder / "review.png").is_file()
-    }
-    names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
-    made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
-    where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"
-    return {folder: f"{where}/{name}" for folder, name in names.items()}
-
-
-def _artifacts() -> str:
-    """Address of the files that the job keeps; empty where this is no job."""
-    names = ("GITHUB_SERVER_URL", "GITHUB_REPOSITORY", "GITHUB_RUN_ID")
-    server, repository, run_id = (os.environ.get(name, "") for name in names)
-    return f"{server}/{repository}/actions/runs/{run_id}#artifacts" if server and repository and run_id else ""
-
-
-def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str) -> str:
-    """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
-    if not rows:
-        return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
-    from plan_cutters.domain.figures import count, listed
-    from plan_cutters_ci.markdown import escaped, page_link, section, table
-
-    lines = ["## plan-cutters", ""]
-    many = count(len(rows), "part")
-    text = f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
-    lines += [f"**{text}** by the rule `{rule}`, since {began[:12]}."]
-    lines += table(("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows))
-    for row in rows:
-        if row.difference is not None and not row.difference.same:
-            lines += ["", *section(row.difference)]
-        if row.beside is not None:
-            lines += ["", page_link(row.beside.as_posix(), artifacts)]
-        if row.unreachable:
-            lines += ["", f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}."]
-        shown = [(side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links]
-        lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
-    if not links:
-        lines += [
-            "",
-            f"Pictures and review pages are {'in the artifact of this job' if artifacts else 'in the folder of this summary'}.",
-        ]
-    return "\n".join(lines) + "\n"
-
-
-def _line(row: Row, fails: bool) -> tuple[str, ...]:
-    from plan_cutters_ci.wording import mark_of
-
-    text = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
-    return ("fails" if fails else "", row.part.name, row.part.how, text, *(_bar(folder) for folder in (row.before, row.after)))
-
-
-def _bar(folder: Path | None) -> str:
-    """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
-    from plan_cutters.domain.figures import percent
-    from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_ci.states import reached
-
-    if folder is None:
-        return "-"
-    share = max((reached(cutter) for cutter in load_plan(folder / PLAN).cutters), default=0.0)
-    # Full only where all is reached.
-    full = 10 if share == 1.0 else min(9, int(10 * share))
-    return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"
-
-
-def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Sequence[Row]) -> None:
-    """The summary and the facts, for people, for the job and for its next steps."""
-    out.mkdir(parents=True, exist_ok=True)
-    facts = {"format": "plan-cutters-changed", "format_version": 1, "parts": list(_facts(rows, failing))}
-    (out / "summary.md").write_text(text, encoding="utf-8")
-    (out / "changed.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
-    hand_out(text)
-    outputs = {"parts": len(rows), "lost": sum(row.breaks("lost") for row in rows), "failing": len(failing), "folder": out}
-    assignments = "".join(f"{name}={value}\n" for name, value in outputs.items())
-    for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", assignments)):
-        if os.environ.get(variable):
-            with open(os.environ[variable], "a", encoding="utf-8") as file:
-                file.write(what)
-
-
-def _facts(rows: Sequence[Row], failing: Sequence[Row]) -> Iterator[dict[str, Any]]:
-    for row in rows:
-        yield {
-            "part": row.part.name,
-            "how": row.part.how,
-            "fails": row in failing,
-            "error": row.failed or row.unread or None,
-            "unreachable": list(row.unreachable),
-            "difference": None if row.difference is None else json.loads(row.difference.model_dump_json()),
-        }
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -15,6 +15,7 @@ from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder, Words
+from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
@@ -70,24 +71,16 @@ class DiffRequest:
 @_output("--json", "as_json", is_flag=True, help="All differences, as JSON on standard output.")
 @_output("--markdown", "as_markdown", is_flag=True, help="The same tables as Markdown, for the summary of a job.")
 @_output(
-    "-o",
-    "--out",
-    type=Folder("DIR"),
+    "-o", "--out", type=Folder("DIR"),
     help="Both plans side by side, in DIR/review.html; of two folders of many, DIR/NAME/review.html for each pair that differs.",
-)
+)  # fmt: skip
 @_rules(
-    "--slack",
-    type=click.FloatRange(0.0, 100.0),
-    default=0.1,
-    metavar="PERCENT",
+    "--slack", type=click.FloatRange(0.0, 100.0), default=0.1, metavar="PERCENT",
     help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  [default: 0.1]",
-)
-@_rules(
-    "--despite",
-    type=Words("LIST", requested_words, listed=True),
-    default="",
-    help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
-)
+)  # fmt: skip
+@_rules("--despite", type=Words("LIST", requested_words, listed=True), default="",
+        help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, "
+        "fixtures.")  # fmt: skip
 @options("debug", junit={"help": "Also write JUnit XML: a test case for each face and cutter that differs."})
 @takes(DiffRequest)
 def command(request: DiffRequest) -> int:
@@ -96,7 +89,7 @@ def command(request: DiffRequest) -> int:
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
     A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
-    from plan_cutters.errors import OptionError, PlanError
+    from plan_cutters.errors import OptionError
     from plan_cutters_base.whole import refusal
 
     if request.junit is None:  # where there is one, it says so too
@@ -105,8 +98,7 @@ def command(request: DiffRequest) -> int:
                 raise PlanError("no such file or folder", file=path)
     from plan_cutters.cases.case import Case
     from plan_cutters.cases.files import CaseFiles
-    from plan_cutters_ci.cases import COMPARABLE, comparison_cases
-    from plan_cutters_ci.folders import compare_folders
+    from plan_cutters_ci.wording import COMPARABLE, apart, comparison_cases, markdown, verdict
 
     if request.as_json and request.as_markdown:
         raise OptionError("--json and --markdown both write standard output: give one of them")
@@ -132,12 +124,8 @@ def command(request: DiffRequest) -> int:
     if request.as_json:
         hand_out(comparison.model_dump_json(indent=2) + "\n")
     elif request.as_markdown:
-        from plan_cutters_ci.markdown import markdown
-
         hand_out(markdown(comparison, {name: path.as_posix() for name, path in made.items()}))
     else:
-        from plan_cutters_ci.wording import apart, verdict
-
         with paper(120) as console:
             for each in comparison.plans:
                 _show(each, console)
@@ -149,34 +137,87 @@ def command(request: DiffRequest) -> int:
     return NOT_COMPARABLE if not comparison.comparable else LOST if comparison.lost else 0
 
 
-def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[str, Path]:
-    """Write the pages of the pairs that differ; where each is, by the name of its pair.
+def plans_in(folder: Path) -> dict[str, Path]:
+    """Plan files by name: of a file or plan folder one without a name, of a folder of many theirs by their folders below it.
 
-    Raises
-    ------
-    PlanError
-        A page would take the place of a plan's own, or cannot be written.
+    A PlanError where there is none.
     """
-    from plan_cutters.errors import PlanError
     from plan_cutters.plan_file.load import PLAN
+
+    if folder.is_file():
+        return {"": folder}
+    if not folder.exists():
+        raise PlanError("no such file or folder", file=str(folder))
+    if (folder / PLAN).is_file():
+        return {"": folder / PLAN}
+    plans = {path.parent.relative_to(folder).as_posix(): path for path in sorted(folder.rglob(PLAN)) if path.is_file()}
+    # Beside an output, a run that goes on has a folder of its own whose name begins with a dot.
+    plans = {name: path for name, path in plans.items() if not any(part.startswith(".") for part in name.split("/"))}
+    if not plans:
+        raise PlanError(f"holds no {PLAN}: give a plan, its folder, or a folder of many", file=str(folder))
+    return plans
+
+
+def compare_folders(old: Path, new: Path, *, slack: float, despite: Collection[str] = ()) -> "Comparison":
+    """Compare all plans of two folders, or two plans; a plan that cannot be read makes them not comparable.
+
+    A PlanError where a side holds no plan, or one is a single plan and the other is not.
+    """
+    from plan_cutters.plan_file.load import load_plan
+    from plan_cutters_ci.model import Comparison
+    from plan_cutters_ci.plans import compare
+
+    mine, theirs = plans_in(old), plans_in(new)
+    if ("" in mine) != ("" in theirs):
+        many, one = (new, old) if "" in mine else (old, new)
+        raise PlanError(f"is a folder of many plans, and {one} is one plan: give two of one kind", file=str(many))
+    pairs, unread = [], []
+    for name in sorted(set(mine) & set(theirs)):
+        try:
+            was, now = load_plan(mine[name]), load_plan(theirs[name])
+        except PlanError as fault:
+            if not name:
+                raise
+            unread.append(str(fault))
+        else:
+            pairs.append(compare(was, now, name=name or now.part.file or "part", slack=slack, despite=despite))
+    gone, added = sorted(set(mine) - set(theirs)), sorted(set(theirs) - set(mine))
+    return Comparison(
+        old=str(old), new=str(new), slack=slack, plans=pairs, unread=unread, only_old=gone, only_new=added,
+        comparable=bool(pairs) and not unread and all(each.comparable for each in pairs),
+        lost=bool(gone) or any(each.lost for each in pairs),
+        won=bool(added) or any(each.won for each in pairs),
+    )  # fmt: skip
+
+
+def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[str, Path]:
+    """Write a page for each pair of plans that differ, and for two plans whether they differ or not; where each is, by name.
+
+    A PlanError where a page would take the place of a plan's own or cannot be written, or a plan cannot be read any more.
+    """
+    from plan_cutters.plan_file.load import PLAN, load_plan
     from plan_cutters_base.whole import whole
-    from plan_cutters_ci.review import PAGE, pages
+    from plan_cutters_ci.review import PAGE, Side, page, picture_of
 
     made = {}
-    for name, page in pages(old, new, comparison):
+    sides = {folder: plans_in(folder) for folder in (old, new)}
+    for each in comparison.plans:
+        name = "" if "" in sides[old] else each.name
         path = out / name / PAGE
         if (path.parent / PLAN).exists():
             raise PlanError("holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent))
         try:
-            if page is None:
+            if name and each.same:
                 # What an earlier comparison left says what is not so any more.
                 path.unlink(missing_ok=True)
                 continue
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+        plans = [(str(folder / name) if name else str(folder), files[name]) for folder, files in sides.items()]
         with whole(path, PlanError) as temporary:
-            temporary.write_bytes(page)
+            shown = [Side(word, plan := load_plan(file), picture_of(file, plan)) for word, file in plans]
+            temporary.write_bytes(page(each, *shown))
         made[name] = path
     return made
 

@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters_ci.carriers import on_one_carrier, opposed
 from plan_cutters_ci.model import CutterMatch, FaceMatch
-from plan_cutters_ci.neighbours import Surroundings, alone, near
 
 #: Areas that differ by less than this share, and places by less than this share of the part's diagonal, are the same.
 SAME = 1e-5
@@ -32,10 +30,59 @@ _MOST_PAIRS = 1_000_000
 _MOVED = 0.5
 #: A face on the same carrier whose middle is off by less, as a share of the part's diagonal, stays: exports differ by so much.
 _STAYS = 1e-3
+#: Carriers are the same where their points, radii and angles (rad) differ by less than this share of the part's diagonal.
+_SAME_CARRIER = 1e-4
+#: Cosine of the angle between the normals, or the axes, of two faces that may be one face, changed.
+_AGREE = 0.7
+#: Share of the fewer paired neighbours that must correspond where two faces lie on one carrier.
+_SHARED = 0.5
+#: A face whose middle is no farther from a plane, as a share of the part's diagonal, is on no side of it.
+_OFF = 1e-4
 
 Item = TypeVar("Item")
 Pair = tuple[FaceEntry, FaceEntry]
 Matched = list[tuple[FaceEntry, FaceEntry, FaceMatch]]
+
+
+class _Surroundings:
+    """Paired neighbours of faces of both plans, in ids of the new one; `size` of the part, mm."""
+
+    def __init__(self, pairs: Iterable[Pair], size: float) -> None:
+        self._pair: dict[str, Pair] = {b.id: (a, b) for a, b in pairs}
+        self._paired = {a.id: name for name, (a, _) in self._pair.items()}
+        self._size = size
+
+    def of_old(self, face: FaceEntry) -> frozenset[str]:
+        """Which faces the paired neighbours of an old face have become."""
+        return frozenset(self._paired[name] for name in face.neighbours or () if name in self._paired)
+
+    def of_new(self, face: FaceEntry) -> frozenset[str]:
+        """The paired neighbours of a new face."""
+        return frozenset(name for name in face.neighbours or () if name in self._pair)
+
+    def supports(self, a: FaceEntry, b: FaceEntry) -> bool:
+        """Whether two faces on one carrier are rather one face than two: their neighbours agree, or they are near."""
+        mine, theirs = self.of_old(a), self.of_new(b)
+        if len(mine) > 1 and mine == theirs:
+            # Whatever the box of a spline says of where its middle is.
+            return True
+        for name in mine & theirs:
+            # On the same side of each plane that both adjoin: a wall of a pocket and one of a boss are not.
+            sides = [_height(face, plane) for face, plane in zip((a, b), self._pair[name], strict=True)]
+            if min(abs(side) for side in sides) > _OFF * self._size and (sides[0] > 0.0) != (sides[1] > 0.0):
+                return False
+        if mine and theirs:
+            return len(mine & theirs) >= _SHARED * min(len(mine), len(theirs))
+        return _near(a, b)
+
+
+def _height(face: FaceEntry, plane: FaceEntry) -> float:
+    """How far the middle of a face is out of a plane, mm; 0 where that is not known."""
+    carrier = plane.carrier
+    if plane.shape != "plane" or carrier is None or carrier.direction is None or carrier.outward is None or not face.centre_mm:
+        return 0.0
+    out = sum(n * (x - y) for n, x, y in zip(carrier.direction, face.centre_mm, carrier.point_mm, strict=True))
+    return out if carrier.outward else -out
 
 
 def match_faces(old: Plan, new: Plan) -> Matched:
@@ -65,15 +112,16 @@ def match_faces(old: Plan, new: Plan) -> Matched:
         """Go on from what is paired: same radii first, and again as soon as one is paired."""
         again = True
         while again and all(open_faces):
-            by = Surroundings(((a, b) for a, b, _ in pairs), size)
+            by = _Surroundings(((a, b) for a, b, _ in pairs), size)
             again = any(take(_on_carriers(*open_faces, size, by, radius=radius), "carrier") for radius in (True, False))
 
     take(_in_place(*open_faces, size), "place")
     if any(all(face.centre_mm is None for face in faces) for faces in (old.faces, new.faces)):
-        take(_alone(*open_faces, _numbered), "number")
+        take(_alone(*open_faces, lambda face: (face.id, face.shape, f"{face.area_mm2:.5g}")), "number")
     spread()
-    take((pair for pair in _alone(*open_faces, _named) if not opposed(*pair)), "name")
-    take(alone(_trimmed(*open_faces)), "trim")
+    named = _alone(*open_faces, lambda face: (face.name, face.shape) if face.name else None)
+    take((pair for pair in named if not _opposed(*pair)), "name")
+    take(_in_one_pair(_trimmed(*open_faces)), "trim")
     spread()
     return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
 
@@ -109,8 +157,8 @@ def _away(a: FaceEntry, b: FaceEntry) -> float:
 
 def _trimmed(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[Pair]:
     """Free-form faces that have nearly the same place and area."""
-    for mine, theirs in _of_one_form(*([face for face in faces if face.shape == "sculptured"] for faces in (old, new))):
-        if len(mine) * len(theirs) > _MOST_PAIRS:
+    for mine, theirs in _grouped(old, new, _placed_form):
+        if mine[0].shape != "sculptured" or len(mine) * len(theirs) > _MOST_PAIRS:
             continue
         for a, b in product(mine, theirs):
             ratio, away = a.area_mm2 / b.area_mm2, _away(a, b)
@@ -119,13 +167,13 @@ def _trimmed(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[Pai
 
 
 def _on_carriers(
-    old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float, by: Surroundings, *, radius: bool
+    old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float, by: _Surroundings, *, radius: bool
 ) -> list[Pair]:
     """Pairs on one carrier that are in no other such pair; of several, those with the same neighbours, or nearest by far."""
-    pairs = [pair for pair in on_one_carrier(old, new, size, radius=radius) if by.supports(*pair)]
+    pairs = [pair for pair in _on_one_carrier(old, new, size, radius=radius) if by.supports(*pair)]
     for some in (
-        alone(pairs),
-        alone((a, b) for a, b in pairs if by.of_old(a) and by.of_old(a) == by.of_new(b)),
+        _in_one_pair(pairs),
+        _in_one_pair((a, b) for a, b in pairs if by.of_old(a) and by.of_old(a) == by.of_new(b)),
         list(_nearest(pairs, size)),
     ):
         if some:
@@ -144,7 +192,7 @@ def _nearest(pairs: Sequence[Pair], size: float) -> Iterator[Pair]:
         # Once in its row and once in its column the pair itself is nearest: the second entry is the next best.
         others = [sorted(each)[1] for each in (rows[a.id], columns[b.id]) if len(each) > 1]
         first = far == min(rows[a.id]) == min(columns[b.id])
-        if first and near(a, b) and all(other >= CLEARLY * max(far, SAME * size) for other in others):
+        if first and _near(a, b) and all(other >= CLEARLY * max(far, SAME * size) for other in others):
             yield a, b
 
 
@@ -167,33 +215,28 @@ def match_cutters(old: Plan, new: Plan) -> list[tuple[CutterEntry, CutterEntry, 
 
 def _alone(old: Iterable[Item], new: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[tuple[Item, Item]]:
     """Pairs whose key stands once on each side; None is no key."""
-    sides: list[dict[Hashable, list[Item]]] = []
-    for side in (old, new):
-        groups = defaultdict(list)
+    yield from ((mine[0], theirs[0]) for mine, theirs in _grouped(old, new, key) if len(mine) == len(theirs) == 1)
+
+
+def _grouped(
+    old: Iterable[Item], new: Iterable[Item], key: Callable[[Item], Hashable]
+) -> Iterator[tuple[list[Item], list[Item]]]:
+    """What both sides have of each key, but None."""
+    sides = defaultdict[Hashable, list[Item]](list), defaultdict[Hashable, list[Item]](list)
+    for side, groups in zip((old, new), sides, strict=True):
         for each in side:
             groups[key(each)].append(each)
-        sides.append(groups)
-    for word, mine in sides[0].items():
-        if word is not None and len(mine) == len(theirs := sides[1].get(word, [])) == 1:
-            yield mine[0], theirs[0]
-
-
-def _numbered(face: FaceEntry) -> Hashable:
-    return (face.id, face.shape, f"{face.area_mm2:.5g}")
-
-
-def _named(face: FaceEntry) -> Hashable:
-    return (face.name, face.shape) if face.name else None
+    yield from ((mine, sides[1][word]) for word, mine in sides[0].items() if word is not None and word in sides[1])
 
 
 def _in_place(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> list[Pair]:
     """Pairs of one form whose area and place agree; several in one place are paired in the order of their numbers."""
     pairs: list[Pair] = []
-    for mine, theirs in _of_one_form(old, new):
+    for mine, theirs in _grouped(old, new, _placed_form):
         tree = cKDTree(_placed(theirs, size))
         taken = set[int]()
         for face, rows in zip(mine, tree.query_ball_point(_placed(mine, size), SAME), strict=True):
-            row = next((j for j in sorted(rows) if j not in taken and not opposed(face, theirs[j])), None)
+            row = next((j for j in sorted(rows) if j not in taken and not _opposed(face, theirs[j])), None)
             if row is not None:
                 taken.add(row)
                 pairs.append((face, theirs[row]))
@@ -206,15 +249,71 @@ def _placed(faces: Sequence[FaceEntry], size: float) -> NDArray[np.float64]:
     return np.column_stack([at, np.log([face.area_mm2 for face in faces])])
 
 
-def _of_one_form(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[tuple[list[FaceEntry], list[FaceEntry]]]:
-    """For each form the faces of both sides that have a place and an area."""
-    sides: list[dict[str, list[FaceEntry]]] = []
-    for side in (old, new):
-        forms = defaultdict(list)
-        for face in side:
-            if face.centre_mm is not None and math.isfinite(face.area_mm2) and face.area_mm2 > 0.0:
-                forms[face.shape].append(face)
-        sides.append(forms)
-    for shape, mine in sides[0].items():
-        if theirs := sides[1].get(shape):
-            yield mine, theirs
+def _placed_form(face: FaceEntry) -> str | None:
+    """The form of a face that has a place and an area; else None."""
+    return face.shape if face.centre_mm is not None and 0.0 < face.area_mm2 < math.inf else None
+
+
+def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float, *, radius: bool) -> Iterator[Pair]:
+    """Pairs of faces of one form on the same carrier; with `radius`, its radii agree, too.
+
+    A cone has an angle, which agrees in any case.
+    """
+    within = _SAME_CARRIER * size
+    for mine, theirs in _grouped(old, new, lambda face: None if face.carrier is None else face.shape):
+        # A direction and its opposite are the same.
+        tree = cKDTree(np.array([row for sign in (1.0, -1.0) for row in (_row(face, size, sign) for face in theirs)]))
+        near = tree.query_ball_point(np.array([_row(face, size, 1.0) for face in mine]), within, p=np.inf)
+        for a, rows in zip(mine, near, strict=True):
+            for j in sorted({row % len(theirs) for row in rows}):
+                b = theirs[j]
+                angles = [(each.carrier and each.carrier.half_angle_deg) or 0.0 for each in (a, b)]
+                same = abs(angles[0] - angles[1]) <= math.degrees(_SAME_CARRIER) and not _opposed(a, b)
+                if same and (not radius or _same_radii(a, b, within)):
+                    yield a, b
+
+
+def _opposed(a: FaceEntry, b: FaceEntry) -> bool:
+    """Whether the material lies on other sides of two faces of one form, or they point in other directions.
+
+    What one of them does not state opposes nothing.
+    """
+    if a.carrier is None or b.carrier is None:
+        return False
+    way, other = a.carrier.direction, b.carrier.direction
+    stated = way is not None and other is not None and any(way) and any(other)
+    inner = float(np.dot(way, other)) if stated else 1.0  # type: ignore[arg-type]
+    known = None not in (a.carrier.outward, b.carrier.outward)
+    same = a.carrier.outward == b.carrier.outward
+    if a.shape == "plane":
+        return (abs(inner) if not (known and stated) else inner if same else -inner) < _AGREE
+    return (known and not same) or abs(inner) < _AGREE
+
+
+def _same_radii(a: FaceEntry, b: FaceEntry, within: float) -> bool:
+    """Whether the radii of two faces agree, mm; a face without one has none to differ in."""
+    if a.carrier is None or b.carrier is None:
+        return True
+    pairs = ((a.carrier.radius_mm, b.carrier.radius_mm), (a.carrier.minor_radius_mm, b.carrier.minor_radius_mm))
+    return all(one is None or other is None or abs(one - other) <= within for one, other in pairs)
+
+
+def _row(face: FaceEntry, size: float, sign: float) -> tuple[float, ...]:
+    """Six lengths, mm, that say where a carrier is."""
+    assert face.carrier is not None
+    return *face.carrier.point_mm, *(sign * size * x for x in face.carrier.direction or (0.0, 0.0, 0.0))
+
+
+def _in_one_pair(pairs: Iterable[Pair]) -> list[Pair]:
+    """The pairs whose faces are in no other pair."""
+    every = list(pairs)
+    olds, news = Counter(a.id for a, _ in every), Counter(b.id for _, b in every)
+    return [(a, b) for a, b in every if olds[a.id] == news[b.id] == 1]
+
+
+def _near(a: FaceEntry, b: FaceEntry) -> bool:
+    """Whether two faces are no farther from each other than the larger one is long, about."""
+    if a.centre_mm is None or b.centre_mm is None:
+        return False
+    area = max((face.area_mm2 for face in (a, b) if math.isfinite(face.area_mm2)), default=0.0)
+    return math.dist(a.centre_mm, b.centre_mm) <= math.sqrt(max(area, 0.0))

@@ -31,10 +31,8 @@ class Change(Frozen):
 class FaceState(Frozen):
     """How a face was answered in one plan, by all of its cutters."""
 
-    reach: Reach = Field(
-        description="`reached`: one cutter reaches every sample of it that is surface of the finished part; `undecided`: of "
-        "the best cutter undecided or unjudged samples alone are left"
-    )
+    reach: Reach = Field(description="`reached`: one cutter reaches every sample of it that is surface of the finished part; "
+                         "`undecided`: of the best cutter undecided or unjudged samples alone are left")  # fmt: skip
     share: float = Field(description="of the face's area that the best cutter reaches, 0 to 1")
     cutters: list[str] = Field(description="ids of those that reach all of it, sorted")
     reason: str | None = Field(description="code of the reason by which the best cutter loses most of it")
@@ -88,13 +86,10 @@ class PlanDifference(Frozen):
     changes: list[Change]
     selected: tuple[str | None, str | None] = Field(description="ids of the cutters to take, old and new")
     matched: dict[str, int] = Field(description="how many faces were known again, by how")
-    faces: list[FaceDifference] = Field(
-        description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new "
-        "and gone ones"
-    )
-    cutters: list[CutterDifference] = Field(
-        description="first those that reach less, by the share; then changed ones and those that reach more"
-    )
+    faces: list[FaceDifference] = Field(description="first those of which less is reached, by the area; then new ones that are "
+                                        "not reached, changed, won, new and gone ones")  # fmt: skip
+    cutters: list[CutterDifference] = Field(description="first those that reach less, by the share; then changed ones and those "
+                                            "that reach more")  # fmt: skip
     unreachable: list[str] = Field(description="ids of the target faces of the new plan that no cutter reaches whole")
     lost: bool
     won: bool

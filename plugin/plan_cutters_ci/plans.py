@@ -2,17 +2,26 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from plan_cutters.domain.figures import count
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts, reached_share
 from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.user_files import fingerprint
 from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces
-from plan_cutters_ci.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
-from plan_cutters_ci.states import cutter_falls, cutter_state, face_state, falls, reached_whole, remaining_area, unreachable
+from plan_cutters_ci.model import (
+    REQUESTED,
+    Change,
+    CutterDifference,
+    CutterState,
+    FaceDifference,
+    FaceState,
+    PlanDifference,
+    Reach,
+)
 
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
@@ -20,18 +29,12 @@ SLACK = 0.001
 #: large a share of the area is the same.
 UNRELATED = 0.25
 #: Entries of a cutter that say how it is made.
-_FORM = (
-    "radius",
-    "corner_radius",
-    "length",
-    "shape",
-    "taper_deg",
-    "flutes_mm",
-    "holder",
-    "stages",
-    "allowance_mm",
-    "clearance_mm",
-)
+_FORM = ("radius", "corner_radius", "length", "shape", "taper_deg", "flutes_mm", "holder", "stages", "allowance_mm",
+         "clearance_mm")  # fmt: skip
+#: A target face that is in none of these is not reached whole.
+_CLOSED: tuple[Reach, ...] = ("reached", "not asked", "inside other bodies")
+#: Rank of what is reached: to fall is a loss. What is inside other bodies is no surface: neither loss nor gain.
+_RANK: dict[Reach, int] = {"reached": 2, "undecided": 1}
 
 
 def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despite: Collection[str] = ()) -> PlanDifference:
@@ -39,15 +42,8 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
 
     Faces that one plan has alone are no such matter: a new one that is not reached is lost, and one that is gone is not won.
 
-    Parameters
-    ----------
-    old, new : Plan
-    name : str
-        Of both.
-    slack : float
-        Shares, 0 to 1, that differ by no more are the same.
-    despite : collection of str
-        Codes of `model.ASKED`: the plans are compared although these differ.
+    Shares, 0 to 1, that differ by no more than `slack` are the same. `despite` codes of `model.REQUESTED` that differ the plans
+    are compared.
     """
     changes = list(_changes(old, new, despite))
     pairs = match_faces(old, new)
@@ -65,8 +61,13 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         )
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
-    face_rows = sorted(filter(None, _faces(old, new, pairs, slack)), key=_worst_face)
-    cutter_rows = sorted(filter(None, _cutters(old, new, tools, pairs, slack)), key=_worst_cutter)
+    faces = [*(_face(old, a, new, b, how, slack) for a, b, how in pairs),
+             *(_one_face(old, face, None) for face in _rest(old.faces, [a.id for a, _, _ in pairs])),
+             *(_one_face(new, None, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs]))]  # fmt: skip
+    cutters = [*(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
+               *(_one_cutter(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools])),
+               *(_one_cutter(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools]))]  # fmt: skip
+    face_rows, cutter_rows = sorted(filter(None, faces), key=_worst_face), sorted(filter(None, cutters), key=_worst_cutter)
     differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
     return PlanDifference(
         name=name,
@@ -88,14 +89,13 @@ def _related(old: Plan, new: Plan, pairs: Matched) -> bool:
     if len(pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
         return bool(pairs)
     same = [(a.id, b.id) for a, b, how in pairs if how == "place"]
-    shares = (_share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
+
+    def share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
+        area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
+        return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
+
+    shares = (share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
     return bool(same) and min(shares) >= UNRELATED
-
-
-def _share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
-    """Share of the area of all faces that some of them have."""
-    area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
-    return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
 
 
 def taken(plan: Plan) -> str | None:
@@ -112,19 +112,17 @@ def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]
                 mine, theirs = mine[0], theirs[0]
             proposed = what == "setup" and old.setup_proposal is not None and new.setup_proposal is not None
             yield Change(what=what, old=_text(mine), new=_text(theirs), hinders=what not in despite and not proposed)
-    others: tuple[tuple[str, Any, Any], ...] = (
-        ("part", _bytes(old.part), _bytes(new.part)),
-        ("tools", sorted(c.id for c in old.cutters), sorted(c.id for c in new.cutters)),
-        ("version", old.versions.get("plan_cutters"), new.versions.get("plan_cutters")),
-        ("missing", len(old.missing), len(new.missing)),
-    )
-    for what, mine, theirs in others:
-        if mine != theirs:
-            yield Change(what=what, old=_text(mine), new=_text(theirs))
+    others: dict[str, Callable[[Plan], Any]] = {
+        "part": lambda plan: _bytes(plan.part), "tools": lambda plan: sorted(c.id for c in plan.cutters),
+        "version": lambda plan: plan.versions.get("plan_cutters"), "missing": lambda plan: len(plan.missing),
+    }  # fmt: skip
+    for what, value in others.items():
+        if value(old) != value(new):
+            yield Change(what=what, old=_text(value(old)), new=_text(value(new)))
 
 
 def _requested(plan: Plan) -> dict[str, Any]:
-    """Answers to what differs here are answers to two questions; by the codes of `model.ASKED`."""
+    """Answers to what differs here are answers to two questions; by the codes of `model.REQUESTED`."""
     e = plan.effective
     return {
         "unit": e.unit,
@@ -133,14 +131,11 @@ def _requested(plan: Plan) -> dict[str, Any]:
         "postures": (*e.tilt_deg, *e.rotation_deg, e.rotation_step_deg),
         "tolerance": round(e.tolerance_mm, 9),
         "clearance": (e.allowance_mm, e.holder_clearance_mm),
-        "machine": (
-            plan.machine.name,
-            plan.machine.tilt_limit_deg,
-            *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ()),
-        ),
+        "machine": (plan.machine.name, plan.machine.tilt_limit_deg,
+                    *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ())),
         "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
         "fixtures": [(f.name, _bytes(f), f.unit, f.placement, f.clamping, tuple(f.setups)) for f in plan.fixtures],
-    }
+    }  # fmt: skip
 
 
 def _bytes(entry: PartInfo | FixtureEntry) -> str:
@@ -172,39 +167,13 @@ def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: flo
     return _face_difference(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
 
 
-def _faces(
-    old: Plan, new: Plan, pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]], slack: float
-) -> Iterator[FaceDifference | None]:
-    yield from (_face(old, a, new, b, how, slack) for a, b, how in pairs)
-    yield from (_gone(old, face) for face in _rest(old.faces, [a.id for a, _, _ in pairs]))
-    yield from (_added(new, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs]))
-
-
-def _cutters(
-    old: Plan,
-    new: Plan,
-    tools: Sequence[tuple[CutterEntry, CutterEntry, Any]],
-    pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]],
-    slack: float,
-) -> Iterator[CutterDifference | None]:
-    yield from (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools)
-    yield from (_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools]))
-    yield from (_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools]))
-
-
-def _gone(plan: Plan, face: FaceEntry) -> FaceDifference:
-    was = face_state(plan, face)
-    return _face_difference(face, old=face.id, was=was, lost=False, won=False)
-
-
-def _added(plan: Plan, face: FaceEntry) -> FaceDifference:
-    now = face_state(plan, face)
-    return _face_difference(face, new=face.id, now=now, lost=_open(now), won=False)
-
-
-def _open(state: FaceState) -> bool:
-    """Whether a face is a target that is not reached whole."""
-    return state.reach not in ("reached", "not asked", "inside other bodies")
+def _one_face(plan: Plan, gone: FaceEntry | None, added: FaceEntry | None) -> FaceDifference:
+    """A face that one plan has: a new target that is not reached whole is lost, and one that is gone is not won."""
+    if gone is not None:
+        return _face_difference(gone, old=gone.id, was=face_state(plan, gone), lost=False, won=False)
+    assert added is not None
+    now = face_state(plan, added)
+    return _face_difference(added, new=added.id, now=now, lost=now.reach not in _CLOSED, won=False)
 
 
 def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
@@ -214,13 +183,7 @@ def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
 
 
 def _cutter(
-    old: Plan,
-    a: CutterEntry,
-    new: Plan,
-    b: CutterEntry,
-    how: Any,
-    pairs: Iterable[tuple[FaceEntry, FaceEntry, Any]],
-    slack: float,
+    old: Plan, a: CutterEntry, new: Plan, b: CutterEntry, how: Any, pairs: Matched, slack: float
 ) -> CutterDifference | None:
     """A cutter that both have; None where its form and its answer are the same."""
     was, now = cutter_state(old, a), cutter_state(new, b)
@@ -232,7 +195,9 @@ def _cutter(
                 (gone if before else won).append((mine.id, theirs.id))
     forms = [(name, _form(a, name), _form(b, name)) for name in _FORM]
     changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
-    then, today = remaining_area(old, was), remaining_area(new, now)
+    # What a cutter leaves of the target faces, mm2; nan where areas are not known.
+    then, today = ((1.0 - state.share) * sum(face.area_mm2 for face in plan.faces if face.target)
+                   for plan, state in ((old, was), (new, now)))  # fmt: skip
     # An area that is not known may have grown.
     loses = cutter_falls(was, now, slack, leaves_more=not today - then <= slack * then) or bool(gone)
     wins = cutter_falls(now, was, slack, leaves_more=not then - today <= slack * today) or bool(won)
@@ -244,14 +209,13 @@ def _cutter(
 
 
 def _form(cutter: CutterEntry, name: str) -> str:
-    if name != "stages":
-        return _text(getattr(cutter, name))
-    return _text(
-        [f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}" for s in cutter.stages]
-    )
+    stages = [
+        f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}" for s in cutter.stages
+    ]
+    return _text(stages if name == "stages" else getattr(cutter, name))
 
 
-def _one_sided(plan: Plan, gone: CutterEntry | None, added: CutterEntry | None) -> CutterDifference:
+def _one_cutter(plan: Plan, gone: CutterEntry | None, added: CutterEntry | None) -> CutterDifference:
     """A cutter that one plan has: one that finished the part is lost with its going, and won with its coming."""
     was = None if gone is None else cutter_state(plan, gone)
     now = None if added is None else cutter_state(plan, added)
@@ -279,3 +243,75 @@ def _worst_cutter(cutter: CutterDifference) -> tuple[int, float, str]:
     assert state is not None
     share = abs((cutter.was.share if cutter.was else 0.0) - (cutter.now.share if cutter.now else 0.0))
     return (0 if cutter.lost else 2 if cutter.won else 1), -share, state.id
+
+
+def face_state(plan: Plan, face: FaceEntry) -> FaceState:
+    """How all cutters together answer for a face: each by itself, for what two reach in turns is in no plan file."""
+    by_cutter = {c.id: c.faces[face.id] for c in plan.cutters if face.id in c.faces}
+    if not face.target or not any(map(_finished, by_cutter.values())):
+        none: Reach = "not asked" if not face.target else "inside other bodies" if by_cutter else "not judged"
+        return FaceState(reach=none, share=0.0, cutters=[], reason=None)
+    whole = sorted(name for name, each in by_cutter.items() if reached_whole(each))
+    if whole:
+        return FaceState(reach="reached", share=1.0, cutters=whole, reason=None)
+    best = by_cutter[max(sorted(by_cutter), key=lambda name: (not by_cutter[name].blocked, reached(by_cutter[name])))]
+    share = reached(best)
+    reach: Reach = "undecided" if not best.blocked else "partly" if share > 0.0 else "not reached"
+    if _finished(best) == best.unjudged:
+        reach = "not judged"
+    return FaceState(reach=reach, share=share, cutters=[], reason=worst(best.area_share.lost_by))
+
+
+def cutter_state(plan: Plan, cutter: CutterEntry) -> CutterState:
+    """How a cutter is answered for, over all setups that were requested."""
+    over = plan.selected_over_setups is not None and cutter.lost_in_all == 0
+    return CutterState(
+        id=cutter.id, finishes=True if over else cutter.feasible, share=reached(cutter), reason=worst(cutter.area_share.lost_by)
+    )
+
+
+def reached(verdicts: FaceVerdicts | CutterEntry) -> float:
+    """Share of the area that is reached, 0 to 1; of the samples in plans of older versions, which have no areas."""
+    share = verdicts.area_share
+    if share == AreaShare():
+        return (verdicts.interference_free + verdicts.accessible) / max(1, _finished(verdicts))
+    return reached_share(verdicts, share) or 0.0
+
+
+def reached_whole(verdicts: FaceVerdicts | None) -> bool:
+    """Whether every sample of the finished part's surface is judged and reached; nothing is reached where there is none."""
+    return verdicts is not None and _finished(verdicts) > 0 and not (verdicts.not_reached or verdicts.unjudged)
+
+
+def worst(shares: Mapping[str, float]) -> str | None:
+    """The reason of the largest share, the first by name of several."""
+    return min(shares, key=lambda reason: (-shares[reason], reason), default=None)
+
+
+def falls(was: FaceState, now: FaceState, slack: float) -> bool:
+    """Whether less of a face is reached: by rank, or by more than `slack` of its area."""
+    if "inside other bodies" in (was.reach, now.reach):
+        return False
+    before, after = _RANK.get(was.reach, 0), _RANK.get(now.reach, 0)
+    return after < before or (after == before and was.share - now.share > slack)
+
+
+def cutter_falls(was: CutterState, now: CutterState, slack: float, *, leaves_more: bool = True) -> bool:
+    """Whether a cutter finishes less: no more, no more for sure, or by more than `slack` of the area.
+
+    `leaves_more`: whether the area that it leaves grew. Of a part from which reached faces were taken away a smaller share is
+    reached, and nothing was lost.
+    """
+    rank = {True: 2, None: 1, False: 0}
+    before, after = rank[was.finishes], rank[now.finishes]
+    return after < before or (leaves_more and was.share - now.share > slack)
+
+
+def unreachable(plan: Plan) -> list[str]:
+    """Target faces that no cutter reaches whole, those included that nothing is known of."""
+    return [face.id for face in plan.faces if face.target and face_state(plan, face).reach not in _CLOSED]
+
+
+def _finished(verdicts: VerdictCounts) -> int:
+    judged = verdicts.interference_free + verdicts.accessible + verdicts.inaccessible + verdicts.undecided
+    return judged + verdicts.unjudged - verdicts.inside_bodies - verdicts.exempt

@@ -35,12 +35,9 @@ class Changed:
 
 
 def git(*words: str, stdin: bytes | None = None, codes: Collection[int] = (0,)) -> bytes:
-    """Standard output of git in the working directory; `codes`: exit codes that are no refusal.
+    """Standard output of git in the working directory; a PlanError where there is no git, or it refuses.
 
-    Raises
-    ------
-    PlanError
-        There is no git, or it refuses: its last line.
+    `codes`: exit codes that are no refusal.
     """
     try:
         done = subprocess.run(["git", *words], input=stdin, capture_output=True, check=False)
@@ -113,13 +110,7 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
 
 
 def content(at: str, path: str) -> bytes:
-    """A file's bytes in a commit, as a checkout would have them: those of Git LFS where they are at hand.
-
-    Raises
-    ------
-    PlanError
-        It is a pointer of Git LFS.
-    """
+    """A file's bytes in a commit, as a checkout would have them: a PlanError where it is a pointer of Git LFS."""
     data = git("cat-file", "--filters", f"{at}:{path}")
     if data.startswith(_POINTER):
         raise PlanError("is a pointer of Git LFS, not the part: check it out with lfs: true", file=path)
@@ -129,10 +120,7 @@ def content(at: str, path: str) -> bytes:
 def publish(pictures: dict[str, bytes], branch: str, remote: str) -> str:
     """Add files to a branch of the remote, whatever is checked out; the commit that has them.
 
-    Raises
-    ------
-    PlanError
-        The remote refuses, as it does where the token may not write.
+    A PlanError where the remote refuses, as it does where the token may not write.
     """
     if not re.fullmatch(r"[\w.][\w./-]*", branch):
         raise PlanError(f"{branch!r} is no name of a branch")

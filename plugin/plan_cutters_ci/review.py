@@ -1,24 +1,26 @@
 """The page of two plans side by side: tables of what changed, and both parts under one camera."""
 
+import base64
+import hashlib
+import json
+import re
+import zlib
 from collections.abc import Callable, Iterator
+from html.parser import HTMLParser
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
 from plan_cutters.domain import figures as numbers
 from plan_cutters.files.markup import embedded, policy, template, with_three
-from plan_cutters.plan_file.load import load_plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.palette import PALETTE
 from plan_cutters.plan_file.words.chip import Chip
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters_ci.folders import plans_in
 from plan_cutters_ci.matching import match_cutters, match_faces
-from plan_cutters_ci.model import Comparison, PlanDifference
-from plan_cutters_ci.pictures import Picture, picture_of
-from plan_cutters_ci.plans import taken
-from plan_cutters_ci.states import face_state
+from plan_cutters_ci.model import PlanDifference
+from plan_cutters_ci.plans import face_state, taken
 from plan_cutters_ci.wording import change, choice, cutter_rows, face_rows, headline, known, mark
 
 PAGE = "review.html"
@@ -36,6 +38,20 @@ MARKS = {
 #: The same of faces that are compared with none.
 _ALONE = {"reached": ("reached whole", *MARKS["reached"][1:]), "not reached": ("not reached whole", *MARKS["not reached"][1:])}
 _HERE = Path(__file__).parent
+#: Data that a comparison shows nothing of: postures and their maps, operations, other colours, and the frames of samples.
+_OMITTED = re.compile(
+    r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
+)
+_FORMAT = 1
+_AGAIN = "plan the part again with --formats json,html"
+
+
+class Picture(NamedTuple):
+    """Hold what the page draws of a plan: `meta` and the stream of `docs/review_page_data.md`; or why there is none."""
+
+    meta: dict[str, Any] | None
+    data: str
+    why: str
 
 
 class Side(NamedTuple):
@@ -46,50 +62,8 @@ class Side(NamedTuple):
     picture: Picture
 
 
-def pages(old: Path, new: Path, comparison: Comparison) -> Iterator[tuple[str, bytes | None]]:
-    """A page for each pair of plans that differ, by name; one without a name for two plans, whether they differ or not.
-
-    Parameters
-    ----------
-    old, new : Path
-        As they were compared.
-    comparison : Comparison
-        Of these two.
-
-    Yields
-    ------
-    name : str
-        Of the pair.
-    page : bytes or None
-        None where nothing differs in one of many pairs.
-
-    Raises
-    ------
-    PlanError
-        A plan is not there any more, or cannot be read any more.
-    """
-    mine, theirs = plans_in(old), plans_in(new)
-    for each in comparison.plans:
-        name = "" if "" in mine else each.name
-        if name and each.same:
-            yield name, None
-            continue
-        sides = []
-        for folder, path in ((old, mine[name]), (new, theirs[name])):
-            plan = load_plan(path)
-            sides.append(Side(str(folder / name) if name else str(folder), plan, picture_of(path, plan)))
-        yield name, page(each, *sides)
-
-
 def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
-    """The page of two plans, UTF-8; the same for the same plans.
-
-    Parameters
-    ----------
-    difference : PlanDifference
-        From the old one to the new one.
-    old, new : Side
-    """
+    """The page of two plans, UTF-8; the same for the same plans. `difference` is that from the old one to the new one."""
     sides = {"old": old, "new": new}
     # Of plans that are not comparable the pictures show what each one reaches, and nothing of what became of a face.
     shown, marks = (difference.faces, MARKS) if difference.comparable else ([], {**MARKS, **_ALONE})
@@ -116,7 +90,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         changes=[change(each) for each in difference.changes if not each.hinders],
         faces=list(zip(shown, face_rows(difference), strict=True)),
         cutters=list(cutter_rows(difference)),
-        facts=list(_facts(old.plan, new.plan)),
+        facts=[(title, value_of(old.plan), value_of(new.plan)) for title, value_of in _FACTS],
         w=numbers,
     ).encode()
 
@@ -154,19 +128,82 @@ def _cutters(old: Plan, new: Plan) -> Iterator[dict[str, str | None]]:
             yield {"name": f"{now[c.id]} (new plan alone)", "old": None, "new": c.id}
 
 
-def _facts(old: Plan, new: Plan) -> Iterator[tuple[str, str, str]]:
-    """Rows on what was compared: a title, and a cell of each plan."""
-    yield from ((title, value_of(old), value_of(new)) for title, value_of in _FACTS)
+def picture_of(path: Path, plan: Plan) -> Picture:
+    """The picture of a plan, taken out of the review page beside its file: triangles, samples and verdicts as drawn there."""
+    entry = plan.files.get("html")
+    name = entry.name if entry else "review.html"
+    page = path.parent / name
+
+    def none(why: str) -> Picture:
+        return Picture(None, "", f"{why}: {_AGAIN}")
+
+    try:
+        data = page.read_bytes()
+    except OSError:
+        return none(f"there is no {name} in the folder of the plan")
+    if entry and hashlib.sha256(data).hexdigest() != entry.sha256:
+        return none(f"{name} is not the one that was written with the plan")
+    try:
+        picture = _picture(data.decode("utf-8"))
+    except (ValueError, LookupError, TypeError, AttributeError, zlib.error):
+        return none(f"{name} cannot be read")
+    if picture is None or picture.meta is None:
+        return none(f"{name} was made by another version of the program")
+    shows = picture.meta["part"]["sha256"], {each["id"] for each in picture.meta["faces"]}
+    return picture if shows == (plan.part.sha256, {face.id for face in plan.faces}) else none(f"{name} is of another part")
 
 
-def _size(plan: Plan) -> str:
-    return " \N{MULTIPLICATION SIGN} ".join(f"{x:.6g}" for x in plan.part.size_mm) + " mm"
+def _picture(text: str) -> Picture | None:
+    """The picture that a page holds; None where its data have another form."""
+    elements = _Elements(text).texts
+    meta, stream = json.loads(elements["meta"]), elements["data"]
+    if meta["format"] != _FORMAT:
+        return None
+    whole = {name: entry for name, entry in meta["arrays"].items() if not _OMITTED.match(name)}
+    end = max(entry["offset"] + entry["bytes"] for entry in whole.values())
+    inflated = zlib.decompressobj(-15).decompress(base64.b64decode(stream, validate=True), end)
+    if len(inflated) < end or min(min(entry["offset"], entry["bytes"]) for entry in whole.values()) < 0:
+        raise ValueError("the stream ends too soon")
+    packed, entries, offset = zlib.compressobj(6, zlib.DEFLATED, -15), {}, 0
+    pieces = []
+    for name, entry in whole.items():
+        entries[name] = {**entry, "offset": offset}
+        offset += entry["bytes"]
+        pieces.append(packed.compress(inflated[entry["offset"] : entry["offset"] + entry["bytes"]]))
+    data = base64.b64encode(b"".join([*pieces, packed.flush()])).decode("ascii")
+    cutters = [{"id": each["id"], "name": each["name"]} for each in meta["cutters"]]
+    if any(f"verdict.{each['id']}" not in entries for each in cutters):
+        raise LookupError("a cutter has no verdicts")
+    reduced = {**meta, "cutters": cutters, "spots": [], "scalars": [], "operations": None, "maps": None, "arrays": entries}
+    return Picture(reduced, data, "")
 
 
+class _Elements(HTMLParser):
+    """Texts of the script elements of a page, by their ids: what the page draws stands in two of them."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.texts: dict[str, str] = {}
+        self._open: str | None = None
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._open = dict(attrs).get("id") if tag == "script" else None
+
+    def handle_data(self, data: str) -> None:
+        if self._open:
+            self.texts[self._open] = self.texts.get(self._open, "") + data
+
+    def handle_endtag(self, tag: str) -> None:
+        self._open = None
+
+
+#: Rows on what was compared: a title, and the cell of a plan.
 _FACTS: tuple[tuple[str, Callable[[Plan], str]], ...] = (
     ("Part", lambda plan: plan.part.file or "part"),
     ("SHA-256", lambda plan: (plan.part.sha256 or "no file")[:12]),
-    ("Size", _size),
+    ("Size", lambda plan: " \N{MULTIPLICATION SIGN} ".join(f"{x:.6g}" for x in plan.part.size_mm) + " mm"),
     ("Faces", lambda plan: f"{len(plan.effective.target_faces)} to machine, of {plan.part.faces}"),
     ("Machine", lambda plan: plan.machine.name),
     ("Cutters", lambda plan: numbers.count(len(plan.cutters), "cutter")),

@@ -1,8 +1,16 @@
-"""A comparison is told here, once: sentences and rows of tables, which the terminal and Markdown lay out."""
+"""A comparison is told here, once: sentences and rows of tables, which the terminal, Markdown and test cases lay out.
 
+A test case fails where something is lost, and is an error where plans are not comparable or cannot be read, as the exit code of
+`diff` says.
+"""
+
+import unicodedata
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from urllib.parse import quote
 
+from plan_cutters.cases.case import Case
 from plan_cutters.domain.figures import area, count, listed, percent
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters_ci.model import (
@@ -21,6 +29,12 @@ CUTTERS = ("", "cutter", "was", "now", "faces lost", "faces won", "changed")
 _FINISHES = {True: "finishes", False: "fails", None: "not sure"}
 #: Names of faces in a cell, at most.
 _MOST = 6
+#: Rows of a table; a summary of GitHub may have one MiB.
+MOST_ROWS = 100
+#: What Markdown, or the HTML that it may hold, would take as its own.
+_OWN = frozenset("\\`*_{}[]<>()#+!|~&@$")
+#: Name of the case that is about two plans as wholes.
+COMPARABLE = "comparable"
 
 
 def headline(difference: PlanDifference) -> str:
@@ -29,7 +43,12 @@ def headline(difference: PlanDifference) -> str:
         return f"{difference.name}: nothing changed."
     if not difference.comparable:
         return f"{difference.name}: not comparable."
-    parts = [*_counted(difference, "lost"), *_counted(difference, "won")]
+    parts = [
+        f"{count(number, what)} {word}"
+        for word in ("lost", "won")
+        for what, entries in (("face", difference.faces), ("cutter", difference.cutters))
+        if (number := sum(getattr(each, word) for each in entries))
+    ]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
     return f"{difference.name}: {text}."
 
@@ -74,7 +93,6 @@ def known(difference: PlanDifference) -> str:
 
 
 def change(each: Change) -> str:
-    """A change in a line."""
     return f"{each.what}: {each.old} -> {each.new}"
 
 
@@ -85,7 +103,7 @@ def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
     for f in difference.faces:
         name = f" {f.name}" if f.name else ""
         size = "not known" if f.area_mm2 is None else area(f.area_mm2)
-        yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was, "-"), _reach(f.now, "-")
+        yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was), _reach(f.now)
 
 
 def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
@@ -94,7 +112,8 @@ def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
         return
     for c in difference.cutters:
         changed = ", ".join(change(each) for each in c.changes)
-        yield mark(c), c.name, _state(c.was), _state(c.now), _faces(c.faces_lost), _faces(c.faces_won), changed
+        faces = (listed([called(*pair) for pair in pairs], _MOST) for pairs in (c.faces_lost, c.faces_won))
+        yield mark(c), c.name, _state(c.was), _state(c.now), *faces, changed
 
 
 def mark(each: FaceDifference | CutterDifference) -> str:
@@ -125,29 +144,17 @@ def apart(comparison: Comparison) -> Iterator[str]:
 def verdict(comparison: Comparison) -> str:
     """One sentence on the whole."""
     if not comparison.comparable:
-        return f"Not comparable.{_despite(comparison)}"
+        different = {each.what for plan in comparison.plans for each in plan.changes if each.hinders}
+        words = ",".join(word for word in REQUESTED if word in different)
+        return "Not comparable." + (f" --despite {words} compares nevertheless." if words else "")
     if comparison.lost:
         return "Something was lost."
     return "Nothing was lost." if comparison.won else "Nothing was lost or won."
 
 
-def _despite(comparison: Comparison) -> str:
-    """The option that compares nevertheless, where there is one."""
-    different = {each.what for plan in comparison.plans for each in plan.changes if each.hinders}
-    words = ",".join(word for word in REQUESTED if word in different)
-    return f" --despite {words} compares nevertheless." if words else ""
-
-
-def _counted(difference: PlanDifference, word: str) -> Iterator[str]:
-    for what, entries in (("face", difference.faces), ("cutter", difference.cutters)):
-        number = sum(getattr(each, word) for each in entries)
-        if number:
-            yield f"{count(number, what)} {word}"
-
-
-def _reach(state: FaceState | None, none: str) -> str:
+def _reach(state: FaceState | None) -> str:
     if state is None:
-        return none
+        return "-"
     share = f" {percent(state.share)}" if state.reach in ("partly", "undecided") else ""
     return f"{state.reach}{share}{_why(state.reason)}"
 
@@ -157,10 +164,89 @@ def _state(state: CutterState | None) -> str:
 
 
 def _why(reason: str | None) -> str:
-    if reason is None:
-        return ""
-    return f" ({REASONS[reason].name if reason in REASONS else reason})"
+    return "" if reason is None else f" ({REASONS[reason].name if reason in REASONS else reason})"
 
 
-def _faces(pairs: list[tuple[str, str]]) -> str:
-    return listed([called(*pair) for pair in pairs], _MOST)
+def markdown(comparison: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
+    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others.
+
+    `pages` are paths of the pages of both plans by the name of their pair; the only one has none.
+    """
+    same = [each for each in comparison.plans if each.same]
+    lines = [f"**{verdict(comparison)}**", ""]
+    for each in comparison.plans:
+        if not each.same:
+            page = pages.get(each.name) or pages.get("")
+            lines += [*section(each), *(["", page_link(page)] if page else []), ""]
+    lines += [f"- {escaped(line)}" for line in apart(comparison)]
+    if same:
+        lines += ["", f"Nothing changed: {', '.join(escaped(each.name) for each in same)}."]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def section(difference: PlanDifference) -> Iterator[str]:
+    """The lines of one pair of plans."""
+    yield from (f"### {escaped(headline(difference))}", "")
+    yield from (f"- **Not comparable:** {escaped(line)}" for line in difference.why_not)
+    yield from (f"- {escaped(line)}" for line in remarks(difference))
+    yield from table(FACES, face_rows(difference))
+    yield from table(CUTTERS, cutter_rows(difference))
+
+
+def page_link(path: str, address: str = "") -> str:
+    """A link to the page of two plans, or to an address that has it.
+
+    >>> page_link("compared/a b/review.html")
+    '[Both plans side by side](compared/a%20b/review.html)'
+    """
+    within = f": {escaped(path)} there" if address else ""
+    return f"[Both plans side by side]({address or quote(path)}){within}"
+
+
+def table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """A table with a blank line before it; nothing where there is no row."""
+    lines = list(rows)
+    if not lines:
+        return
+    yield from ("", f"| {' | '.join(name or ' ' for name in names)} |", f"|{' --- |' * len(names)}")
+    yield from (f"| {' | '.join(escaped(cell) or ' ' for cell in row)} |" for row in lines[:MOST_ROWS])
+    if len(lines) > MOST_ROWS:
+        yield from ("", f"and {len(lines) - MOST_ROWS} more: `--json` has all.")
+
+
+def escaped(text: str) -> str:
+    r"""A text that Markdown shows as it stands; names in files may hold anything.
+
+    >>> escaped("a|b <img>\n*c*")
+    'a\\|b \\<img\\>\\\\n\\*c\\*'
+    """
+    plain = "".join(c.encode("unicode_escape").decode() if unicodedata.category(c)[0] == "C" else c for c in text)
+    return "".join(f"\\{c}" if c in _OWN else c for c in plain)
+
+
+def comparison_cases(comparison: Comparison) -> list[Case]:
+    """The cases of all plans of two folders, or of two plans."""
+    cases = [case for each in comparison.plans for case in difference_cases(each)]
+    # Lines as the terminal has them, these first.
+    gone = zip(comparison.only_old, apart(comparison), strict=False)
+    cases += [Case(name, COMPARABLE, "failure", "gone", line.removeprefix(f"{name}: ")) for name, line in gone]
+    cases += [Case(name, COMPARABLE) for name in comparison.only_new]
+    return cases + [Case(line.partition(":")[0], COMPARABLE, "error", "unread", line) for line in comparison.unread]
+
+
+def difference_cases(difference: PlanDifference) -> Iterator[Case]:
+    """The cases of two plans: of those that are not comparable the reasons are all there is."""
+    name = difference.name
+    if not difference.comparable:
+        yield Case(name, COMPARABLE, "error", "not_comparable", "; ".join(difference.why_not) or headline(difference))
+        return
+    yield Case(name, COMPARABLE)
+    for face, (_, what, kind, size, was, now) in zip(difference.faces, face_rows(difference), strict=True):
+        text = f"was {was}, now {now}" if face.was is not None else f"is new, and {now}"
+        case = Case(name, f"face {what}")
+        yield case._replace(outcome="failure", kind="lost", message=text, details=f"{kind}, {size}") if face.lost else case
+    for cutter, (_, what, was, now, faces, _, changed) in zip(difference.cutters, cutter_rows(difference), strict=True):
+        more = [f"{CUTTERS[4]}: {faces}"] * bool(faces) + [f"changed: {changed}"] * bool(changed)
+        text = f"was {was}, now {now}"
+        case = Case(name, f"cutter {what}")
+        yield case._replace(outcome="failure", kind="lost", message=text, details="\n".join(more)) if cutter.lost else case

@@ -15,12 +15,10 @@ from plan_cutters.domain.figures import percent, size
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters_agents import child, command
-from plan_cutters_agents.cutter_names import chosen
-from plan_cutters_agents.digits import short
-from plan_cutters_agents.limits import CallError, Limits
-from plan_cutters_agents.plan_answers import compared, explained, planned
-from plan_cutters_agents.roots import Roots
+from plan_cutters_agents.access import CallError, Limits, Roots
+from plan_cutters_agents.plan_answers import chosen, compared, explained, planned
 from plan_cutters_agents.server import made, service_of
+from plan_cutters_agents.short import LISTS, short
 from plan_cutters_agents.tools import fitting
 from tests.support import plan_files
 
@@ -61,12 +59,17 @@ def read(**more):
     return plan_of(json.dumps(made_plan(**more)), "plan.json", CallError)
 
 
+def cut(answer, most):
+    """An answer as it is handed over, its lists cut."""
+    return short(answer.model_dump(mode="json"), dict.fromkeys(LISTS, most))
+
+
 @settings(max_examples=12, deadline=None)
 @given(st.integers(1, 90), st.integers(1, 60), st.integers(6_000, 60_000))
 def test_an_answer_is_short_and_says_how_much_it_leaves_out(cutters, faces, characters):
     plan = read(cutters=cutters, faces=faces)
-    for make in (lambda most: planned(plan, 0, most, {}), lambda most: compared(plan, 0, most)):
-        found = fitting(make, characters).answer
+    for answer in (planned(plan, 0, {}), compared(plan, 0)):
+        found = fitting(answer, characters)
         assert len(json.dumps(found, separators=(",", ":"))) <= characters
         assert len(found["cutters"]) + found["more_cutters"] == cutters
         for each in found["cutters"]:
@@ -77,7 +80,7 @@ def test_an_answer_is_short_and_says_how_much_it_leaves_out(cutters, faces, char
 
 def test_an_answer_that_cannot_be_short_is_refused():
     with pytest.raises(CallError, match="even without its lists"):
-        fitting(lambda most: planned(read(), 0, most, {}), 300)
+        fitting(planned(read(), 0, {}), 300)
 
 
 @given(st.floats(0.0, 1.0, exclude_min=True, exclude_max=True), st.floats(1e-6, 1e6))
@@ -118,20 +121,20 @@ def test_silence_is_not_an_answer():
     """A face that nobody sampled is neither reached nor lost; obstacles that are missing make a yes unsure."""
     plan = read()
     first, second = plan.cutters[:2]
-    assert explained(plan, first, "F1", 9).reached is True
-    assert explained(plan, second, "F1", 9).reached is False
+    assert explained(plan, first, "F1").reached is True
+    assert explained(plan, second, "F1").reached is False
     missing = read(missing=[{"face": "F9", "entity": None, "name": "", "why": "not meshed", "stand_in": "none"}])
-    assert explained(missing, missing.cutters[0], "F1", 9).reached is None
+    assert explained(missing, missing.cutters[0], "F1").reached is None
     bare = made_plan()
     bare["faces"][0] |= {"unjudged": "no normal"}
     del bare["cutters"][0]["faces"]["F1"]
     plan = Plan.model_validate(bare)
-    found = explained(plan, plan.cutters[0], "F1", 9)
+    found = explained(plan, plan.cutters[0], "F1")
     assert (found.reached, found.told) == (None, "F1 could not be judged: no normal.")
     bare["faces"][0] |= {"target": False}
     plan = Plan.model_validate(bare)
     with pytest.raises(CallError, match="obstacle only"):
-        explained(plan, plan.cutters[0], "F1", 9)
+        explained(plan, plan.cutters[0], "F1")
 
 
 def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
@@ -140,9 +143,9 @@ def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
         witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None) for x, depth in ((0, 1), (5, 3), (9, None))
     ]
     plan = Plan.model_validate(data)
-    assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1", 9).witnesses] == [5, 0, 9]
-    found = explained(plan, plan.cutters[1], "F1", 2, point=(8.0, 0.0, 0.0))
-    assert ([w.point[0] for w in found.witnesses], found.more_witnesses) == ([9, 5], 1)
+    assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1").witnesses] == [5, 0, 9]
+    found = cut(explained(plan, plan.cutters[1], "F1", point=(8.0, 0.0, 0.0)), 2)
+    assert ([w["point"][0] for w in found["witnesses"]], found["more_witnesses"]) == ([9, 5], 1)
 
 
 @pytest.mark.parametrize(
@@ -187,19 +190,19 @@ def test_cutters_are_named_by_the_words_that_were_given():
     lost["mend"] = {"lost": 8, "buried": 0, "why": "", "steps": [step]}
     data["selected"] = "R1L80"
     plan = Plan.model_validate(data)
-    found = planned(plan, 0, 9, {})
+    found = planned(plan, 0, {})
     said = (
         f"Take flat end D2 x 80. For part.step, {size(plan.part.size_mm)}: D2L80, judged without a holder, 80 mm up from its tip."
     )
     assert " ".join(found.told.split()).startswith(said)
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
-    said = explained(plan, plan.cutters[1], "F1", 9)
+    said = explained(plan, plan.cutters[1], "F1")
     assert [each.what for each in said.would_help] == ["flat end D2 x 80 for the rest"]
     assert said.told.startswith("flat end D4 x 80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
     assert "R2L80" not in said.told
     lost["mend"] |= {"unsure": True}
     plan = Plan.model_validate(data)
-    assert [each.finishes for each in explained(plan, plan.cutters[1], "F1", 9).would_help] == [None]
+    assert [each.finishes for each in explained(plan, plan.cutters[1], "F1").would_help] == [None]
 
 
 def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something_does_not():
@@ -211,7 +214,7 @@ def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something
     ):
         data["cutters"][1] |= {**counts, "area_share": share}
         data["cutters"] = data["cutters"][1:]
-        assert f": {told} of the area" in planned(Plan.model_validate(data), 1, 9, {}).told
+        assert f": {told} of the area" in planned(Plan.model_validate(data), 1, {}).told
         data = made_plan(cutters=2)
 
 
@@ -336,7 +339,7 @@ def test_steps_are_told_in_the_words_in_which_they_are_given_back():
     planned_step = {**step, "setup": 0, "mode": "any", "angles_deg": None, "axis": None, "own": None, "alone_mm2": None}
     process = {"steps": [step, planned_step], "finished_share": 0.85, "finished_mm2": 17.0, "asked_mm2": 20.0, "left": [left],
                "seconds": 9.0}  # fmt: skip
-    found = planned(read(process=process), 1, 1, {}).model_dump(mode="json")
+    found = cut(planned(read(process=process), 1, {}), 1)
     (first,) = found["steps"]
     assert (found["more_steps"], found["asked_mm2"], found["finished_share"], found["seconds"]) == (1, 20.0, 0.85, 9.0)
     assert (first["setup"], first["angles"], first["axis"]) == (2, {"C": 0.0, "A": 10.0}, None)
@@ -344,5 +347,5 @@ def test_steps_are_told_in_the_words_in_which_they_are_given_back():
     assert (first["alone_mm2"], first["own"]["number"], first["own"]["more_leaves"]) == (6.0, 1, 2)
     assert (first["own"]["leaves"][0]["faces"], first["own"]["leaves"][0]["more_faces"]) == (["F2"], 1)
     assert first["own"]["nearest"]["angles"] == {"C": 0.0, "A": 90.0}
-    assert planned(read(process=process), 1, 9, {}).steps[1].own is None
-    assert planned(read(), 1, 9, {}).steps == []
+    assert planned(read(process=process), 1, {}).steps[1].own is None
+    assert planned(read(), 1, {}).steps == []

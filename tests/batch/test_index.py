@@ -11,16 +11,15 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import plan
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.shares import reached_share
-from plan_cutters_batch import table
+from plan_cutters_batch import index as table
 from plan_cutters_batch.index import write_index
-from plan_cutters_batch.row import PartRow
-from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.row import PartRow, row_of
 from plan_cutters_batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
 from tests.support.browser import opened
 from tests.support.places import ROOT
@@ -132,13 +131,14 @@ rows_of_all_kinds = st.builds(
     share=st.none() | st.floats(),
     reason=st.none() | st.sampled_from(["holder", "neck", "unheard_of"]),
     samples=st.none() | st.integers(0, 10**9),
-    seconds=st.floats(),
+    seconds=st.floats(-1e9, 1e9) | st.sampled_from([math.nan, math.inf, -math.inf]),
     page=st.none() | st.text(st.characters(), max_size=20),
     error=st.none() | st.text(max_size=20),
 )
 
 
 @given(st.lists(rows_of_all_kinds, max_size=4))
+@example([PartRow(name="a", file="a", status="planned", code=0, page="\udcff-plan/review.html")])
 @settings(max_examples=25, deadline=None)
 def test_no_row_is_lost_and_no_failure_is_silent(rows):
     found = written(rows)

@@ -12,9 +12,7 @@ from hypothesis import strategies as st
 from plan_cutters import plan
 from plan_cutters_batch import shop
 from plan_cutters_batch.index import write_index
-from plan_cutters_batch.part_tools import FaceTools, PartTools, essential
-from plan_cutters_batch.row import PartRow
-from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, row_of
 from plan_cutters_batch.shop import fewest
 
 TOOLS = "ABCDE"

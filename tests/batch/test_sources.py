@@ -5,8 +5,7 @@ import pytest
 
 from plan_cutters.errors import PlanError
 from plan_cutters_batch.job import Fault
-from plan_cutters_batch.manifest import manifest
-from plan_cutters_batch.sources import Source, sources
+from plan_cutters_batch.sources import Source, manifest, sources
 
 KNOWN = ("cutter", "faces", "flip", "spacing", "tolerance")
 

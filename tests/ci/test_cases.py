@@ -6,13 +6,13 @@ import pytest
 
 from plan_cutters.cases.junit import document
 from plan_cutters.report.to_json import dumps
-from plan_cutters_batch.cases import part_case
 from plan_cutters_batch.row import PartRow
-from plan_cutters_ci.cases import comparison_cases
-from plan_cutters_ci.changed_row import RULES, Row, row_cases
-from plan_cutters_ci.folders import compare_folders
+from plan_cutters_batch.summary import part_case
+from plan_cutters_ci.changed_report import RULES, Row, row_cases
+from plan_cutters_ci.diff import compare_folders
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.repository import Changed
+from plan_cutters_ci.wording import comparison_cases
 from tests.support.forked import run
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import cutter, face, made, verdicts
@@ -51,7 +51,7 @@ def test_folders_of_many_have_a_case_for_each_plan(tmp_path):
     for name, one in (("a", ONES[1]), ("added", ONES[0]), ("broken", ONES[0])):
         saved(tmp_path / "new" / name, one)
     (tmp_path / "new/broken/plan.json").write_text("{")
-    found = cases(document("diff", comparison_cases(compare_folders(tmp_path / "old", tmp_path / "new"))))
+    found = cases(document("diff", comparison_cases(compare_folders(tmp_path / "old", tmp_path / "new", slack=0.001))))
     ends = {(each.part.split("/")[-2] if "/" in each.part else each.part, each.name.split()[0], each.outcome) for each in found}
     assert ends == {
         ("a", "comparable", "passed"), ("a", "face", "failure"), ("a", "cutter", "failure"), ("gone", "comparable", "failure"),

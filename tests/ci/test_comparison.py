@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.plan_file.model import FaceEntry
-from plan_cutters_ci.markdown import escaped, markdown
 from plan_cutters_ci.matching import match_faces
 from plan_cutters_ci.model import REQUESTED, Comparison, schema_text
 from plan_cutters_ci.plans import SLACK, compare
-from plan_cutters_ci.wording import cutter_rows, face_rows, remarks
+from plan_cutters_ci.wording import cutter_rows, escaped, face_rows, markdown, remarks
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts
 

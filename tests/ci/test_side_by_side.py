@@ -17,9 +17,8 @@ from plan_cutters.plan_file.model import FileEntry
 from plan_cutters.plan_file.shares import FaceVerdicts
 from plan_cutters.report.page.write import write_html
 from plan_cutters.report.to_json import dumps
-from plan_cutters_ci.pictures import picture_of
 from plan_cutters_ci.plans import compare
-from plan_cutters_ci.review import MARKS, Side, page
+from plan_cutters_ci.review import MARKS, Side, page, picture_of
 from tests.support.browser import opened, touch
 from tests.support.forked import run
 from tests.support.places import ROOT

@@ -15,7 +15,7 @@ from plan_cutters.report.notebook import card
 from plan_cutters.report.notebook import text_of as notebook_text
 from plan_cutters.report.page.write import page
 from plan_cutters_agents.plan_answers import planned
-from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.row import row_of
 from tests.support.places import SAMPLES
 from tests.support.workbench import imported
 
@@ -91,7 +91,7 @@ def test_the_notebook_shows_it(result, first, lost):
 
 
 def test_agents_read_it(result):
-    answer = planned(result.plan, 0, 9, {})
+    answer = planned(result.plan, 0, {})
     assert answer.told == "\n".join([result.plan.text.headline, *result.plan.text.lines])
     assert {c.id: c.text for c in answer.cutters} == result.plan.text.cutters
 

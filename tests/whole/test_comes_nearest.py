@@ -14,7 +14,7 @@ from plan_cutters.plan_file.words.story import shown as shown_of
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from plan_cutters_agents.plan_answers import planned, ranked
-from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.row import row_of
 from tests.support import shapes
 from tests.support.plan_files import cutter, face, made, verdicts
 
@@ -54,7 +54,7 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
         read["part"]["file"] = "part.step"
         found = plan_of(json.dumps(read), "plan.json")
         assert (shown_of(found).id, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
-        assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, 9, {}).told
+        assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, {}).told
     summary(document, verbose=True)
     said = " ".join(capsys.readouterr().out.split())
     assert "Where flat end D10 x 60 fails" in said

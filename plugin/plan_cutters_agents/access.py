@@ -1,0 +1,198 @@
+"""A call may cost, read and write so much: whoever starts the server sets it, whoever calls does not; all else is refused."""
+
+import os
+import stat
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from plan_cutters.errors import PlanError
+from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
+
+
+class CallError(PlanError):
+    """A call that cannot be answered; `str` is one line about it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Largest values of a call."""
+
+    #: Size of a file that is read, millions of bytes.
+    file_mb: float = 200.0
+    #: Samples of a plan, all target faces together.
+    samples: int = 200_000
+    #: Cutters of a call, those of a library included.
+    cutters: int = 50
+    #: Of a call, by the clock, waiting for its turn included.
+    seconds: float = 900.0
+    #: Of an answer, as JSON. Lists are cut until it fits.
+    characters: int = 40_000
+    #: That work at the same time; the others wait.
+    calls: int = 2
+    #: Of each process; None: what the command takes by default.
+    memory_gb: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Roots:
+    """Folders, resolved; a path counts by where it ends after `..` and links, not by how it is written."""
+
+    folders: tuple[Path, ...]
+
+    @classmethod
+    def of(cls, folders: Iterable[str | os.PathLike[str]]) -> "Roots":
+        """Resolve folders; a CallError where one is no folder."""
+        paths = {each: _folder(each) for each in folders}
+        for each, path in paths.items():
+            if path is None:
+                raise CallError("is no folder; give one with --root", file=str(each))
+        return cls(tuple(dict.fromkeys(filter(None, paths.values()))))
+
+    @classmethod
+    def of_client(cls, uris: Sequence[str]) -> "Roots":
+        """Folders that a client offers, as `file://` addresses; others and those that are not here say nothing."""
+        parts = [each for each in map(urlsplit, uris) if each.scheme == "file" and each.netloc in ("", "localhost")]
+        return cls(tuple(dict.fromkeys(filter(None, (_folder(unquote(each.path)) for each in parts)))))
+
+    def __or__(self, other: "Roots") -> "Roots":
+        return Roots(tuple(dict.fromkeys((*self.folders, *other.folders))))
+
+    def confined(self, text: str) -> Path:
+        """Where a path ends; one that is not absolute begins at the first root in which it exists.
+
+        A CallError where it ends outside all roots, or is no name of a file.
+        """
+        if not self.folders:
+            raise CallError("there is no root: start the server with --root DIR, and files in DIR can be named", file=text)
+        try:
+            ways = [(root / text).resolve() for root in self.folders]
+            inside = [way for way in ways if any(way.is_relative_to(root) for root in self.folders)]
+            there = next((way for way in inside if way.exists()), None)
+        except (OSError, ValueError, RuntimeError):
+            raise CallError("is no name of a file", file=ascii(text)[:200]) from None
+        if not inside:
+            raise CallError("lies outside the roots; name a file in one of them", file=text)
+        return there or inside[0]
+
+    def file(self, text: str, most_mb: float) -> Path:
+        """A regular file in a root that is no larger than `most_mb` million bytes; a CallError where it is none."""
+        path = self.confined(text)
+        try:
+            status = path.stat()
+        except OSError as error:
+            why = "no such file" if isinstance(error, FileNotFoundError) else error.strerror or "cannot be read"
+            raise CallError(why, file=text) from None
+        if not stat.S_ISREG(status.st_mode):
+            raise CallError("is no file", file=text)
+        if status.st_size > most_mb * 1e6:
+            size = status.st_size / 1e6
+            raise CallError(f"has {size:,.0f} MB, and this server reads at most {most_mb:g} MB (--most-mb)", file=text)
+        return path
+
+    def folder(self, text: str) -> Path:
+        """A folder in a root to write to, that exists or that can be made in one that does; else a CallError."""
+        path = self.confined(text)
+        if path in self.folders:
+            raise CallError("is a root itself; name a folder in it", file=text)
+        if path.exists() and not path.is_dir():
+            raise CallError("is a file; name a folder", file=text)
+        return path
+
+
+def _folder(path: str | os.PathLike[str]) -> Path | None:
+    """The folder where a path ends; None where there is none."""
+    try:
+        there = Path(path).resolve(strict=True)
+    except (OSError, ValueError, RuntimeError):
+        return None
+    return there if there.is_dir() else None
+
+
+@dataclass(frozen=True)
+class Permissions:
+    """A call may read and write here, and cost so much: questions become words of the command, with files in roots alone."""
+
+    roots: Roots
+    limits: Limits
+
+    def file(self, text: str) -> str:
+        """The path of a file that may be read."""
+        return str(self.roots.file(text, self.limits.file_mb))
+
+    def conditions(self, question: Conditions) -> list[str]:
+        """Words for what cutters are judged under, without the cutters."""
+        options = [
+            f"--tolerance={question.tolerance_mm!r}",
+            f"--allowance={question.allowance_mm!r}",
+            f"--holder-clearance={question.holder_clearance_mm!r}",
+            f"--machine={self._machine(question.machine)}",
+        ]
+        options += [f"--cutters={self.file(question.library)}"] if question.library is not None else []
+        options += [f"--holder={self._holder(question.holder)}"] if question.holder is not None else []
+        options += [f"--fixture={self._fixture(each)}" for each in question.fixtures]
+        options += [f"--ignore={each}" for each in question.ignore]
+        options += [f"--unit={question.unit}"] if question.unit is not None else []
+        return options + ["--flip"] * question.flip
+
+    def part(self, question: PartQuestion) -> list[str]:
+        """Words for a part, its cutters and their conditions."""
+        if len(question.cutters) > self.limits.cutters:
+            raise CallError(
+                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
+            )
+        # The area between the samples is not looked at.
+        options = [self.file(question.part), *self.conditions(question), "--area-budget=0", f"--faces={question.faces}"]
+        options += [f"--grid={question.grid}"] if question.grid is not None else []
+        options += [f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else []
+        options += [f"--cutter={each}" for each in question.cutters]
+        return options + [f"--setup={each}" for each in question.setup]
+
+    def map(self, question: MapQuestion) -> list[str]:
+        """Words for a posture map."""
+        at = ",".join(repr(x) for x in question.point)
+        words = [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
+                 f"--cutter={question.cutter}", f"--setup={question.setup}",
+                 f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
+        return words if question.tilt_deg is None else [*words, "--tilt={!r}:{!r}".format(*question.tilt_deg)]
+
+    def _machine(self, text: str) -> str:
+        from plan_cutters.domain.machine import builtin_machines
+
+        known = text == "unlimited" or text.startswith("tilt:") or text in builtin_machines()
+        return text if known else self._marked(text)
+
+    def _holder(self, text: str) -> str:
+        from plan_cutters.domain.holder import Holder
+
+        if text.strip().lower() == "none":
+            return "none"
+        try:
+            Holder.parse(text)
+        except PlanError as error:
+            if not ("/" in text or "\\" in text or "#" in text or Path(text).suffix):
+                raise CallError(str(error)) from None
+            return self._marked(text)
+        # A word that is a holder is read as one, whatever file there is.
+        return text
+
+    def _marked(self, text: str) -> str:
+        """A file, or `FILE#MORE` where no file has the whole name."""
+        file, mark, more = text.rpartition("#")
+        if mark and not self.roots.confined(text).exists():
+            return f"{self.file(file)}#{more}"
+        return self.file(text)
+
+    def _fixture(self, text: str) -> str:
+        from dataclasses import replace
+
+        from plan_cutters.domain.fixture import Fixture
+
+        fixture = Fixture.parse(text)
+        if fixture.kind:
+            return text
+        placed = replace(fixture, source=self.file(fixture.source), placement=fixture.placement)
+        # Placement and unit are said, so that nothing in the path of a root is taken for them.
+        where = ",".join(repr(x) for x in placed.placement)
+        return f"{placed.source}@{where}{f':{placed.unit}' if placed.unit else ''}"
