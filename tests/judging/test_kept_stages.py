@@ -125,6 +125,9 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow(
+    "plans, judges or places a part at length; others of its kind run every time", only=("slim", "alone", "setups", "deep free")
+)
 @pytest.mark.parametrize("name", CASES)
 def test_what_the_stages_say_is_kept(name, keeps):
     of, options, asked = CASES[name]

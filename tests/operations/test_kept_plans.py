@@ -175,6 +175,7 @@ def columns_at(task, angles, cutters):
     return Columns(np.array(cutters, np.int32), np.zeros(len(cutters), np.int32), axis, angle)
 
 
+@pytest.mark.slow("plans, judges or places a part at length; others of its kind run every time")
 def test_choices_of_columns_are_what_they_were(keeps):
     """Written shorter and joined, left to simultaneous motion one by one, with other cutters beside them."""
     found = {}
@@ -229,6 +230,10 @@ def test_moving_axes_are_what_they_were(keeps):
     keeps("axes_moving", found)
 
 
+@pytest.mark.slow(
+    "plans, judges or places a part at length; others of its kind run every time",
+    only=("blades", "locked", "nearly", "two_of_some", "tilt", "rated_proved", "both"),
+)
 @pytest.mark.parametrize("case", CASES)
 def test_plans_are_what_they_were(keeps, case):
     name, options = CASES[case]

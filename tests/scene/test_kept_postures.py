@@ -94,6 +94,7 @@ GROOVES = {
 }
 
 
+@pytest.mark.slow("plans, judges or places a part at length; others of its kind run every time", only=("tee",))
 @pytest.mark.parametrize("name", GROOVES)
 def test_flats_and_flanks(name, keeps):
     of = GROOVES[name]
@@ -173,6 +174,7 @@ def test_searches(keeps):
     keeps("searches", said)
 
 
+@pytest.mark.slow("plans, judges or places a part at length; others of its kind run every time")
 def test_clearance(keeps):
     from tests.support.two_setups import two
 

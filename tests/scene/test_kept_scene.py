@@ -164,6 +164,7 @@ GRIPPED = {
 WORDS = ("vise", "vise:20x12x9:2", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
 
 
+@pytest.mark.slow("plans, judges or places a part at length; others of its kind run every time", only=("shaft", "apart"))
 @pytest.mark.parametrize("name", GRIPPED)
 def test_how_vises_and_chucks_hold_parts(name, keeps):
     scene, said = Scene.of(read_part(GRIPPED[name]()), tolerance=0.3), {}
