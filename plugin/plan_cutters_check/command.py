@@ -109,6 +109,8 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[st
         raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
     if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
         raise OptionError("is no plan.json of plan-cutters", file=file)
+    if not document.get("operations"):
+        raise OptionError("has no operations: make the plan with --operations", file=file)
     stated = {each["name"]: each["sha256"] for each in document.get("files", {}).values() if isinstance(each, dict)}
     arrays, checksums = {}, {}
     for name, noun in _FILES.items():

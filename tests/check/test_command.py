@@ -50,6 +50,16 @@ def test_arrays_of_another_plan_end_with_1(copied):
     assert "samples.npz is not the file that plan.json names" in " ".join(done.stdout.split())
 
 
+def test_a_plan_without_operations_is_refused_by_its_name(copied):
+    """Its folder has no arrays of them: that is no missing file."""
+    document = json.loads((copied / "plan.json").read_text())
+    (copied / "plan.json").write_text(json.dumps({**document, "operations": None}))
+    (copied / "operations.npz").unlink()
+    done = checked(copied)
+    assert done.returncode == 2
+    assert done.stderr.strip().splitlines()[-1].endswith("plan.json: has no operations: make the plan with --operations")
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_files_that_are_not_there_or_broken_end_with_2(copied, name):
     (copied / name).write_bytes(b"no archive")
