@@ -89,8 +89,8 @@ def answer_schema(model: type[BaseModel]) -> dict[str, Any]:
     schema = model.model_json_schema(mode="serialization")
     fields = {}
     for name, field in schema["properties"].items():
-        short = _field(field, schema.get("$defs", {}), nullable=True)
-        fields[name] = {key: value for key, value in short.items() if key in ("type", "const", "enum")}
+        needed = _field(field, schema.get("$defs", {}), nullable=True)
+        fields[name] = {key: value for key, value in needed.items() if key in ("type", "const", "enum")}
         if name in LISTS:
             fields[f"more_{name}"] = {"type": "integer"}
     # An answer has all its fields; to list them again would say nothing new.
@@ -102,21 +102,21 @@ def _field(field: dict[str, Any], definitions: dict[str, Any], *, nullable: bool
     if reference := field.get("$ref", ""):
         there = definitions[reference.rpartition("/")[2]]
         field = {key: there[key] for key in ("type", "enum", "const") if key in there} | field
-    short = {key: field[key] for key in _FIELDS if key in field and field[key] not in (None, [], "")}
-    if len(short.get("pattern", "")) > _PATTERN:
-        del short["pattern"]
+    needed = {key: field[key] for key in _FIELDS if key in field and field[key] not in (None, [], "")}
+    if len(needed.get("pattern", "")) > _PATTERN:
+        del needed["pattern"]
     if choices := field.get("anyOf"):
         made = [_field(each, definitions) for each in choices]
         types = [each["type"] for each in made if "type" in each]
         merged = next((each for each in made if each.get("type") != "null"), {})
-        short = {**merged, **short}
+        needed = {**merged, **needed}
         if nullable and len(types) > 1:
-            short["type"] = types
-    if "prefixItems" in short:
+            needed["type"] = types
+    if "prefixItems" in needed:
         # Points and ranges: so many numbers.
-        items = short.pop("prefixItems")
-        short |= {"items": {"type": "number"}, "minItems": len(items), "maxItems": len(items)}
-    if isinstance(short.get("items"), dict):
-        items = _field(short["items"], definitions)
-        short["items"] = {key: value for key, value in items.items() if key not in ("description", "pattern")}
-    return short
+        items = needed.pop("prefixItems")
+        needed |= {"items": {"type": "number"}, "minItems": len(items), "maxItems": len(items)}
+    if isinstance(needed.get("items"), dict):
+        items = _field(needed["items"], definitions)
+        needed["items"] = {key: value for key, value in items.items() if key not in ("description", "pattern")}
+    return needed

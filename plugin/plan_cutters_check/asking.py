@@ -35,12 +35,10 @@ def question_of(
     """
     from cad_io.part.orient import orient
     from cad_io.part.repeats import repeated_faces
-    from plan_cutters.errors import OptionError
     from plan_cutters.scene.faces import ignored_faces, ignored_words
-    from plan_cutters_check.question import Question
+    from plan_cutters_check.question import Question, require_operations
 
-    if not isinstance(document.get("operations"), dict):
-        raise OptionError("the plan has no operations: make it with --operations")
+    require_operations(document)
     cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
     ignored = ignored_faces(part, ignored_words(part, options.ignore))

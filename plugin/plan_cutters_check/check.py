@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters.errors import OptionError
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import Clock
 from plan_cutters_check.document import document_of
@@ -22,7 +21,7 @@ from plan_cutters_check.leaves import Compared, compared
 from plan_cutters_check.moving import ill_formed
 from plan_cutters_check.paper import Paper
 from plan_cutters_check.patterns import Patterns
-from plan_cutters_check.question import Question
+from plan_cutters_check.question import Question, require_operations
 from plan_cutters_check.reading import faults
 from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.trials import Trials
@@ -50,8 +49,7 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
     OptionError
         The plan has no operations.
     """
-    if not isinstance(question.document.get("operations"), dict):
-        raise OptionError("the plan has no operations: make it with --operations")
+    require_operations(question.document)
     wrong = [Finding(False, each) for each in faults(question)]
     if wrong:
         return Answer(tuple(wrong), Compared())

@@ -100,6 +100,7 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[st
     """plan.json, the arrays beside it, and of each of these files the SHA-256 that is stated and that it has."""
     from plan_cutters.errors import OptionError
     from plan_cutters.files.arrays import Archive
+    from plan_cutters_check.question import require_operations
 
     try:
         document = json.loads(Path(file).read_text(encoding="utf-8"))
@@ -109,8 +110,7 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[st
         raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
     if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
         raise OptionError("is no plan.json of plan-cutters", file=file)
-    if not document.get("operations"):
-        raise OptionError("has no operations: make the plan with --operations", file=file)
+    require_operations(document, file)
     stated = {each["name"]: each["sha256"] for each in document.get("files", {}).values() if isinstance(each, dict)}
     arrays, checksums = {}, {}
     for name, noun in _FILES.items():

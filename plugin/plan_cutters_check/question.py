@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats
+from plan_cutters.errors import OptionError
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +178,18 @@ def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats)
         along = (vectors @ direction)[:, None] * direction
         vectors = along + c * (vectors - along) + s * np.cross(direction, vectors)
     return np.asarray(vectors @ frame)
+
+
+def require_operations(document: Mapping[str, Any], file: str | None = None) -> None:
+    """See to it that a plan.json has operations to check.
+
+    Raises
+    ------
+    OptionError
+        It has none.
+    """
+    if not isinstance(document.get("operations"), dict):
+        raise OptionError("the plan has no operations: make it with --operations", file=file)
 
 
 def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:

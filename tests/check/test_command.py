@@ -57,7 +57,7 @@ def test_a_plan_without_operations_is_refused_by_its_name(copied):
     (copied / "operations.npz").unlink()
     done = checked(copied)
     assert done.returncode == 2
-    assert done.stderr.strip().splitlines()[-1].endswith("plan.json: has no operations: make the plan with --operations")
+    assert done.stderr.strip().splitlines()[-1].endswith("plan.json: the plan has no operations: make it with --operations")
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
 
 from cad_io.arrays import Triangles
 from plan_cutters import Cutter, plan
@@ -57,13 +56,9 @@ def around():
     rng = np.random.default_rng(2)
     vertex, weight = [waves.triangles(15)], [np.zeros(2 * 14 * 14, np.int8)]
     for i, middle in enumerate([(9.1, 12.3, 9.7), (27.3, 21.9, 12.1), (15.7, 31.1, 6.3)]):
-        hull = ConvexHull(np.array(middle) + rng.normal(0, 2.1, (14, 3)))
-        triangles = hull.points[hull.simplices]
-        normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        turn = ((normal * hull.equations[:, :3]).sum(axis=1) < 0) ^ (i == 1)
-        triangles[turn] = triangles[turn][:, ::-1]
+        triangles, counted, _ = waves.hull_of(np.array(middle) + rng.normal(0, 2.1, (14, 3)), inside_out=i == 1)
         vertex.append(triangles)
-        weight.append(np.full(len(triangles), -1 if i == 1 else 1, np.int8))
+        weight.append(counted)
     corner = np.ascontiguousarray(np.concatenate(vertex))
     return Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.013, ()), np.concatenate(weight))
 

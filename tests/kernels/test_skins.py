@@ -5,27 +5,21 @@ The reference is bodies without a dent, which are known by the planes of their f
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
 
 from plan_cutters.kernels.linear import tree
 from plan_cutters.kernels.material import Solids, far_inside, mark_shell, moments, near_shell, windings
 from plan_cutters.kernels.rows import Tree
 from tests.support.distances import closest
+from tests.support.waves import hull_of
 
 
 def bodies(rng, count, corners):
     """Bodies without a dent, of which every second one is inside out: triangles, how each counts, and a test of points."""
     vertex, weight, hulls = [], [], []
     for i in range(count):
-        hull = ConvexHull(rng.normal(0, 3, 3) + rng.normal(0, 3, (corners, 3)))
-        triangles = hull.points[hull.simplices]
-        normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-        outward = np.einsum("ij,ij->i", normal, hull.equations[:, :3]) > 0
-        turn = outward if i % 2 else ~outward
-        triangles[turn] = triangles[turn][:, ::-1]
-        vertex.append(triangles)
-        weight.append(np.full(len(triangles), -1 if i % 2 else 1, np.int8))
-        hulls.append(hull.equations)
+        each = hull_of(rng.normal(0, 3, 3) + rng.normal(0, 3, (corners, 3)), inside_out=i % 2 == 1)
+        for many, one in zip((vertex, weight, hulls), each, strict=True):
+            many.append(one)
 
     def beyond(points):
         """How far points (n, 3) are beyond the planes of each body (count, n), mm; negative within."""

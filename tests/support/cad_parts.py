@@ -5,20 +5,27 @@ import math
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert, BRepBuilderAPI_Transform
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_NurbsConvert,
+    BRepBuilderAPI_Transform,
+)
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
     BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakePrism,
+    BRepPrimAPI_MakeRevol,
     BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeTorus,
 )
-from OCP.Geom import Geom_BSplineSurface
+from OCP.Geom import Geom_BezierCurve, Geom_BSplineSurface
 from OCP.GeomAPI import GeomAPI_PointsToBSplineSurface
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shell
@@ -74,6 +81,25 @@ def pocketed(r=5.0):
 
 def as_nurbs(shape):
     return BRepBuilderAPI_NurbsConvert(shape, True).Shape()
+
+
+def _bezier(points):
+    pole = TColgp_Array1OfPnt(1, len(points))
+    for i, p in enumerate(points, 1):
+        pole.SetValue(i, gp_Pnt(*p))
+    return BRepBuilderAPI_MakeEdge(Geom_BezierCurve(pole)).Edge()
+
+
+def extruded_arc():
+    """A face that an arc of a cubic Bezier curve leaves behind along a line."""
+    return BRepPrimAPI_MakePrism(_bezier([(0, 0, 0), (5, 8, 0), (12, -6, 1), (20, 3, 0)]), gp_Vec(1, 2, 9)).Shape()
+
+
+def revolved_wave():
+    """A face that a cubic Bezier curve leaves behind round an axis."""
+    return BRepPrimAPI_MakeRevol(
+        _bezier([(6, 0, 0), (9, 0, 5), (3, 0, 8), (7, 0, 14)]), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
+    ).Shape()
 
 
 def compound(*shapes):

@@ -1,6 +1,7 @@
 """A surface of waves by formula alone: an input for the kernels that no other program has a part in."""
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
@@ -42,6 +43,17 @@ def triangles(n):
     point = samples(n).point.reshape(n, n, 3)
     a, b, c, d = point[:-1, :-1], point[1:, :-1], point[1:, 1:], point[:-1, 1:]
     return np.ascontiguousarray(np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3))
+
+
+def hull_of(points, *, inside_out):
+    """A body without a dent: its triangles (m, 3, 3), how each counts (m,), and the planes (m, 4) of its faces."""
+    hull = ConvexHull(points)
+    corner = hull.points[hull.simplices]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    outward = np.einsum("ij,ij->i", normal, hull.equations[:, :3]) > 0
+    turn = outward if inside_out else ~outward
+    corner[turn] = corner[turn][:, ::-1]
+    return corner, np.full(len(corner), -1 if inside_out else 1, np.int8), hull.equations
 
 
 def tree_of(vertex):

@@ -128,16 +128,16 @@ def repeated_groups(
     """
     from cad_io.part.repeats import repeats
 
-    out, bodies_out = set(repeated), []
+    out, groups = set(repeated), []
     for each in repeats(part):
         bodies = [*zip(each.bodies, each.faces, strict=False)]
         these = [(body, faces) for body, faces in bodies if out.issuperset(faces)]
         if not these or len(these) == len(bodies):
             continue
         stays, own = next(one for one in bodies if one not in these)
-        bodies_out += [(body, faces, stays, own) for body, faces in these]
+        groups += [(body, faces, stays, own) for body, faces in these]
         out -= {n for _, faces in these for n in faces}
-    return bodies_out, frozenset(out)
+    return groups, frozenset(out)
 
 
 def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:

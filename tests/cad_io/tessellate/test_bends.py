@@ -5,13 +5,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
-from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol
-from OCP.Geom import Geom_BezierCurve, Geom_BSplineSurface, Geom_OffsetSurface
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.Geom import Geom_BSplineSurface, Geom_OffsetSurface
 from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.Geom2dAdaptor import Geom2dAdaptor_Curve
-from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Vec
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
+from OCP.gp import gp_Pnt2d
+from OCP.TColgp import TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
 from cad_io import read_part
@@ -20,29 +19,12 @@ from cad_io.surface import Surface
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.bounds import FINE, Ground, bend, most_inside, table_of, twist_share, window
 from cad_io.tessellate.curves import packed, point, strays, workspace
-from tests.support.cad_parts import as_nurbs, ball, compound, cone, drilled, patch, real, ring, rod
+from tests.support.cad_parts import as_nurbs, ball, compound, cone, drilled, extruded_arc, patch, real, revolved_wave, ring, rod
 from tests.support.distances import farthest_from
 from tests.support.splines import array, bspline
 
 #: Points of a triangle, in shares of its corners.
 DENSE = np.array([(a, b, 24 - a - b) for a in range(25) for b in range(25 - a)]) / 24
-
-
-def arc(points):
-    pole = TColgp_Array1OfPnt(1, len(points))
-    for i, p in enumerate(points, 1):
-        pole.SetValue(i, gp_Pnt(*p))
-    return BRepBuilderAPI_MakeEdge(Geom_BezierCurve(pole)).Edge()
-
-
-def extruded():
-    return BRepPrimAPI_MakePrism(arc([(0, 0, 0), (5, 8, 0), (12, -6, 1), (20, 3, 0)]), gp_Vec(1, 2, 9)).Shape()
-
-
-def turned():
-    return BRepPrimAPI_MakeRevol(
-        arc([(6, 0, 0), (9, 0, 5), (3, 0, 8), (7, 0, 14)]), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
-    ).Shape()
 
 
 def bent_by(form, u, v, at_u, at_v):
@@ -74,7 +56,7 @@ def assert_bends(form, box, rng, cells=7):
     return off, spread
 
 
-@pytest.mark.parametrize("make", [rod, cone, ball, ring, drilled, patch, extruded, turned,
+@pytest.mark.parametrize("make", [rod, cone, ball, ring, drilled, patch, extruded_arc, revolved_wave,
                                   lambda: as_nurbs(ring()), lambda: as_nurbs(ball()), lambda: as_nurbs(cone())])  # fmt: skip
 def test_no_surface_bends_more_than_said(make):
     rng = np.random.default_rng(7)
@@ -111,7 +93,7 @@ def test_no_spline_bends_more_than_said(seed, degrees, spans, rational, periodic
 
 def test_bounds_close_in_as_cells_shrink():
     """By half with the cells: they would be of no use if they stayed wide. Quotients among them."""
-    for shape in (as_nurbs(ball()), as_nurbs(ring()), patch(), turned()):
+    for shape in (as_nurbs(ball()), as_nurbs(ring()), patch(), revolved_wave()):
         form = Surface(faces(shape)[0]).form
         adaptor = Surface(faces(shape)[0]).adaptor
         box = (adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter())
@@ -204,7 +186,7 @@ def test_lines_over_many_cells_are_as_long_as_the_longest_of_them(axis, ends):
 
 def test_bounds_of_small_triangles_are_near_what_is_measured():
     """Within a factor of two: else triangles would be laid where none is needed."""
-    for shape in (ring(), as_nurbs(ring()), patch(), turned(), as_nurbs(ball())):
+    for shape in (ring(), as_nurbs(ring()), patch(), revolved_wave(), as_nurbs(ball())):
         surface = Surface(faces(shape)[0])
         adaptor = surface.adaptor
         box = (adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter())

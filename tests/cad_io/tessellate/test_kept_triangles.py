@@ -3,11 +3,8 @@
 import numpy as np
 import pytest
 from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
-from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol
-from OCP.Geom import Geom_BezierCurve, Geom_OffsetSurface
-from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Vec
-from OCP.TColgp import TColgp_Array1OfPnt
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.Geom import Geom_OffsetSurface
 
 from cad_io import read_part
 from cad_io.part.unjudged import NO_AREA
@@ -24,10 +21,12 @@ from tests.support.cad_parts import (
     cone,
     cut,
     drilled,
+    extruded_arc,
     holed_patch,
     loose,
     patch,
     pocketed,
+    revolved_wave,
     ring,
     rod,
     spring,
@@ -38,23 +37,6 @@ from tests.support.splines import bspline
 
 def _random(seed, degrees, spans, *, rational=True):
     return bspline(np.random.default_rng(seed), degrees, spans, rational)[0]
-
-
-def _arc(points):
-    pole = TColgp_Array1OfPnt(1, len(points))
-    for i, point in enumerate(points, 1):
-        pole.SetValue(i, gp_Pnt(*point))
-    return BRepBuilderAPI_MakeEdge(Geom_BezierCurve(pole)).Edge()
-
-
-def extruded():
-    return BRepPrimAPI_MakePrism(_arc([(0, 0, 0), (5, 8, 0), (12, -6, 1), (20, 3, 0)]), gp_Vec(1, 2, 9)).Shape()
-
-
-def revolved():
-    return BRepPrimAPI_MakeRevol(
-        _arc([(6, 0, 0), (9, 0, 5), (3, 0, 8), (7, 0, 14)]), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
-    ).Shape()
 
 
 def offset(distance, base=patch):
@@ -72,9 +54,9 @@ SHAPES = {
     "bored ring": lambda: cut(ring(19.3, 5.1), rod(3.3, 60, (18.9, 1.3, -30))), "spring": lambda: spring(2, 10.3, 1.7, 6.1, 33),
     "loose": lambda: loose(pocketed(5.3), 0.013), "sharp": lambda: _random(5, (1, 3), (4, 3)),
     "smooth": lambda: _random(6, (4, 3), (2, 3)), "polynomial": lambda: _random(7, (2, 2), (5, 4), rational=False),
-    "extruded": extruded, "revolved": revolved, "offset": lambda: offset(1.5),
+    "extruded": extruded_arc, "revolved": revolved_wave, "offset": lambda: offset(1.5),
     "bored offset": lambda: cut(offset(-2.3), rod(9.1, 200, (7, 5, -100))), "long": lambda: _random(8, (2, 1), (3, 270)),
-    "many": lambda: compound(ring(19.3, 5.1), holed_patch(4), extruded(), offset(1.1), cone(8.1, 2.3, 10.7)),
+    "many": lambda: compound(ring(19.3, 5.1), holed_patch(4), extruded_arc(), offset(1.1), cone(8.1, 2.3, 10.7)),
 }  # fmt: skip
 CHORDS = (0.71, 0.053, 0.011)
 #: What takes long is asked for less.
