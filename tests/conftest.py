@@ -28,10 +28,6 @@ os.environ["PLAN_CUTTERS_CACHE"] = ""
 # Byte code is made once, for this process and for all that tests start.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-# glibc reads it when a process starts, those that share the tests included: they keep the memory that they have freed, in large
-# pages, instead of asking the system for it again.
-_KEPT = "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=1073741824:glibc.malloc.trim_threshold=4294967296"
-os.environ.setdefault("GLIBC_TUNABLES", _KEPT)
 
 #: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
 COMPILING, BESIDE = "ahead", ("domain", "house", "library", "machines")
