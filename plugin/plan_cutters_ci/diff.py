@@ -200,9 +200,10 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
     from plan_cutters_ci.review import PAGE, Side, page, picture_of
 
     made = {}
-    sides = {folder: plans_in(folder) for folder in (old, new)}
+    # A plan may be compared with itself.
+    sides = [(folder, plans_in(folder)) for folder in (old, new)]
     for each in comparison.plans:
-        name = "" if "" in sides[old] else each.name
+        name = "" if "" in sides[0][1] else each.name
         path = out / name / PAGE
         if (path.parent / PLAN).exists():
             raise PlanError("holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent))
@@ -214,7 +215,7 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-        plans = [(str(folder / name) if name else str(folder), files[name]) for folder, files in sides.items()]
+        plans = [(str(folder / name) if name else str(folder), files[name]) for folder, files in sides]
         with whole(path, PlanError) as temporary:
             shown = [Side(word, plan := load_plan(file), picture_of(file, plan)) for word, file in plans]
             temporary.write_bytes(page(each, *shown))
