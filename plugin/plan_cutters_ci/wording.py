@@ -243,7 +243,8 @@ def difference_cases(difference: PlanDifference) -> Iterator[Case]:
     yield Case(name, COMPARABLE)
     for face, (_, what, kind, size, was, now) in zip(difference.faces, face_rows(difference), strict=True):
         text = f"was {was}, now {now}" if face.was is not None else f"is new, and {now}"
-        case = Case(name, f"face {what}")
+        # A face that is gone and another one that is new may have one number.
+        case = Case(name, f"{'new ' * (face.was is None)}face {what}")
         yield case._replace(outcome="failure", kind="lost", message=text, details=f"{kind}, {size}") if face.lost else case
     for cutter, (_, what, was, now, faces, _, changed) in zip(difference.cutters, cutter_rows(difference), strict=True):
         more = [f"{CUTTERS[4]}: {faces}"] * bool(faces) + [f"changed: {changed}"] * bool(changed)

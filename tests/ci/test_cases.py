@@ -12,7 +12,7 @@ from plan_cutters_ci.changed_report import RULES, Row, row_cases
 from plan_cutters_ci.diff import compare_folders
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.repository import Changed
-from plan_cutters_ci.wording import comparison_cases
+from plan_cutters_ci.wording import comparison_cases, difference_cases
 from tests.support.forked import run
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import cutter, face, made, verdicts
@@ -60,6 +60,16 @@ def test_folders_of_many_have_a_case_for_each_plan(tmp_path):
     (lost,) = [each for each in found if each.name.startswith("face")]
     assert lost.name == "face F2 rim \ufffd<&>"
     assert lost.message == "was reached, now partly 50 % (holder collision)"
+
+
+def test_a_face_that_is_gone_and_another_one_of_its_number_are_two_cases():
+    difference = compare(ONES[0], ONES[1], name="part")
+    (one,) = difference.faces
+    apart = [one.model_copy(update={"new": None, "now": None}), one.model_copy(update={"old": None, "was": None})]
+    difference = difference.model_copy(update={"faces": apart})
+    names = [case.name for case in difference_cases(difference)]
+    assert {name.partition("F2")[0] for name in names if "face" in name} == {"face ", "new face "}
+    assert len({*names}) == len(names)
 
 
 def test_a_plan_that_cannot_be_read_is_an_error(tmp_path):
