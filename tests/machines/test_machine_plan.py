@@ -173,6 +173,7 @@ def test_several_setups_reach_more_together(tmp_path):
         assert (arrays[f"reached_in_{CUTTER.id}"] == np.stack([reach.reached for reach in alone], axis=1)).all()
 
 
+@pytest.mark.slow("plans parts whole")
 @pytest.mark.parametrize("machine", ["tilt:40", "trunnion-ac"])
 def test_another_setup_finds_what_a_plan_with_it_finds(machine):
     """Postures that are handed over are held there, and none is missed."""
