@@ -22,7 +22,7 @@ from tests.support.closed_forms import floor, wall
 CUTTER = Cutter.flat(radius=2, length=40)
 
 
-@pytest.mark.slow("plans and writes for each machine", only=("setup0-",))
+@pytest.mark.slow("plans and writes for each machine", but=("setup1-trunnion-ac", "setup1-head-table-bc"))
 @pytest.mark.parametrize("name", sorted(builtin_machines()))
 @pytest.mark.parametrize("setup", [(0, 0, 1), (1, -2, 0.5)])
 def test_postures_found_are_held(name, setup, tmp_path):
