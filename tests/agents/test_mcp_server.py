@@ -190,6 +190,7 @@ def test_written_files_are_linked(server, planned):
     assert [each.type for each in nothing.content] == ["text"]
 
 
+@pytest.mark.slow("starts a server")
 def test_two_plans_are_compared(server, planned, whole):
     """The groove with a shorter limit of tilt is another question."""
     found = server.call("compare_plans", old="whole/plan.json", new="out/plan.json")
@@ -243,6 +244,7 @@ def test_one_spacing_makes_the_samples_of_all_calls_the_same(server):
     assert one["spacing_mm"] == 6.0
 
 
+@pytest.mark.slow("starts a server")
 def test_a_second_call_takes_what_the_first_one_made_of_the_part(server, whole):
     cache = Path(f"{server.root}-cache")
 
@@ -289,6 +291,7 @@ def test_a_plan_that_is_there_is_explained_by_face_and_by_point(server, planned)
     assert "there is no such face" in server.refused("explain_sample", plan="out/plan.json", cutter="R6", face="F99")
 
 
+@pytest.mark.slow("starts a server")
 def test_why_not_and_what_would_help_is_one_call(server):
     found = server.call("explain_sample", part=PEAKS, cutter="R8L90", face="F1", grid=9)
     assert found["reached"] is False

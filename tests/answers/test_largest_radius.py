@@ -169,7 +169,7 @@ def test_a_sample_within_a_body_is_reached_by_no_radius():
 # The slow twin, and what is claimed of each sample
 
 
-@pytest.mark.slow("plans again for each answer", but=("1-ball",))
+@pytest.mark.slow("plans again for each answer")
 @pytest.mark.parametrize("shape", ENDS)
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_judge_of_every_radius_agrees(shape, seed):
@@ -193,7 +193,7 @@ def test_a_judge_of_every_radius_agrees(shape, seed):
     assert {INACCESSIBLE, UNDECIDED, UNJUDGED} == set(found.beyond.tolist())
 
 
-@pytest.mark.slow("another kind of the same law", only=("ball",))
+@pytest.mark.slow("another kind of the same law")
 @pytest.mark.parametrize("shape", ENDS)
 def test_the_postures_told_hold_the_tolerance(shape):
     """Independent of tree and search: every corner and middle of a triangle is no deeper in the cutter than the tolerance."""
@@ -284,6 +284,7 @@ def test_a_rigid_motion_changes_nothing(shape):
     assert (np.abs(steps) < 0.5).mean() > 0.97
 
 
+@pytest.mark.slow("plans parts whole")
 def test_threads_change_no_byte():
     stands, told = ready(patch(2), grid=36, tolerance=0.02), []
     maps = [largest_radius(replace(stands, conditions=replace(stands.conditions, jobs=jobs)), "ball", least=0.5, most=9.0,

@@ -148,6 +148,7 @@ def test_a_thinner_cutter_of_the_table_is_judged_as_a_plan_judges_it():
 # --- why nothing is looked for --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("plans parts whole")
 def test_nothing_is_asked_about_what_lies_inside_another_body():
     """It is no surface of the finished part: the rest is mended as if it were not there."""
     found, steps, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9)

@@ -37,6 +37,7 @@ def pocket(gap=4.0):
 POCKET = ("--cutter", "R3L25F10S3", "--holder", "R15L200", "--faces", "F1,F3", "--grid", "5", "--tilt", "0:0")
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
     """The floor of 560 mm2 is freed by a nose above the wall, that of 160 mm2 is still not reached."""
     result = asked(pocket(), *POCKET)
@@ -55,6 +56,7 @@ def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
     assert there.area_share.inaccessible == pytest.approx(step.lost_after, abs=1e-12)
 
 
+@pytest.mark.slow("plans parts whole")
 def test_two_changes_free_what_one_does_not():
     """Between walls 3.5 mm apart a flat end R2 does not go, and a smaller one may not be held out over the other wall."""
     result = asked(pocket(3.5), *POCKET)
@@ -132,6 +134,7 @@ def flat_faces(part):
     return ",".join(f"F{n}" for n in np.unique(found.face[np.abs(found.normal[:, 2]) > 0.5]))
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_pocket_from_below_needs_a_setup_and_a_stick_out():
     """Neither gains anything alone: the two are looked for together."""
     part = below()
@@ -149,6 +152,7 @@ def test_a_pocket_from_below_needs_a_setup_and_a_stick_out():
     assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
 
 
+@pytest.mark.slow("plans parts whole")
 def test_steps_that_free_enough_are_in_the_order_of_what_they_ask_for():
     """The drawer, setups, how a tool is held, a purchase; those that free less than half of the most come after them."""
     for entry in asked(SAMPLES / "pocket_top.step", *TRIED["pocket_top.step"]).cutters:

@@ -26,6 +26,7 @@ def held():
     return plan(box(40, 30, 20), fixtures="vise", **HOW)
 
 
+@pytest.mark.slow("plans parts whole")
 def test_each_proposed_setup_has_a_vise_placed_for_it(held):
     said = held.plan.setup_proposal
     assert said.held
@@ -119,12 +120,14 @@ def test_a_table_is_taken_where_jaws_hide_too_much():
     assert "the vise serves 75 %" in best_hold([table, vise], {"chuck": "none"}, area).why
 
 
+@pytest.mark.slow("plans parts whole")
 def test_where_no_vise_holds_the_part_one_line_says_so():
     with pytest.raises(OptionError, match="nothing to grip") as caught:
         plan(ball(), fixtures="vise", **HOW)
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow("plans parts whole")
 def test_setups_named_behind_auto_bring_what_holds_them(tmp_path, held):
     """What `--fixture` asked for falls away with `auto`, and that is told: the files say how the part is held."""
     from tests.support.forked import run

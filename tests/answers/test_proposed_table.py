@@ -34,6 +34,7 @@ def given():
     return on_table(())
 
 
+@pytest.mark.slow("plans parts whole")
 def test_verdicts_are_the_same_and_only_the_reason_differs(proposed, given):
     for cutter in (BALL, BIT):
         mine, theirs = (each.reaches[cutter.id] for each in (proposed, given))
@@ -71,6 +72,7 @@ def test_the_order_of_the_cutters_does_not_decide(proposed):
     assert turned.plan.process == proposed.plan.process
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_cutter_of_the_same_kind_still_takes_what_it_reaches_of_it():
     long = Cutter.parse("R1L80rc1")
     found = on_table(("F1",), (BALL, long, BIT))

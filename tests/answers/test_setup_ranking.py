@@ -136,6 +136,7 @@ def test_a_proposal_stands_on_faces_and_holds_what_it_promised():
     assert alone.by_reason["another_setup"] == 0
 
 
+@pytest.mark.slow("plans parts whole")
 def test_with_operations_the_fewest_setups_are_planned_together():
     found = plan(box(), setup="auto", machine="trunnion-ac", operations="fewest", **HOW)
     said = found.plan.setup_proposal
@@ -154,6 +155,7 @@ def test_with_operations_the_fewest_setups_are_planned_together():
         assert not set(found.samples.face[each.rows].tolist()) & held[each.setup]
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     """A ranking that promises too much: its plan falls short, the next direction is tried, and the plan says which one it is."""
     import plan_cutters.proposal as proposal

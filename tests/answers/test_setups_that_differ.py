@@ -15,7 +15,7 @@ from plan_cutters.judging.judge import judge
 from tests.support.cad_parts import box
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 
-pytestmark = pytest.mark.slow("plans again for each answer", but=("test_the_largest_radius",))
+pytestmark = pytest.mark.slow("plans again for each answer")
 
 TABLE = (Fixture.parse("table"),)
 

@@ -173,6 +173,7 @@ def test_what_is_in_the_way_is_in_the_holder(clearance):
     assert 0.0 < deep[0] <= BEYOND + EXACT
 
 
+@pytest.mark.slow("plans parts whole")
 def test_the_same_on_any_number_of_threads():
     cutter = Cutter.ball(radius=3, length=70, flutes=6, holder="R12:20L6+R20L40")
     found = []

@@ -92,6 +92,7 @@ def users(sources, name):
         found |= more
 
 
+@pytest.mark.slow("imports the package anew")
 def test_words_and_blank_lines_change_nothing(sources):
     names = with_machine_code(sources)
     assert len(names) > 30
@@ -165,6 +166,7 @@ def test_every_form_of_import_is_seen(tmp_path, line, zipped):
     assert printed(1) == printed(1) != printed(2)
 
 
+@pytest.mark.slow("imports the package anew")
 def test_notes_change_no_fingerprint(sources, tmp_path):
     """Whether they are missing, there, damaged or cannot be written."""
     names, notes = [SEARCH, REFINE], tmp_path / "notes"
@@ -201,6 +203,7 @@ def test_without_its_source_a_module_has_none(tmp_path):
     assert looked(tmp_path, ["nowhere"], path=ROOT / "plugin") == {"nowhere": "None"}
 
 
+@pytest.mark.slow("imports the package anew")
 def test_the_kernels_import_no_module_by_a_computed_name():
     """Such an import is not seen: none of the modules that machine code is made of may hide one."""
     script = (

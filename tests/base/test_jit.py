@@ -97,6 +97,7 @@ def test_a_kernel_that_is_kept_is_linked_into_the_next_entry(run):
     assert told["middle"][1:] == (0, 1)
 
 
+@pytest.mark.slow("compiles kernels")
 def test_python_calls_a_kernel(run):
     for _ in range(2):
         assert run("k.middle(x, 1), k.deepest(4.0), k.deepest(9), k.first(x)")[0] == [8.0, 3.0, 4.0, 6.0]

@@ -187,6 +187,7 @@ def in_a_process(work):
     return os.waitpid(child, 0)[1]
 
 
+@pytest.mark.slow("starts processes")
 @pytest.mark.parametrize("host", [ignored, waited_for])
 def test_a_program_may_wait_for_the_copies_itself(host):
     # A server ignores SIGCHLD, or its handler waits for all that ends: then there is nothing left to wait for.

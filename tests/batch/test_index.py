@@ -261,6 +261,7 @@ def names(page):
     return page.evaluate("[...document.querySelectorAll('#parts tbody tr.in')].map(row => row.cells[0].textContent)")
 
 
+@pytest.mark.slow("plans a folder of parts")
 def test_failures_stand_on_top_with_their_cause(page):
     assert names(page)[1:] == ["lost", "rim 10", "rim 9", "arm", "blade"]
     first = page.inner_text("#parts tbody tr:first-child")

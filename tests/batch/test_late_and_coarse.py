@@ -91,6 +91,7 @@ def test_a_part_that_is_late_has_the_plan_so_far_and_is_tried_again(out, tmp_pat
     assert (again.status, again.code, again.key) == ("planned", 0, row.key)
 
 
+@pytest.mark.slow("plans a folder of parts")
 def test_a_whole_plan_of_the_same_key_stays_where_a_later_run_is_late(out, tmp_path, monkeypatch):
     done = work.work(task_of(out)).row
     assert done.status == "planned"

@@ -81,6 +81,7 @@ def when_one_runs(client, act):
     return thread
 
 
+@pytest.mark.slow("plans a folder of parts")
 def test_rows_come_what_is_done_is_kept_and_a_broken_part_costs_itself(client, tmp_path):
     out = Store(str(tmp_path / "out"))
     parts = jobs(tmp_path, "a", "deep")

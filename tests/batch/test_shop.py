@@ -51,6 +51,7 @@ def smallest(accepts):
     return next(k for k in range(len(TOOLS) + 1) for each in itertools.combinations(TOOLS, k) if accepts(each))
 
 
+@pytest.mark.slow("plans a folder of parts")
 @given(shops())
 @settings(max_examples=150, deadline=None)
 def test_the_fewest_tools_are_those_of_brute_force(parts):
@@ -97,6 +98,7 @@ def test_a_search_that_ends_early_leaves_a_set_that_finishes_all(parts, end):
     assert result.at_least == 1
 
 
+@pytest.mark.slow("plans a folder of parts")
 @given(shops())
 @settings(max_examples=100, deadline=None)
 def test_ways_that_follow_from_others_change_neither_condition(parts):

@@ -71,6 +71,7 @@ FORGED = {
 }
 
 
+@pytest.mark.slow("checks whole plans", but=("order",))
 @pytest.mark.parametrize("forgery", FORGED)
 def test_a_forged_rotation_is_refused(forgery):
     stated = entries("impeller")
@@ -78,6 +79,7 @@ def test_a_forged_rotation_is_refused(forgery):
     assert wrong("impeller", stated)
 
 
+@pytest.mark.slow("checks whole plans")
 @pytest.mark.parametrize("kind", ["mirror", "shift"])
 def test_a_forged_mirror_or_shift_is_refused(kind):
     stated = entries("plate")

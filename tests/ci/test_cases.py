@@ -34,6 +34,7 @@ def saved(folder, one):
     (folder / "plan.json").write_text(dumps(one), encoding="utf-8")
 
 
+@pytest.mark.slow("plans pairs of parts", but=("4-4",))
 @pytest.mark.parametrize(("old", "new"), [*itertools.product(range(len(ONES)), repeat=2)])
 def test_a_comparison_fails_where_something_is_lost_and_is_an_error_where_it_cannot_be_told(tmp_path, old, new):
     saved(tmp_path / "old", ONES[old])

@@ -93,6 +93,7 @@ def test_a_rib_in_place_of_a_slot_is_another_feature():
             assert min(a.area_mm2, b.area_mm2) > 1000.0
 
 
+@pytest.mark.slow("plans pairs of parts", but=("turned",))
 @pytest.mark.parametrize(
     "moved",
     [
@@ -189,6 +190,7 @@ def old_rack():
     return planned(rack([4, 1.5, 4, 4]), (2,))
 
 
+@pytest.mark.slow("plans pairs of parts", but=("at2-True",))
 @pytest.mark.parametrize(("at", "mirrored"), [((17, 3, 0), False), ((20, 0, 0), False), ((0, 0, 0), True), ((0, 0, 0), False)])
 def test_a_part_that_moved_and_changed_hides_no_loss(old_rack, at, mirrored):
     """A bore narrowed and another one opened: where the row is moved, neither takes the place of the other."""

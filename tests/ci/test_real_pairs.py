@@ -38,6 +38,7 @@ def fat(before):
     return planned(pocket(), "R28L60", 14)
 
 
+@pytest.mark.slow("plans pairs of parts")
 def test_a_shorter_reach_under_a_fatter_holder_loses_the_pocket(before, fat):
     """The holder is the only thing that could be in the way: whatever is lost is lost to it."""
     found = compare(before, fat)

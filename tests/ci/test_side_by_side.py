@@ -24,7 +24,7 @@ from tests.support.forked import run
 from tests.support.places import ROOT
 from tests.support.review_page import decoded
 
-pytestmark = pytest.mark.slow("opens a browser", but=("test_axe_finds_nothing[1366-light]", "test_names_in_files_stay_names"))
+pytestmark = pytest.mark.slow("opens a browser", but=("test_names_in_files_stay_names",))
 
 AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
 NAME = "slot <img src=x>&.step"

@@ -61,6 +61,7 @@ def test_a_posture_map_ignores_too():
         posture_map(covered(), ignore="F1", **ask)
 
 
+@pytest.mark.slow("runs whole commands")
 def test_ignoring_on_the_command_line(tmp_path):
     writer = STEPControl_Writer()
     writer.Transfer(covered(), STEPControl_AsIs)

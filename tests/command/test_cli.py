@@ -151,6 +151,7 @@ def test_the_files_of_a_plan(tmp_path):
     assert len(done.stdout.splitlines()) <= 25
 
 
+@pytest.mark.slow("runs whole commands")
 def test_two_runs_give_the_same_bytes(tmp_path):
     """One in a process that begins with nothing, one in a copy of this one, which has done much else before."""
     words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "9", "--area-budget", "60", "--quiet"]

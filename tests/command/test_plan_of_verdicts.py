@@ -159,6 +159,7 @@ def test_answers_that_are_found_stay(tmp_path, monkeypatch):
     )
 
 
+@pytest.mark.slow("runs whole commands")
 def test_operations_that_are_planned_meanwhile_stay(tmp_path, monkeypatch):
     def late(*_, **__):
         time.sleep(3.0)
@@ -215,6 +216,7 @@ def test_a_plan_without_a_folder_is_told_and_handed_out(tmp_path, monkeypatch):
     assert leftovers(tmp_path) == []
 
 
+@pytest.mark.slow("runs whole commands")
 def test_a_proposal_that_is_interrupted_keeps_its_setups(tmp_path, monkeypatch):
     monkeypatch.setattr(Reasons, "of", interrupted)
     done = run(SAMPLES / "pocket_top.step", "--cutter", "R2L30", "--grid", "3", "--area-budget", "0", "--setup", "auto",

@@ -17,6 +17,7 @@ GROOVE = str(ROOT / "samples/v_groove.step")
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0", "--formats", "json")
 
 
+@pytest.mark.slow("runs whole commands", but=("tools-words1-2",))
 @pytest.mark.parametrize(
     ("subcommand", "words", "code"),
     [

@@ -56,6 +56,7 @@ def test_what_is_no_direction_is_refused(given):
         Options(setup=given)
 
 
+@pytest.mark.slow("takes shapes of a CAD library")
 def test_one_point_takes_the_x_of_a_plane_and_all_that_a_placement_says():
     words = {"point": (0, 0, 0), "cutter": "R8L90", "rotations_deg": [0, 40, 90], "machine": NARROW}
     scene = Scene.of(SAMPLES / "v_groove.step", setup=(0, 0.1, 1))

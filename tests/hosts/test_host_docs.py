@@ -8,6 +8,7 @@ import pytest
 from tests.support.places import ROOT
 
 
+@pytest.mark.slow("takes shapes of a CAD library")
 def test_the_page_runs(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
     code = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "hosts.md").read_text(), re.DOTALL)

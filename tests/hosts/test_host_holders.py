@@ -102,6 +102,7 @@ def spun():
     return profile.revolve(360, (0, 0), (0, 1)).val().wrapped
 
 
+@pytest.mark.slow("takes shapes of a CAD library", but=("0.5-spun-0.5",))
 @pytest.mark.parametrize(("make", "slack"), [(filleted, 0.01), (ball, 0.1), (waisted, 0.02), (spun, 0.5)])
 @pytest.mark.parametrize("tolerance", [0.02, 0.5])
 def test_curved_outlines_are_enclosed(make, slack, tolerance):
@@ -138,6 +139,7 @@ def upright(shape, degrees):
     return shape.rotate((0, 0, 0), (1, 0, 0), degrees)
 
 
+@pytest.mark.slow("takes shapes of a CAD library", but=("0",))
 @pytest.mark.parametrize("frame", [0, 90, 35])
 def test_a_ball_that_is_cut_off_does_not_lift_the_nose(frame):
     """The sphere's own frame may lie across: its full height, of which less is there, says nothing of where the nose is."""

@@ -59,6 +59,7 @@ def test_build123d_faces_are_judged_in_the_shape_they_came_from(milled):
     assert_slot(plan(floor_of(milled)[0], **SLOT))
 
 
+@pytest.mark.slow("takes shapes of a CAD library", but=("kernel face",))
 @pytest.mark.parametrize("how", ["workplane", "list", "face", "kernel face", "build123d", "number"])
 def test_targets_are_given_as_objects(slotted, milled, how):
     picked = slotted.faces(FLOOR)

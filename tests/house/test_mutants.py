@@ -157,6 +157,7 @@ def test_a_fault_that_a_test_notices_is_killed_by_it(reached, tmp_path):
     assert tried.void(list(rows.values()), copy) == "tests/room/test_m.py::test_of_two (1.)"
 
 
+@pytest.mark.slow("reads all files")
 def test_in_functions_that_are_there_a_fault_is_the_same(reached, tmp_path):
     """Each is put into a copy of a process that has collected the tests."""
     faults, out = list(drawn(tried.ROOT, ["plugin/plan_cutters/m.py"], "1")), tmp_path / "out"

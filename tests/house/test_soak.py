@@ -44,6 +44,8 @@ CASES = {
         "narrower_limits_never_give_more",
         "a_larger_tolerance_never_gives_less",
         "more_in_the_way_never_gives_more",
+        "the_checker_agrees",
+        "between_samples_is_safe",
     ),
 )
 @pytest.mark.parametrize("name", sorted(LAWS))

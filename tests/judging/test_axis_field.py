@@ -116,6 +116,7 @@ def stand(axis, offset):
     return offset * across / np.linalg.norm(across)
 
 
+@pytest.mark.slow("judges many samples")
 def test_a_field_that_does_not_turn_is_a_fixed_axis():
     """The same cells are served as with the axis kept, for a ball, whose other rules do not count."""
     cutter = Cutter.ball(radius=4, length=60)

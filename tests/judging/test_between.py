@@ -66,6 +66,7 @@ def test_flat_surfaces_are_served_by_their_samples():
     assert found.share == 1
 
 
+@pytest.mark.slow("judges many samples")
 def test_more_budget_never_serves_less_and_threads_do_not_matter():
     part = read_part(SAMPLES / "pocket_top.step")
     cutter = Cutter.flat(radius=8.0, length=90.0)
@@ -124,6 +125,7 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
     assert never > 15
 
 
+@pytest.mark.slow("judges many samples")
 def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
     """A ridge beside a wall, tilts of a quarter degree: within a cell the cutter would swing over to the wall, but in few small
     ones."""
@@ -145,6 +147,7 @@ def ridge_beside_a_wall():
     return read_part(shapes.shell(ridge, shapes.plane((-10, 22), (-3, 20), (9, 0, 0), (-1, 0, 0), (0, 1, 0))))
 
 
+@pytest.mark.slow("judges many samples")
 def test_a_cutter_that_leans_along_a_ridge_moves_farther_across_it_than_its_contact():
     """Twice as far: as the ridge bends, the cutter swings over to the wall."""
     part, cutter, tilt = ridge_beside_a_wall(), Cutter.flat(radius=5.0, length=30.0), math.radians(10.0)
@@ -198,6 +201,7 @@ def test_each_face_books_the_work_that_its_contacts_took(monkeypatch, most):
     assert sum(each.seen for each in made) == found.contacts > 50
 
 
+@pytest.mark.slow("judges many samples")
 def test_what_a_wall_hides_between_samples_is_not_served():
     """A thin rib between two rows of samples: no cell next to it may be called served by an axis that hits it."""
     rng = np.random.default_rng(5)

@@ -92,6 +92,7 @@ def test_what_breaks_the_pattern_is_judged_for_each(options):
     )
 
 
+@pytest.mark.slow("judges many samples")
 def test_ignored_faces_must_be_carried_onto_ignored_ones():
     (pattern,) = ready("impeller").patterns
     blade = pattern.faces[0]

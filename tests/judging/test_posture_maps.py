@@ -54,6 +54,7 @@ def test_every_tilt_in_a_free_interval_is_safe(found):
     assert (hit < 0).all()
 
 
+@pytest.mark.slow("judges many samples")
 def test_the_one_point_map_says_the_same(found):
     samples, maps = found.samples, found.maps
     for sample in range(0, len(samples), 17):

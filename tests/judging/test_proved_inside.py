@@ -22,6 +22,7 @@ from tests.support.tool_reference import Reference
 TILTS = np.linspace(0.0, np.pi / 2, 181)
 
 
+@pytest.mark.slow("judges many samples")
 @given(
     st.floats(0.5, 12.0), st.sampled_from([0.0, 0.1, 0.5, 1.0]), st.floats(2.0, 9.0), st.floats(0.03, 1.0), st.floats(0.01, 0.25)
 )

@@ -143,6 +143,7 @@ def test_nothing_is_searched_where_nothing_could_be_taken_away(plate, monkeypatc
     assert 0 < sum(calls) < sum(not_reached)
 
 
+@pytest.mark.slow("judges many samples")
 def test_reasons_are_the_same_whatever_other_cutters_there_are(plate):
     together = plan(plate, cutters=["R13L40", "R4L40", "R2L30"], machine="tilt:30", **HOW)
     for name, reach in together.reaches.items():

@@ -220,6 +220,7 @@ def test_an_undecided_sample_is_required():
     assert not exempt({cutter: reach}, ~inside).any()
 
 
+@pytest.mark.slow("judges many samples")
 def test_changes_and_operations_are_about_what_is_required():
     how = {"answers": "mend", "operations": "fewest", "machine": "trunnion-ac", "setup": (0.0, 0.0, 1.0)}
     result = left(pocket(), ["R3L40rc3"], "7-11", 2.0, **how)

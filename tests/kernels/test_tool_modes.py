@@ -172,6 +172,7 @@ def check_gouging(kind, count):
             gouged += 1
 
 
+@pytest.mark.slow("walks many boxes", but=("taper ball",))
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_dummy_holds_the_tool_in_every_rotation(kind):
     rng = np.random.default_rng(KINDS.index(kind))

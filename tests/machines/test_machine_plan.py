@@ -22,7 +22,7 @@ from tests.support.closed_forms import floor, wall
 CUTTER = Cutter.flat(radius=2, length=40)
 
 
-@pytest.mark.slow("plans and writes for each machine", only=("setup0-",))
+@pytest.mark.slow("plans and writes for each machine", but=("setup1-trunnion-ac", "setup1-head-table-bc"))
 @pytest.mark.parametrize("name", sorted(builtin_machines()))
 @pytest.mark.parametrize("setup", [(0, 0, 1), (1, -2, 0.5)])
 def test_postures_found_are_held(name, setup, tmp_path):
@@ -173,6 +173,7 @@ def test_several_setups_reach_more_together(tmp_path):
         assert (arrays[f"reached_in_{CUTTER.id}"] == np.stack([reach.reached for reach in alone], axis=1)).all()
 
 
+@pytest.mark.slow("plans parts whole")
 @pytest.mark.parametrize("machine", ["tilt:40", "trunnion-ac"])
 def test_another_setup_finds_what_a_plan_with_it_finds(machine):
     """Postures that are handed over are held there, and none is missed."""

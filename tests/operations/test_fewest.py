@@ -42,6 +42,7 @@ def caps(seed, n, m, reach):
     return a @ b.T > np.cos(reach)
 
 
+@pytest.mark.slow("plans operations")
 @given(st.integers(0, 2**31), st.floats(0.5, 1.2))
 @settings(max_examples=8, deadline=None)
 def test_few_rows_give_what_the_whole_table_gives(seed, reach):

@@ -39,6 +39,7 @@ def test_the_axis_is_that_of_the_pattern():
     assert (found.order, found.exact) == (6, True)
 
 
+@pytest.mark.slow("plans operations")
 def test_a_part_that_nearly_is_a_pattern_is_told_by_its_samples():
     found = symmetric(task(0.02)).symmetry
     assert (found.order, found.exact) == (6, False)
@@ -53,6 +54,7 @@ def test_nothing_is_repeated_where_axes_lock_or_it_was_refused():
     assert symmetric(task(most_operations=3)) is None
 
 
+@pytest.mark.slow("plans operations")
 def test_nothing_is_repeated_about_an_axis_that_is_not_the_machines():
     # Each image would have other angles of both axes: no planner calls these one step.
     assert symmetric(task(setup="x")) is None
@@ -84,6 +86,7 @@ def test_costs_are_those_of_the_best_image():
     assert np.isfinite(cost).any()
 
 
+@pytest.mark.slow("plans operations")
 def test_a_plan_of_repeated_steps_has_ordinary_operations():
     own = symmetric(task())
     columns = repeated(own, planning._first(task()), partial(planning._stored, task()), lambda done, total: None).chosen
@@ -99,6 +102,7 @@ def test_a_plan_of_repeated_steps_has_ordinary_operations():
     assert (made.label[reached] >= 0).all()
 
 
+@pytest.mark.slow("plans operations")
 def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says():
     own = symmetric(task())
     sector = own.rows[own.symmetry.sector(own.ready.samples.point[own.rows] - own.symmetry.place)]
@@ -119,7 +123,7 @@ def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says()
     assert copied.apart.cutting(every) == pytest.approx(copied.problem.cutting(chosen))
 
 
-@pytest.mark.slow("plans a part of repeated steps", only=("changes2",))
+@pytest.mark.slow("plans a part of repeated steps", only=("changes1", "changes2"))
 @pytest.mark.parametrize("changes", [{}, {"off": 0.02}, {"fixtures": "box:5,5,5@60,0,0"}])
 def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_pattern(changes):
     offer = planning._offer(task(**changes), lambda done, total: None)

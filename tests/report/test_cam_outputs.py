@@ -253,6 +253,7 @@ def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
     assert agreed[False]
 
 
+@pytest.mark.slow("writes many files")
 def test_names_that_no_file_can_hold_cost_no_file(tmp_path):
     part = cq.Assembly(cq.Workplane().box(20, 20, 5), name="half \ud800")
     fixture = Fixture(cq.Workplane().box(3, 3, 3).translate((14, 0, 2)), name='=1+1,"\n\udfff')

@@ -22,6 +22,7 @@ def held(request):
     return plan(box(40, 30, 20) if request.param == "vise" else rod(12, 30), fixtures=request.param, **HOW)
 
 
+@pytest.mark.slow("plans a part in a vise")
 def test_models_have_the_bodies(held, tmp_path):
     split = models.split_result(held)
     models.write_step(held, split, tmp_path / "a.step")

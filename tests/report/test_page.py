@@ -19,12 +19,7 @@ from tests.support.review_page import picture
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
 pytestmark = pytest.mark.slow(
-    "opens a browser",
-    but=(
-        "test_it_is_ready_soon_and_quiet",
-        "test_axe_finds_nothing[1366-light]",
-        "test_samples_have_the_colours_of_their_verdicts",
-    ),
+    "opens a browser", but=("test_axe_finds_nothing[1366-light]", "test_samples_have_the_colours_of_their_verdicts")
 )
 PART = ROOT / "samples" / "pocket_top.step"
 SCENE = {"fixtures": ["box:15,60,40@62,-10,-10"]}

@@ -15,13 +15,7 @@ from tests.support.review_page import Page
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
-pytestmark = pytest.mark.slow(
-    "opens a browser",
-    but=(
-        "test_a_doubt_is_seen_without_a_click_and_paper_has_the_reasons",
-        "test_the_first_screen_has_verdict_picture_and_the_cutter_shown[phone]",
-    ),
-)
+pytestmark = pytest.mark.slow("opens a browser", but=("test_the_first_screen_has_verdict_picture_and_the_cutter_shown[phone]",))
 #: The last one alone is too short for its holder.
 CUTTERS = [
     "D2L20", "D3L25", "D4L30", "D5L35", "D6L40", "D8L50", "D10L60", "D12L80", "D16L90", "D4L30rc2", "D6L40rc3", "D8L50rc4",

@@ -15,13 +15,7 @@ from tests.support.review_page import Page
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
-pytestmark = pytest.mark.slow(
-    "opens a browser",
-    but=(
-        "test_a_decision_needs_a_name_and_is_kept_with_the_state_of_notes",
-        "test_a_link_leads_to_the_same_cutter_sample_posture_and_view",
-    ),
-)
+pytestmark = pytest.mark.slow("opens a browser", but=("test_a_decision_needs_a_name_and_is_kept_with_the_state_of_notes",))
 #: The last two fail at the jaw.
 CUTTERS = ["D4L30", "D6L40", "D8L50", "D4L30rc2", "D6L40rc3", "D8L50rc4", "D20L12", "D12L20rc6"]
 #: Samples off the border of the face.

@@ -11,11 +11,7 @@ from tests.support.places import SAMPLES
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
 pytestmark = pytest.mark.slow(
-    "draws many pictures in software, once more with inertia",
-    but=(
-        "test_a_pinch_zooms_about_what_lies_between_the_fingers_and_turns_nothing[reduce]",
-        "test_a_tap_chooses_the_sample_there[reduce]",
-    ),
+    "draws many pictures in software, once more with inertia", but=("test_a_tap_chooses_the_sample_there[reduce]",)
 )
 
 

@@ -142,6 +142,7 @@ def test_a_vise_stands_along_the_setup_axis_with_a_jaw_on_each_face(setup):
     assert scene.part.centre(hold.rests_on[0]) == pytest.approx(np.array(hold.fixture.shift), abs=1e-6)
 
 
+@pytest.mark.slow("grips many parts", but=("100.0-6",))
 @pytest.mark.parametrize("jaws", [2, 3, 4, 6])
 @pytest.mark.parametrize("gap", [0.0, 40.0, 100.0])
 def test_jaws_of_a_chuck_touch_the_cylinder_over_half_of_their_width_each(jaws, gap):

@@ -152,6 +152,7 @@ def numbers(value, where=""):
         yield where, value
 
 
+@pytest.mark.slow("plans parts whole")
 def test_no_area_or_share_of_a_broken_screw_is_negative_and_samples_are_bounded_by_area():
     document = planned(real_file("trials/ocp198_screw.step"), grid=None, spacing=0.7, faces="all")
     assert document.samples.count < 2000

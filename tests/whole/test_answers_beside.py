@@ -43,6 +43,7 @@ def test_they_are_those_that_are_made_one_after_the_other(tmp_path, in_turn, mon
     assert {"stick-out", "mend", "operations"} <= set(seconds) & set(in_turn[0])
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
     monkeypatch.setattr(
         copies.SideProcess, "result", lambda self, here=None, waiting=None: (self.__exit__(), (here or self._call)())[1]
@@ -50,6 +51,7 @@ def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
     assert document(tmp_path, jobs=2)[1] == in_turn[1]
 
 
+@pytest.mark.slow("plans parts whole")
 def test_the_progress_of_the_copy_is_told_while_it_is_waited_for(monkeypatch):
     told = []
 

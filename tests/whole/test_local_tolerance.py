@@ -188,6 +188,7 @@ def test_no_posture_of_ten_thousand_lets_the_true_surface_come_too_deep(radius, 
     assert -1e-6 < deepest <= TOLERANCE
 
 
+@pytest.mark.slow("plans parts whole")
 def test_posture_maps_and_the_map_of_a_point_follow_the_same_rule():
     part = read_part(fillet(0.4999))
     result = plan(part, cutters=[BALL], tolerance=TOLERANCE, grid=3, area_budget=0, posture_maps=True, faces="1")

@@ -66,6 +66,7 @@ def test_the_same_question_is_read_and_has_the_same_bytes(tmp_path, part, words)
     same(first, second)
 
 
+@pytest.mark.slow("plans parts whole", but=("words2-made2",))
 @pytest.mark.parametrize(("words", "made"), [
     ({"cutters": ["R3L40", "R3L40rc1"]}, {"verdicts", "witnesses", "area"}),
     ({"machine": "tilt:60"}, {"verdicts", "witnesses", "area"}),

@@ -190,6 +190,7 @@ def test_stock_left_lifts_the_tool_off():
     assert_intervals(intervals, (0, before(half, high - radius - left, radius + left)))
 
 
+@pytest.mark.slow("plans parts whole")
 def test_a_barrel_on_a_cylinder():
     """On a ridge it is free wherever its flank touches; in a trough narrower than itself only where it leans enough."""
     cutter = Cutter.barrel(radius=12, flank_radius=60, length=60, height=20, flutes=35)

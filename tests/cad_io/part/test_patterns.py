@@ -43,6 +43,7 @@ def test_a_part_of_other_order_has_that_order():
     assert whole(impeller(5)) == [("rotation", 5)]
 
 
+@pytest.mark.slow("works on many faces")
 def test_pockets_are_shifted_copies_and_the_plate_its_own_mirror_image():
     every = found(plate(4, 3))
     assert sorted((each.kind, each.order) for each in every if each.whole) == [("mirror", 2), ("mirror", 2), ("rotation", 2)]

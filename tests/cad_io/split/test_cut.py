@@ -236,6 +236,7 @@ print(hashlib.sha256(stream.getvalue()).hexdigest(), [(p.face, p.label, sorted(p
 """
 
 
+@pytest.mark.slow("works on many faces")
 def test_the_bytes_repeat_in_every_process(capsys):
     there = subprocess.run([sys.executable, "-c", BYTES, "70001"], check=True, capture_output=True, text=True, timeout=120,
                            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "PYTHONHASHSEED": "22"})  # fmt: skip

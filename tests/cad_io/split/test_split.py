@@ -186,6 +186,7 @@ def test_two_edges_in_place_of_a_seam(tmp_path):
     assert len([p for p in found.pieces if p.face == wall]) > 5
 
 
+@pytest.mark.slow("works on many faces")
 def test_rigid_motion_moves_the_pieces():
     turn = gp_Trsf()
     turn.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(1, 2, 1)), 1.1)
@@ -286,6 +287,7 @@ def test_a_face_that_never_splits_ends_within_its_bound_and_costs_itself_alone(h
     assert Part(found.shape).closed
 
 
+@pytest.mark.slow("works on many faces")
 def test_where_all_faces_hang_a_few_are_tried(monkeypatch):
     part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
     monkeypatch.setattr(attempt, "pieces", lambda *_: spin(None))

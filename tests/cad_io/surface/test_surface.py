@@ -77,6 +77,7 @@ def test_faces_of_real_files(path):
     assert assert_faces(read_part(path), np.random.default_rng(2), 25)
 
 
+@pytest.mark.slow("works on many faces")
 @given(
     seed=st.integers(0, 10**6), degrees=st.tuples(st.integers(1, 7), st.integers(1, 7)),
     spans=st.tuples(st.integers(2, 6), st.integers(2, 6)), rational=st.booleans(),

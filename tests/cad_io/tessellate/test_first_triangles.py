@@ -308,6 +308,7 @@ def test_the_second_way_keeps_the_promise_too(make, monkeypatch):
     assert all(BRep_Tool.Triangulation_s(face, TopLoc_Location()) is None for face in faces(part.shape))
 
 
+@pytest.mark.slow("works on many faces")
 def test_what_never_meshes_costs_its_own_faces_only(monkeypatch):
     own = start.own_start
     monkeypatch.setattr(start, "own_start", lambda part, n, chord: None if n < 5 else own(part, n, chord))
@@ -363,6 +364,7 @@ def test_a_face_that_never_meshes_is_not_drawn_and_others_are(monkeypatch):
     assert time.monotonic() - began < 20
 
 
+@pytest.mark.slow("works on many faces")
 def test_many_faces_that_never_mesh_end_in_time(monkeypatch):
     monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
     monkeypatch.setattr(mesher, "HANGS", 2)

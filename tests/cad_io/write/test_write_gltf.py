@@ -78,6 +78,7 @@ def test_each_colour_is_a_material_in_linear_light(halves, drawn):
     assert linear((0.0, 0.5, 1.0)) == pytest.approx([0, 0.214041, 1], abs=1e-6)
 
 
+@pytest.mark.slow("works on many faces")
 def test_the_merged_mesh_has_vertex_colours_under_white(halves, tmp_path):
     _, found = halves
     write(found, tmp_path / "p.glb", merged=True)
@@ -142,6 +143,7 @@ def test_same_bytes_whatever_mesh_the_part_carries(halves, tmp_path):
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
 
 
+@pytest.mark.slow("works on many faces")
 def test_what_cannot_be_written(halves, tmp_path, monkeypatch):
     _, found = halves
     with pytest.raises(WriteError, match="cannot be written"):
