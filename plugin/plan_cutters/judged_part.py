@@ -13,13 +13,10 @@ from cad_io.part.inside_edges import inside_edges
 from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.inside_radii import inside_radius_entries
+from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
 from plan_cutters.document.notes import noted
-from plan_cutters.document.over_setups import OtherSetup, OverSetups
-from plan_cutters.document.patterns import pattern_entries
 from plan_cutters.document.plan import completed, plan_of, selection
-from plan_cutters.document.setup_table import setup_table
-from plan_cutters.document.sharp_edges import sharp_edge_entries
+from plan_cutters.document.setups import OtherSetup, OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
@@ -39,7 +36,7 @@ from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.notes import maps_partial
-from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
+from plan_cutters.plan_file.part_info import SharpEdgeEntry
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context

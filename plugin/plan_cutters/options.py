@@ -3,31 +3,112 @@
 import inspect
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Unpack, cast
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, cast
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, did_you_mean, flag, not_empty, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.default_tools import builtin
-from plan_cutters.domain.degrees import degrees_too
+from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.host_axes import HostAxis, HostPlane
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
-from plan_cutters.library.presets import feed_of
-from plan_cutters.library.records import Entry, Library, libraries_of
+from plan_cutters.library.cutting import feed_of
+from plan_cutters.library.raw_tool import Entry, Library, libraries_of
 from plan_cutters.machines.requested_operations import operations_requested, process_requested
-from plan_cutters.option_types import ANGLES, OF_CALLS, Answer, Operations, PlanOptions, SharpEdges
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
+
+#: Axes of the part by name; `auto`: the setups that the plan proposes.
+SetupWord = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "X", "+X", "-X", "Y", "+Y", "-Y", "Z", "+Z", "-Z", "auto"]
+#: A text is a word: type checkers find those that are none. A setup file is a path.
+Setup = SetupWord | HostAxis | Iterable[float] | HostPlane | Placement | os.PathLike[str]
+#: Options that are angles, and what each may be in degrees.
+ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_step": Angle(0.5, 90.0),
+          "axis_accuracy": Angle(0.0, 1.0)}  # fmt: skip
+
+
+#: What calls take beside options: it may be meant where a name is mistyped.
+OF_CALLS = ("part", "progress", "cache")
+#: Words of options that take no other text.
+Operations = Literal["fewest", "fastest", "both"]
+Answer = Literal["stick-out", "radius", "mend", "all"]
+SharpEdges = Literal["asked", "left"]
+
+
+class PointOptions(TypedDict, total=False):
+    """Options of one point, of a scene and of a plan, as a caller may give them: `Options` says what each means."""
+
+    setup: Setup
+    flip: bool
+    ignore: Any
+    fixtures: Any
+
+
+class SceneOptions(PointOptions, total=False):
+    """Options of a scene and of a plan."""
+
+    tolerance: float
+
+
+class PlanOptions(SceneOptions, total=False):
+    """Options of a plan: the names of `Options`, those of its angles in degrees, and the types that it takes, not keeps."""
+
+    cutters: Cutter | str | Library | Sequence[Cutter | str] | None
+    libraries: Library | Sequence[Library] | None
+    holder: Holder | str | None
+    allowance: float
+    holder_clearance: float
+    machine: Machine | str | os.PathLike[str] | None
+    other_setups: Sequence[Setup]
+    faces: Any
+    grid: int | None
+    spacing: float | None
+    tilt: Range | None
+    rotation: Range
+    rotation_step: float
+    tilt_deg: Range | None
+    rotation_deg: Range | None
+    rotation_step_deg: float | None
+    jobs: int | None
+    area_budget: int | None
+    posture_maps: bool
+    map_budget: int | None
+    answers: Answer | Sequence[Answer]
+    length_over_radius: float
+    operations: Operations | None
+    feed: float | None
+    scallop: float
+    stepover: float
+    index_step: float | None
+    index_step_deg: float | None
+    axis_accuracy: float | None
+    axis_accuracy_deg: float | None
+    index_time: float | None
+    change_time: float
+    setup_time: float
+    overlap: float
+    most_operations: int | None
+    sharp_edges: SharpEdges
+    max_orientations: int
+    process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
+    patterns: bool
+    units: Literal["mm", "in"] | None
+    unit: str | None
+    placement: Placement | None
+    other_placements: Sequence[Placement | None]
+    propose: bool
+
 
 #: Gouge tolerances that can be requested, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0

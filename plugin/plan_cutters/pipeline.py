@@ -16,7 +16,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.over_setups import OtherSetup
+from plan_cutters.document.setups import OtherSetup
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
@@ -32,8 +32,7 @@ from plan_cutters.judging.classify import classify, regions
 from plan_cutters.judging.judge import Judge, judge
 from plan_cutters.judging.judge_once import JudgeOnce
 from plan_cutters.judging.other_setups import in_setup
-from plan_cutters.option_types import PlanOptions
-from plan_cutters.options import Options
+from plan_cutters.options import Options, PlanOptions
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.proposal import Stand, judged_proposed

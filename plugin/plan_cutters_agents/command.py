@@ -10,10 +10,9 @@ from typing import NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
-from plan_cutters.command.values import Folder
+from plan_cutters.command.validation import Folder
 from plan_cutters_base.workers.assignment import INTERRUPTED
 
 _SELF = "plan-cutters mcp"

@@ -8,15 +8,14 @@ from typing import Any
 from plan_cutters.domain.figures import listed
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.process import OwnStepEntry
+from plan_cutters.plan_file.operations import OwnStepEntry
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.cutters import main_reason, reason
 from plan_cutters.plan_file.words.face import face_text, helping, in_the_way, posture_text, sample_text
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.needs import first_tries
-from plan_cutters.plan_file.words.story import shown
-from plan_cutters.plan_file.words.text import text_of
+from plan_cutters.plan_file.words.next_steps import first_tries
+from plan_cutters.plan_file.words.text import shown, text_of
 from plan_cutters_agents import answers
 from plan_cutters_agents.access import CallError
 from plan_cutters_agents.answers import Note, Vector

@@ -9,7 +9,7 @@ from pydantic.functional_validators import AfterValidator, WrapValidator
 from plan_cutters.domain.answer_kinds import ANSWERS, KINDS
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.process_file import ProcessTable, process_of
-from plan_cutters.machines.toml_in import explained
+from plan_cutters.machines.toml import explained
 
 #: Words of the command line are short.
 Word = Annotated[str, Field(min_length=1, max_length=300)]

@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from plan_cutters import __version__
 from plan_cutters.errors import PlanError
-from plan_cutters.files.temporary import require_temporary
+from plan_cutters.files.lock import require_temporary
 from plan_cutters_agents.access import CallError, Limits, Permissions, Roots
 from plan_cutters_agents.child import Call
 from plan_cutters_agents.requests import PlanQuestion

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from plan_cutters.errors import PlanError, extra_hint
-from plan_cutters.files.temporary import require_temporary
+from plan_cutters.files.lock import require_temporary
 from plan_cutters_batch import keys
 
 #: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.

@@ -12,10 +12,9 @@ import click
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import CODES, FEASIBLE, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanningRequest, Reported, takes
-from plan_cutters.command.values import File, Words
+from plan_cutters.command.validation import File, Words
 from plan_cutters.files.pictures import with_pictures
 from plan_cutters.report.folder import DEFAULT_FORMATS
 from plan_cutters_base.terminal_text import clean
@@ -247,7 +246,7 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
 
 def _parts(request: BatchRequest) -> "list[Job | Fault]":
     """Jobs of all that is meant, with the settings of each."""
-    from plan_cutters.command.piped import listed
+    from plan_cutters.command.cli import listed
     from plan_cutters.errors import PlanError
     from plan_cutters_batch.job import Fault, Job
     from plan_cutters_batch.sources import manifest, sources

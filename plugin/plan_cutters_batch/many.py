@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.option_types import PlanOptions
-from plan_cutters.options import Options
+from plan_cutters.options import Options, PlanOptions
 from plan_cutters_base.user_files import noted
 from plan_cutters_batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
 from plan_cutters_batch.row import PartRow

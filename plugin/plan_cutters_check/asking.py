@@ -96,7 +96,7 @@ _SAFETY = ("tolerance_requested_mm", "axis_accuracy_deg")
 
 def _effective(question: "Question", options: "Options") -> dict[str, Any]:
     """The options in force as far as the command says them: one that it leaves out, and the plan does not, is not checked."""
-    from plan_cutters.document.effective import as_requested
+    from plan_cutters.document.plan import as_requested
     from plan_cutters.domain.operations import INDEX_TIME
     from plan_cutters.errors import OptionError
     from plan_cutters.options import Options

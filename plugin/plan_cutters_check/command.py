@@ -16,8 +16,7 @@ import click
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import ENDED, run
-from plan_cutters.command.help_groups import Command
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, options
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters_base.workers.assignment import is_child
 

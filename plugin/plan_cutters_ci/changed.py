@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanRequest, Reported, takes
 from plan_cutters.command.terminal import error, say
-from plan_cutters.command.values import Folder
+from plan_cutters.command.validation import Folder
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.lock import require_temporary
 from plan_cutters.files.pictures import with_pictures
-from plan_cutters.files.temporary import require_temporary
 from plan_cutters_base.whole import whole
 from plan_cutters_ci.changed_report import (
     KINDS,

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, USAGE, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.values import File, Folder, Words
+from plan_cutters.command.validation import File, Folder, Words
 from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
 

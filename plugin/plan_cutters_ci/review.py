@@ -15,9 +15,9 @@ from markupsafe import Markup
 from plan_cutters.domain import figures as numbers
 from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.palette import PALETTE
-from plan_cutters.plan_file.words.chip import Chip
+from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.plan_file.words.names import short_names
+from plan_cutters.plan_file.words.text import Chip
 from plan_cutters_ci.matching import match_cutters, match_faces
 from plan_cutters_ci.model import PlanDifference
 from plan_cutters_ci.plans import face_state, taken

@@ -17,7 +17,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.pipeline import prepare
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.proposal import judged_proposed
 from tests.support.cad_parts import ball, box
 from tests.support.commands import assert_one_line

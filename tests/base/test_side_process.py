@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import pipeline, plan
-from plan_cutters.report import formats, models
+from plan_cutters.report import folder, models
 from plan_cutters.report.folder import write_all
 from plan_cutters_base import copies, forks
 from plan_cutters_base.copies import SideProcess, TimeLimit, each, limited
@@ -142,14 +142,14 @@ def test_a_split_that_fails_costs_the_models_not_the_page(tmp_path, monkeypatch)
 
 
 def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
-    made = formats.Making.file
+    made = folder.Making.file
 
     def file(self, name, split=None):
         if os.getpid() != HERE:
             os.kill(os.getpid(), signal.SIGSEGV)
         return made(self, name, split)
 
-    monkeypatch.setattr(formats.Making, "file", file)
+    monkeypatch.setattr(folder.Making, "file", file)
     result = plan(GROOVE, cutters="R2L30", grid=9, area_budget=0, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
     assert set(document.files) == {"html", "glb", "step", "process"}

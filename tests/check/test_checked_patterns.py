@@ -9,7 +9,7 @@ import pytest
 from cad_io import Part, read_part
 from cad_io.part.orient import orient
 from cad_io.part.patterns import patterns
-from plan_cutters.document.patterns import pattern_entries
+from plan_cutters.document.features import pattern_entries
 from plan_cutters_check.patterns import Patterns
 from plan_cutters_check.process import evenly
 from plan_cutters_check.question import Question

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.plan_file.carrier import CarrierEntry
+from plan_cutters.plan_file.part_info import CarrierEntry
 from plan_cutters_ci.matching import match_faces, moved_faces
 from tests.support.plan_files import cutter, face, made
 

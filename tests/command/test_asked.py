@@ -15,7 +15,7 @@ from plan_cutters.command import cli, validation
 from plan_cutters.command.request import PlanRequest
 from plan_cutters.command.validation import OF_OPERATIONS
 from plan_cutters.errors import CutterError, MachineError, OptionError
-from plan_cutters.option_types import ANGLES
+from plan_cutters.options import ANGLES
 from tests.support.cad_parts import compound
 from tests.support.commands import assert_one_line, in_lines
 from tests.support.forked import run

@@ -9,8 +9,8 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.command import entry
-from plan_cutters.command.help_groups import MOST_LINES, Grouped
-from plan_cutters.command.piped import spooled
+from plan_cutters.command.cli import spooled
+from plan_cutters.command.option_groups import MOST_LINES, Grouped
 from plan_cutters.errors import OptionError, PlanError
 from tests.support.forked import ENV, run
 from tests.support.places import ROOT, SAMPLES

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from plan_cutters.cases.files import CaseFiles
-from plan_cutters.command import retry
+from plan_cutters.command import partial_plan
 from plan_cutters.command.part_cases import PartCases
 from plan_cutters.command.progress import Display
 from plan_cutters_base.workers.assignment import TIMED_OUT
@@ -78,8 +78,10 @@ def test_a_part_that_takes_too_long_is_an_error(monkeypatch, tmp_path):
             raise OutOfTime(1, 0, None)
         return 0
 
-    monkeypatch.setattr(retry, "supervise", children)
-    code = retry.supervised((), parts=("a", "b", "c"), read_timeout=math.inf, memory=1, timeout=9.0, since=0.0, display=display)
+    monkeypatch.setattr(partial_plan, "supervise", children)
+    code = partial_plan.supervised(
+        (), parts=("a", "b", "c"), read_timeout=math.inf, memory=1, timeout=9.0, since=0.0, display=display
+    )
     assert code == TIMED_OUT
     display.part_cases.write()
     assert [(each.part, each.outcome) for each in cases(path.read_bytes())] == [("a", "passed"), ("b", "error"), ("c", "passed")]

@@ -11,7 +11,7 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.answers import ask
-from plan_cutters.command import retry
+from plan_cutters.command import partial_plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
@@ -245,8 +245,8 @@ def test_what_a_part_that_is_left_says_of_its_plan(tmp_path, monkeypatch, capsys
     def late(*_, **__):
         raise OutOfTime(0, 0, tmp_path / "out")
 
-    monkeypatch.setattr(retry, "supervise", late)
-    assert retry.supervised((), parts=("a.step",), read_timeout=9.0, memory=1, timeout=9.0, since=3.0) == TIMED_OUT
+    monkeypatch.setattr(partial_plan, "supervise", late)
+    assert partial_plan.supervised((), parts=("a.step",), read_timeout=9.0, memory=1, timeout=9.0, since=3.0) == TIMED_OUT
     said = capsys.readouterr().err
     assert f"the plan of the verdicts is in {tmp_path / 'out' / 'plan.json'}. The run was interrupted while " in said
 

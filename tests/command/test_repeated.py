@@ -4,7 +4,7 @@ import click
 import pytest
 
 from plan_cutters.command import entry
-from plan_cutters.command.values import Faces, Words
+from plan_cutters.command.validation import Faces, Words
 
 #: What each command needs.
 NEEDED = {"map": {"--at": "0,0,0", "--cutter": "R6L80"}, "batch": {"--out": "o"}}

@@ -16,11 +16,11 @@ GROOVE = str(SAMPLES / "v_groove.step")
 
 ASK = """
 import sys
-from plan_cutters.command import cli, retry
+from plan_cutters.command import cli, partial_plan
 def instead(words, **more):
     print(*sys.modules)
     return 0
-retry.supervised = instead
+partial_plan.supervised = instead
 cli.main()
 """
 LOAD = "import sys\nfrom plan_cutters.command import cli\ncli.load()\nprint(*sys.modules)"

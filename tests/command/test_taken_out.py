@@ -2,8 +2,7 @@
 
 import pytest
 
-from plan_cutters.command.entry import commands
-from plan_cutters.command.taken_out import TAKEN_OUT, instead
+from plan_cutters.command.entry import TAKEN_OUT, commands, instead
 from tests.support.commands import assert_one_line
 from tests.support.forked import run
 from tests.support.places import ROOT

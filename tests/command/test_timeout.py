@@ -6,7 +6,7 @@ import math
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.command import retry
+from plan_cutters.command import partial_plan
 from plan_cutters.report.to_json import PENDING
 from plan_cutters_base.workers.assignment import TIMED_OUT
 from plan_cutters_base.workers.errors import OutOfTime
@@ -36,7 +36,7 @@ class Children:
 
     def __init__(self, monkeypatch, *ends):
         self.ends, self.told = list(ends), []
-        monkeypatch.setattr(retry, "supervise", self)
+        monkeypatch.setattr(partial_plan, "supervise", self)
 
     def __call__(self, words, *, done, timeout, since, **_):
         self.told.append((done, since))
@@ -47,7 +47,7 @@ class Children:
 
 
 def planned(timeout=9.0):
-    return retry.supervised((), parts=PARTS, read_timeout=math.inf, memory=1, timeout=timeout, since=3.0)
+    return partial_plan.supervised((), parts=PARTS, read_timeout=math.inf, memory=1, timeout=timeout, since=3.0)
 
 
 def test_the_next_part_is_planned_with_time_of_its_own(monkeypatch, capsys):

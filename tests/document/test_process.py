@@ -11,7 +11,7 @@ from plan_cutters import plan
 from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, code_of
 from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.process import UNJUDGED_CAUSE
+from plan_cutters.plan_file.operations import UNJUDGED_CAUSE
 from plan_cutters.plan_file.words.process import WIDTH, process_story
 from plan_cutters.plan_file.words.text import MOST, text_of
 from tests.support.cad_parts import box, compound

@@ -7,7 +7,7 @@ import pytest
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters import plan
-from plan_cutters.document.shares import face_verdicts, whole_share
+from plan_cutters.document.build import face_verdicts, whole_share
 from plan_cutters.domain.verdicts import REASONS, blank
 
 SAMPLE = "samples/v_groove.step"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from plan_cutters import Axis, Cutter, Machine, Options, PostureMap, PostureRange, posture_map
 from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.errors import CutterError, MachineError, OptionError
-from plan_cutters.option_types import ANGLES
+from plan_cutters.options import ANGLES
 from tests.support.places import SAMPLES
 
 GROOVE = SAMPLES / "v_groove.step"

@@ -15,7 +15,7 @@ from plan_cutters.domain.spec import is_spec, spelled, typed
 from plan_cutters.domain.standard_tools import USUAL, smaller
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options
-from plan_cutters.plan_file.words import change_text
+from plan_cutters.plan_file.words import next_steps
 from plan_cutters.plan_file.words.names import called, described, short_names
 from tests.support.plan_files import cutter, face, made, verdicts
 
@@ -56,8 +56,8 @@ def test_what_is_made_of_a_cutter_is_written_as_the_cutter_was(word, thin, stick
     made = smaller(now, USUAL)[0]
     assert spelled(replace(made, holder=None)) == thin
     assert Cutter.parse(thin).id == made.id
-    assert change_text.stick_out(45.0, now) == stick_out
-    assert change_text.tool(made) == size
+    assert next_steps.stick_out(45.0, now) == stick_out
+    assert next_steps.tool(made) == size
 
 
 def test_a_holder_of_the_options_is_not_written_again():
@@ -71,7 +71,7 @@ def test_a_holder_of_the_options_is_not_written_again():
     slim = replace(other, holder=Holder.parse("D20L60"))
     assert spoken(slim, options) == "D6L55rc1F20S6HD20L60"
     assert spoken(other, Options(cutters="D6L40")) == "D6L55rc1F20S6Her16"
-    assert change_text.holder(slim.holder, held) == "the holder D20L60 instead of ER16"
+    assert next_steps.holder(slim.holder, held) == "the holder D20L60 instead of ER16"
 
 
 def test_a_word_with_its_holder_is_a_word():

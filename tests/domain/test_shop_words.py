@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plan_cutters import plan, posture_map
-from plan_cutters.command.rows import _NAME, _distinct
+from plan_cutters.command.summary import _NAME, _distinct
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
@@ -19,8 +19,8 @@ from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.standard_holders import NOSES, TAPERS, words
 from plan_cutters.errors import CutterError, OptionError
+from plan_cutters.library.raw_tool import Entry, Library
 from plan_cutters.library.read import holder_of
-from plan_cutters.library.records import Entry, Library
 from plan_cutters.options import Options
 from plan_cutters.plan_file.words.names import called, described, kind, short_names
 from plan_cutters.scene.scene import Scene

@@ -6,7 +6,7 @@ import socket
 import pytest
 
 from plan_cutters.errors import PlanError
-from plan_cutters.files.regular import IrregularError, open_regular, regular_bytes
+from plan_cutters.files.content import IrregularError, open_regular, regular_bytes
 
 
 def pipe(path):

@@ -9,8 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.words.story import story_of
-from plan_cutters.plan_file.words.text import text_of, with_text
+from plan_cutters.plan_file.words.text import story_of, text_of, with_text
 from tests.support.places import ROOT
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts
 from tests.support.workbench import HOST, imported

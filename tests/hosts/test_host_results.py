@@ -16,7 +16,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE, REASONS
 from plan_cutters.hosts.build123d import compound
 from plan_cutters.hosts.cadquery import assembly, register
 from plan_cutters.judging.judge import judge
-from plan_cutters.plan_file.palette import PALETTE, rgb
+from plan_cutters.plan_file.reasons import PALETTE, rgb
 
 FLOOR = cq.selectors.NearestToPointSelector((0, 0, 0))
 HELD = "R2L14F6S2"

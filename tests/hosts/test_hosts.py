@@ -13,7 +13,7 @@ from cad_io.kernel import explore, shape_map
 from cad_io.kernel.assembly import component_of
 from plan_cutters import Cutter, OptionError, plan, posture_map
 from plan_cutters.hosts.cadquery import register
-from plan_cutters.plan_file.palette import rgb
+from plan_cutters.plan_file.reasons import rgb
 from tests.support.cad_parts import moved
 
 FLOOR = cq.selectors.NearestToPointSelector((0, 0, 0))

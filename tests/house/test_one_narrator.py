@@ -16,9 +16,7 @@ APART = {
     "plan_cutters/domain/figures.py": "how numbers are written, each form once",
     "plan_cutters/domain/lengths.py": "lengths as they are typed, in mm or inches",
     "plan_cutters/library/cutting.py": "fields of a tool file, in the file's unit",
-    "plan_cutters/library/presets.py": "fields of a tool file, in the file's unit",
-    "plan_cutters/report/drawing/tool_notes.py": "dimensions of a drawing",
-    "plan_cutters/report/drawing/tool_sheet.py": "lengths of SVG",
+    "plan_cutters/report/drawing/tool.py": "dimensions of a drawing, and lengths of SVG",
 }
 #: Those whose texts may name a code: the tables of codes themselves, and what is written for programs.
 CODES = re.compile("|".join(rf"\b{code}\b" for code in REASONS if "_" in code))

@@ -20,7 +20,7 @@ from plan_cutters import Options, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.request import PlanRequest, planning_options
-from plan_cutters.option_types import ANGLES, PlanOptions, PointOptions, SceneOptions
+from plan_cutters.options import ANGLES, PlanOptions, PointOptions, SceneOptions
 from plan_cutters.plan_file.effective import Effective
 from tests.support.places import ROOT
 

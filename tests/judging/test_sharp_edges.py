@@ -11,7 +11,7 @@ from cad_io.part.inside_edges import inside_edges
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import code_of
-from plan_cutters.document.sharp_edges import sharp_edge_entries
+from plan_cutters.document.features import sharp_edge_entries
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE, UNDECIDED
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import judge

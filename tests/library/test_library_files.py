@@ -284,11 +284,11 @@ def test_two_members_of_one_name_are_refused(tmp_path):
 
 def test_sections_are_enclosed_by_a_work_that_grows_slowly(monkeypatch):
     # Each merge looks at its two neighbours alone.
-    from plan_cutters.library import outlines
+    from plan_cutters.library import milling
 
-    calls, plain = [], outlines._enclosing
-    monkeypatch.setattr(outlines, "_enclosing", lambda stages: calls.append(1) or plain(stages))
+    calls, plain = [], milling._enclosing
+    monkeypatch.setattr(milling, "_enclosing", lambda stages: calls.append(1) or plain(stages))
     stages = [Stage(15.0 + (i * 7) % 5, 1.0 + 1e-3 * i, 15.5 + (i * 11) % 5) for i in range(200)]
-    found, _ = outlines.fewer(stages, 12)
+    found, _ = milling.fewer(stages, 12)
     assert len(found) <= 12
     assert len(calls) <= 3 * len(stages)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plan_cutters.document.repeats import repeats
+from plan_cutters.document.process import repeats
 
 
 def said(*angles):

@@ -12,7 +12,7 @@ from plan_cutters import Machine, plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.placement import Placement
 from plan_cutters.library.read import read_library
-from plan_cutters.plan_file.words.doubts import doubts
+from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.text import text_of
 from plan_cutters.report.page.write import page
 from tests.support.cad_parts import box, compound

@@ -1,8 +1,8 @@
 """Equal faces are told once, in numbers as all others are written."""
 
 from plan_cutters import plan
-from plan_cutters.plan_file.patterns import PatternEntry
-from plan_cutters.plan_file.words.patterns import patterns
+from plan_cutters.plan_file.part_info import PatternEntry
+from plan_cutters.plan_file.words.scope import patterns
 from tests.support.cad_parts import box
 
 

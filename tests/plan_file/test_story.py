@@ -18,14 +18,13 @@ from plan_cutters.hosts.viewer import _posture
 from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StepEntry
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.notes import NoteCode
-from plan_cutters.plan_file.palette import MEANING, PALETTE, label
 from plan_cutters.plan_file.part_info import Scope
-from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, PALETTE, REASONS, label
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.next_steps import effect
 from plan_cutters.plan_file.words.scope import not_judged
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of as notebook_text
 from plan_cutters.report.page.write import page
 from plan_cutters.report.witness import row_of

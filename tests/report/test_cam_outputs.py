@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
-import plan_cutters.report.to_csv as to_csv
+import plan_cutters.report.axes as to_csv
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.clearance import MOST, grown, working_height
 from plan_cutters.domain.fixture import Fixture
@@ -21,8 +21,7 @@ from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
-from plan_cutters.report.to_csv import write_csv
-from plan_cutters.report.to_vtk import write_vtk
+from plan_cutters.report.axes import write_csv, write_vtk
 from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import ROOT
@@ -206,7 +205,7 @@ def test_large_arrays_go_into_several_blocks(tmp_path):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-    from plan_cutters.report.to_vtk import _BLOCK, _array
+    from plan_cutters.report.axes import _BLOCK, _array
 
     for n in (_BLOCK // 8 - 1, _BLOCK // 8, 3 * _BLOCK // 8 + 5, 0):
         values, point = np.arange(float(n)), np.zeros((n, 3), np.float32)
@@ -277,7 +276,7 @@ def test_formats_are_written_on_request_and_a_failure_costs_one_file(tmp_path, m
     def refuses(result):
         raise ValueError("no columns today")
 
-    monkeypatch.setattr(to_csv, "columns", refuses)
+    monkeypatch.setattr(to_csv, "_cells", refuses)
     written = result.write(tmp_path / "b", ["json", "csv", "vtk"])
     assert set(written.files) == {"vtk", "process"}
     assert "no columns today" in written.not_written["csv"]

@@ -7,7 +7,7 @@ from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.report import models
-from plan_cutters.report.clamping_shapes import clamping_shape
+from plan_cutters.report.models import clamping_shape
 from plan_cutters_check.asking import bodies_of
 from plan_cutters_check.fixtures import PlacedFixture
 from plan_cutters_check.question import Setup

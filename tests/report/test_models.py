@@ -14,7 +14,7 @@ import trimesh
 
 from cad_io import read_part
 from plan_cutters import Cutter, plan
-from plan_cutters.plan_file.palette import PALETTE, rgb
+from plan_cutters.plan_file.reasons import PALETTE, rgb
 from plan_cutters.report import DEFAULT_FORMATS
 from plan_cutters.report.models import split_result
 from tests.support.places import ROOT, SAMPLES
@@ -120,7 +120,7 @@ def test_glb_passes_the_khronos_validator(written, name):
 def test_a_face_without_a_grid_is_coloured_by_its_worst_verdict(written):
     from dataclasses import replace
 
-    from plan_cutters.plan_file.palette import LABELS
+    from plan_cutters.plan_file.reasons import LABELS
     from plan_cutters.report.models import split_result
 
     result, _, _ = written

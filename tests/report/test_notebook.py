@@ -14,7 +14,7 @@ import pytest
 
 from cad_io import WriteError
 from plan_cutters import PlanError, plan
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.page.write import page as review_page
 from tests.support.browser import opened
 from tests.support.places import ROOT, SAMPLES

@@ -22,8 +22,8 @@ from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.machine import Machine
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
-from plan_cutters.plan_file.palette import operation_colour, parts, rgb
-from plan_cutters.report import DEFAULT_FORMATS, operation_models
+from plan_cutters.plan_file.reasons import operation_colour, parts, rgb
+from plan_cutters.report import DEFAULT_FORMATS, models
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
@@ -199,7 +199,7 @@ def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written
     def fails(*_):
         raise RuntimeError("no halves")
 
-    monkeypatch.setattr(operation_models, "split_by_turns", fails)
+    monkeypatch.setattr(models, "split_by_turns", fails)
     lost = result.write(tmp_path / "lost", ["json", "step", "glb"])
     assert {"step", "glb"} <= lost.files.keys()
     assert set(lost.not_written) == names

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan, posture_map
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.report.page import meta
+from plan_cutters.report.page import tables
 from plan_cutters.scene.scene import Scene
 from tests.support.browser import choose, chromium, intervals, launch, opened, place_of, seen, wait_for_map
 from tests.support.places import ROOT
@@ -429,7 +429,7 @@ def test_the_page_knows_what_a_machine_holds(page, name):
     found = page.evaluate(
         """([kinematics, axes]) => { Object.assign(review.meta, { kinematics, tilt_limit_deg: null });
              return axes.map(axis => review.probe.machine.holds(axis)); }""",
-        [meta._kinematics(seen_from), every.tolist()],
+        [tables._kinematics(seen_from), every.tolist()],
     )
     wanted = seen_from.allows(every)
     assert wanted[1000:].all()
@@ -446,7 +446,7 @@ def test_the_page_tells_the_positions_of_the_axes(page, name):
     own = seen_from.axis(rng.uniform(limit[:, 0], limit[:, 1], (100, len(limit)))) if len(limit) else seen_from.tool[None]
     every = np.concatenate([rng.normal(size=(100, 3)), own])
     every /= np.linalg.norm(every, axis=1)[:, None]
-    page.evaluate("kinematics => Object.assign(review.meta, { kinematics })", meta._kinematics(seen_from))
+    page.evaluate("kinematics => Object.assign(review.meta, { kinematics })", tables._kinematics(seen_from))
     told = page.evaluate("axes => axes.map(axis => review.machine.positions(axis))", every.tolist())
     wanted, taken, _ = seen_from.positions(every)
     held = 0

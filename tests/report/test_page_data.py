@@ -16,8 +16,7 @@ from cad_io.part import Part
 from plan_cutters import plan
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.report.page import write
-from plan_cutters.report.page.atlas import sheet_of
-from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
+from plan_cutters.report.page.arrays import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral, sheet_of
 from tests.support.places import ROOT
 from tests.support.review_page import Page, decoded, unfold
 
@@ -94,7 +93,7 @@ def test_each_line_of_an_uneven_grid_has_a_texel_and_each_texel_the_nearest_line
 
 
 def test_an_atlas_that_is_too_large_has_coarser_sheets_then_lists(monkeypatch):
-    from plan_cutters.report.page import atlas as module
+    from plan_cutters.report.page import arrays as module
     from tests.support.cad_parts import drilled
 
     samples = plan(Part(drilled()), cutters=["R2L30"], grid=9, area_budget=0, faces="all").samples

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.words.chip import CHIPS, chip
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import CHIPS, chip, story_of
 from plan_cutters.report.page.write import write_html
 from tests.support.browser import SCREENS, chromium, place_of, seen
 from tests.support.places import ROOT

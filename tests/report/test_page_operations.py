@@ -9,11 +9,11 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.domain.figures import area
-from plan_cutters.plan_file.palette import operation_colour
+from plan_cutters.plan_file.reasons import operation_colour
 from plan_cutters.plan_file.words.operations import in_short, of_the_whole
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of
-from plan_cutters.report.page import operations, write
+from plan_cutters.report.page import tables, write
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page, picture
@@ -131,7 +131,7 @@ def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(pla
 def test_looks_differ(planned):
     """Of so many operations as the colours go round four times."""
     one = planned.plan.operations.plans[0].operations[0]
-    told = [operations._operation(planned.plan, one, k, 0) for k in range(32)]
+    told = [tables._operation(planned.plan, one, k, 0) for k in range(32)]
     assert len({(each["colour"], each["pattern"]) for each in told}) == 32
     assert [each["pattern"] for each in told[:16]] == ["plain"] * 8 + ["hatch"] * 8
 
@@ -153,7 +153,7 @@ def test_a_page_without_operations_has_none_of_it(planned):
     assert read.meta["operations"] is None
     assert not any(name.startswith("operation") for name in read.meta["arrays"])
     assert not any(a.get("id") == "operations" for _, a, _ in read.elements)
-    assert operations.tables(bare.plan, story_of(bare.plan)) is None
+    assert tables.tables(bare.plan, story_of(bare.plan)) is None
 
 
 def test_simultaneous_operations_and_none_are_shown_too(planned):

@@ -8,7 +8,7 @@ import unicodedata
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import story_of
 from tests.support.browser import chromium, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page

@@ -82,7 +82,7 @@ def test_what_is_undecided_is_not_told_as_blocked():
 
 def test_witnesses_have_the_verdicts_of_their_samples():
     from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
-    from plan_cutters.report.page.facts import spots_of
+    from plan_cutters.report.page.arrays import spots_of
 
     planned = plan(
         ROOT / "samples" / "pocket_top.step", cutters=["R3L40"], holder="D50L60", grid=7, faces="all", area_budget=0,

@@ -6,8 +6,8 @@ from PIL import Image
 
 from plan_cutters import plan
 from plan_cutters.kernels.linear.raster import draw
-from plan_cutters.plan_file.palette import rgb
-from plan_cutters.report.drawing.view import FINER, Body, borders, fitted, frame_towards, view
+from plan_cutters.plan_file.reasons import rgb
+from plan_cutters.report.drawing.part import FINER, Body, borders, fitted, frame_towards, view
 from tests.support.cad_parts import CAD
 
 

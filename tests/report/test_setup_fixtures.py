@@ -8,7 +8,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.report import operation_models
+from plan_cutters.report import models
 from plan_cutters.report.page import write
 from tests.support import gltf
 from tests.support.browser import launch, opened
@@ -51,8 +51,8 @@ def test_the_page_has_the_fixtures_of_all_setups_and_where_they_stand(held, data
 
 
 def test_the_model_of_operations_has_a_node_of_fixtures_for_each_setup(held, tmp_path):
-    split = operation_models.split_operations(held, 0)
-    operation_models.write_operations_glb(held, split, tmp_path / "operations.glb")
+    split = models.split_operations(held, 0)
+    models.write_operations_glb(held, split, tmp_path / "operations.glb")
     document, _ = gltf.read(tmp_path / "operations.glb")
     nodes = document["nodes"]
     for k in (0, 1):

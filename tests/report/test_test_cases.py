@@ -11,7 +11,7 @@ from plan_cutters.cases.plan import PROCESS, plan_cases
 from plan_cutters.command.codes import code_of
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.model import MissingEntry
-from plan_cutters.plan_file.process import ProcessEntry, RemainingEntry
+from plan_cutters.plan_file.operations import ProcessEntry, RemainingEntry
 from tests.support.cases import OUTCOMES, TEXT
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts

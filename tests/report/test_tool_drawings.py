@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from plan_cutters import Cutter, Holder, Stage
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.outline import outline
-from plan_cutters.report.drawing.sheet import printable
-from plan_cutters.report.drawing.tool import draw
-from plan_cutters.report.drawing.tool_sheet import length, width_of, wrapped
+from plan_cutters.report.drawing.posture_map import printable
+from plan_cutters.report.drawing.tool import draw, length, width_of, wrapped
 from tests.support.places import DATA
 from tests.support.tool_reference import KINDS, Reference, random_cutter
 

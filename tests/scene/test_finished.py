@@ -12,8 +12,8 @@ from plan_cutters import plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.plan_file.palette import LABELS
-from plan_cutters.plan_file.words.inside import inside
+from plan_cutters.plan_file.reasons import LABELS
+from plan_cutters.plan_file.words.scope import inside
 from plan_cutters.report.models import split_result
 from plan_cutters.report.page.write import page
 from tests.support import shapes

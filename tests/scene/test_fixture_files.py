@@ -10,7 +10,7 @@ from cad_io import ReadError, read_part
 from cad_io.read.mesh import read_mesh
 from cad_io.read.shells import shells
 from plan_cutters import Fixture, plan
-from plan_cutters.plan_file.palette import PALETTE
+from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.report.to_json import schema
 from plan_cutters_base.user_files import noted
 from tests.support import vises

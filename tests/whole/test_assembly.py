@@ -15,7 +15,7 @@ from cad_io import read_part
 from cad_io.kernel import faces
 from cad_io.kernel.components import compound
 from plan_cutters import Cutter, plan
-from plan_cutters.plan_file.palette import rgb
+from plan_cutters.plan_file.reasons import rgb
 from tests.support.places import SAMPLES
 
 FACES = 6  # of the mould

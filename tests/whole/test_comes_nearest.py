@@ -10,8 +10,8 @@ from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.nearest import leaves, nearest
 from plan_cutters.plan_file.words.cutters import remaining_text
-from plan_cutters.plan_file.words.story import shown as shown_of
-from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import shown as shown_of
+from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from plan_cutters_agents.plan_answers import planned, ranked
 from plan_cutters_batch.row import row_of

@@ -17,7 +17,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.options import LEAST_TOLERANCE
-from plan_cutters.plan_file.words import change_text
+from plan_cutters.plan_file.words import next_steps
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import conditions_of, with_setups
@@ -49,7 +49,7 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     state = replace(scan.state, ready=_closer(ready, tried))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        yield scan.found(Move("tolerance", now, tried, change_text.tolerance(tried, now)), state, missed, nested=False)
+        yield scan.found(Move("tolerance", now, tried, next_steps.tolerance(tried, now)), state, missed, nested=False)
 
 
 def tilt_range(scan: Scan) -> Iterator[Candidate]:
@@ -66,7 +66,7 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
     state = under(scan.state, postures=postures)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        move = Move("tilt_range", (low, high), tried, change_text.tilt_range(tried, (low, high)))
+        move = Move("tilt_range", (low, high), tried, next_steps.tilt_range(tried, (low, high)))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -93,7 +93,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
 
     for at, made, missed in scan.least(limit, most):
         tried = (first + at) * _TURN
-        move = Move("tilt_limit", now, tried, change_text.tilt_limit(tried, now, machine.name))
+        move = Move("tilt_limit", now, tried, next_steps.tilt_limit(tried, now, machine.name))
         yield scan.found(move, made, missed, nested=now is not None)
     yield from _setups(scan, gained, plain=plain)
 
@@ -115,7 +115,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     best = _plain(second, scan.estimate(gained))
     if best is not None:
         _, _, axis, made, missed = best
-        move = Move("second_setup", now, axis, change_text.more_setup(axis, _angle(now, axis), len(made.setups)))
+        move = Move("second_setup", now, axis, next_steps.more_setup(axis, _angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
     # A table that is given with `--fixture` would lie elsewhere.
     if plain or len(state.setups) > 1 or any(each.follows_setup for each in ready.options.fixtures):
@@ -131,7 +131,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
         if estimate < scan.finished.of_rows(scan.left):
-            move = Move("setup", now, axis, f"{change_text.clamped(axis, _angle(now, axis))} instead")
+            move = Move("setup", now, axis, f"{next_steps.clamped(axis, _angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
 
 

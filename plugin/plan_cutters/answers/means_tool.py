@@ -16,7 +16,7 @@ from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.domain.standard_holders import NOSES, chuck
 from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
 from plan_cutters.errors import CutterError
-from plan_cutters.plan_file.words import change_text
+from plan_cutters.plan_file.words import next_steps
 from plan_cutters.scene.preparation import Prepared
 
 #: Samples on which the cutters that are sold are compared, at most about so many.
@@ -48,7 +48,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
         for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
             if at not in seen:
                 seen.add(at)
-                words = change_text.stick_out(value(at), cutter)
+                words = next_steps.stick_out(value(at), cutter)
                 yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
@@ -85,7 +85,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
     for at, state, missed in scan.least(make, len(slimmer) - 1):
         other = slimmer[at].holder
         if other is not None:
-            move = Move("holder", cutter.holder.id, other.id, change_text.holder(other, cutter))
+            move = Move("holder", cutter.holder.id, other.id, next_steps.holder(other, cutter))
             yield scan.found(move, state, missed, nested=False)
 
 
@@ -133,7 +133,7 @@ def other_cutters(scan: Scan) -> Iterator[Candidate]:
     nearly = next(each for each in tried if each[0] <= content)
     for _, state, missed in {id(each): each for each in (nearly, best)}.values():
         cutter = state.cutters[-1]
-        move = Move("cutter", None, cutter.id, change_text.rest(cutter.id))
+        move = Move("cutter", None, cutter.id, next_steps.rest(cutter.id))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -178,7 +178,7 @@ def radius(scan: Scan) -> Iterator[Candidate]:
         # The thickest that leaves hardly more: they come by size.
         state = next(state for estimate, state in tried if estimate <= content)
         made = state.cutters[-1]
-        move = Move("radius", cutter.radius, made.radius, f"{change_text.tool(made)}, for the rest")
+        move = Move("radius", cutter.radius, made.radius, f"{next_steps.tool(made)}, for the rest")
         yield scan.found(move, state, known.glance(state, scan.few), nested=True)
 
 
@@ -202,7 +202,7 @@ def corner(scan: Scan) -> Iterator[Candidate]:
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]
-        move = Move("corner_radius", now, made.corner_radius, f"{change_text.tool(made)}, for the rest")
+        move = Move("corner_radius", now, made.corner_radius, f"{next_steps.tool(made)}, for the rest")
         yield scan.found(move, state, scan.known.glance(state, scan.few), nested=True)
 
 

@@ -19,7 +19,7 @@ from plan_cutters.domain.change import MEANS, Advice, Means, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.plan_file.words import change_text
+from plan_cutters.plan_file.words import next_steps
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 
@@ -237,5 +237,5 @@ def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_row
     whole = len(rest) and len(open_rows) == int((finished.wanted & np.isin(face, bad)).sum())
     result = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[open_rows].sum()), finished.of_rows(open_rows)
-    move = Move("area", None, round(area, 6), change_text.excluded_areas(areas, area))
+    move = Move("area", None, round(area, 6), next_steps.excluded_areas(areas, area))
     return Step((move,), share, 0.0, 0, len(open_rows), (cutter,), state.axes, result, tuple(areas[:_REMAINS]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from plan_cutters.cases.case import Case, Outcome
 from plan_cutters.domain.figures import count, listed, mm, percent, place
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.process import UNJUDGED_CAUSE
+from plan_cutters.plan_file.operations import UNJUDGED_CAUSE
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, unreached
 from plan_cutters.plan_file.words.cutters import called, main_reason, reason
 from plan_cutters.plan_file.words.names import short_names

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.taken_out import instead
+from plan_cutters.command.entry import instead
 from plan_cutters_base.workers.assignment import INTERRUPTED
 from plan_cutters_base.workers.errors import Supervised
 

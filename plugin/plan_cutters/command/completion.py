@@ -8,7 +8,7 @@ from click.shell_completion import CompletionItem, shell_complete
 
 from plan_cutters.command.codes import ended
 from plan_cutters.command.entry import OURS, commands, module_of
-from plan_cutters.command.values import FILE
+from plan_cutters.command.validation import FILE
 
 
 class Subcommands(click.Group):

@@ -1,13 +1,72 @@
 """Where the commands begin: nothing heavy is imported before an interrupt is one line and not a traceback."""
 
+import contextlib
 import os
 import signal
 import sys
 from collections.abc import Sequence
+from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 
-from plan_cutters.command.leaves import leaves, sentence
-from plan_cutters.command.taken_out import TAKEN_OUT, instead
+#: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
+TAKEN_OUT: dict[str, str] = {
+    "command stored": "plan again with the other machine or setup; stored stages make that short",
+    "--postures": "plan again with the other machine or setup; stored stages make that short",
+    "--formats regions": "the regions and axes of --operations stand in plan.json",
+    "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
+    "--answers stick-out-map": "give --answers stick-out; in Python, result.face(F1, stick_out=True) is about a face",
+    "--answers mend-all": "give --answers mend, for the three nearest cutters, and plan with another one alone to ask for it",
+    "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts on others",
+    "--verdicts": "leave it out: verdicts are stored in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
+    "--verdicts-key": "leave it out: what is stored in a folder that others may write to is not read",
+}
+
+
+def instead(word: str) -> str:
+    """Say what to use in place of a word that is gone, as an error; "" for a word that never was.
+
+    >>> instead("--never-was")
+    ''
+    """
+    use = TAKEN_OUT.get(word)
+    return f"{word} was taken out: {use}" if use else ""
+
+
+GROUP = "plan_cutters.commands"
+
+
+@cache
+def leaves() -> dict[str, str]:
+    """List the modules of the commands that installed packages add, by name; of two of a name, the first on the path.
+
+    The files are read here: `importlib.metadata` alone takes a third of the time that help may take.
+    """
+    modules: dict[str, str] = {}
+    for folder in sys.path:
+        for file in sorted(Path(folder or ".").glob("*.dist-info/entry_points.txt")):
+            text = ""
+            with contextlib.suppress(OSError):  # what nobody may read adds no command
+                text = file.read_text(encoding="utf-8", errors="replace")
+            group = text.partition(f"[{GROUP}]\n")[2].partition("\n[")[0]
+            for line in filter(None, map(str.strip, group.splitlines())):
+                name, equals, module = map(str.strip, line.partition("="))
+                if equals and name.isidentifier():
+                    modules.setdefault(name, module.partition(":")[0])
+    return modules
+
+
+def sentence(module: str) -> str:
+    """Read the first line of a module's text, without running it."""
+    try:
+        spec = find_spec(module)
+        code = spec.loader.get_code(module) if spec else None  # type: ignore[union-attr]
+    except (ImportError, AttributeError, SyntaxError, ValueError):
+        code = None
+    text = code.co_consts[0] if code and code.co_consts else None
+    return text.strip().splitlines()[0] if isinstance(text, str) and text.strip() else f"It cannot be loaded: {module}."
+
 
 TYPE_CHECKING = False  # `typing` itself takes time
 if TYPE_CHECKING:

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, USAGE, faults, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.values import File, Words, machine_names
+from plan_cutters.command.validation import File, Words, machine_names
 from plan_cutters.domain.figures import exact_angle
 from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
@@ -126,7 +125,7 @@ def _facts(
     import numpy as np
 
     from plan_cutters.machines.explain import share, singular, solutions, tool_axis
-    from plan_cutters.machines.toml_out import plain
+    from plan_cutters.machines.toml import plain
 
     held, near = share(machine)
     cone = singular(machine)

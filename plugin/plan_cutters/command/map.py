@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, ended, interrupt, invoked
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
-from plan_cutters.command.values import File, Setup, Words, cutter_ids
+from plan_cutters.command.validation import File, Setup, Words, cutter_ids
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
 from plan_cutters_base.workers.assignment import began, is_child, report
@@ -206,7 +205,7 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
     from plan_cutters.domain.figures import angle, capital, mm
     from plan_cutters.domain.spec import notation, parted
     from plan_cutters.plan_file.words.names import called
-    from plan_cutters.report.drawing.sheet import printable
+    from plan_cutters.report.drawing.posture_map import printable
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in result.curvature)
     apart = "one rotation: others are not judged"

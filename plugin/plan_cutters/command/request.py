@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from plan_cutters.cases.files import CaseFiles
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.holder import Holder
-    from plan_cutters.library.records import Library
-    from plan_cutters.option_types import PlanOptions
+    from plan_cutters.library.raw_tool import Library
+    from plan_cutters.options import PlanOptions
 
 #: A setup: a direction of the part, a setup file, or `auto`.
 Setup = tuple[float, ...] | str

@@ -1,21 +1,137 @@
 """Print the results in a terminal: the story of a plan is laid out in paragraphs and tables."""
 
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rich.measure import Measurement
+from rich.table import Table
 from rich.text import Text
 
-from plan_cutters.command.rows import cell, cutter_rows, worst_faces
-from plan_cutters.command.terminal import show
+from plan_cutters.command.terminal import show, wrapped
+from plan_cutters.domain.figures import unit
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.plan_file.words.details import details, scene, unjudged_share
-from plan_cutters.plan_file.words.story import Story, story_of
-from plan_cutters.plan_file.words.text import text_of
+from plan_cutters.plan_file.nearest import leaves
+from plan_cutters.plan_file.words.cutters import FEASIBLE, worst_face_text
+from plan_cutters.plan_file.words.face import details, scene, unjudged_share
+from plan_cutters.plan_file.words.text import Story, story_of, text_of
+from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions
+
     from plan_cutters.plan_file.model import Plan
-    from plan_cutters.plan_file.words.line import Line
+    from plan_cutters.plan_file.words.cutters import CutterStory
+    from plan_cutters.plan_file.words.names import Line
+
+
+#: Verdicts, what a column calls them.
+WORDS = {"interference_free": "free", "accessible": "accessible", "undecided": "undecided", "inaccessible": "inaccessible"}
+#: Rows that are shown unless all are requested.
+MOST_ROWS = 40
+#: Widest line of a cutter's name beside its numbers, so that 80 columns hold all; what is longer has a second line.
+_NAME = 27
+#: Longest that a cutter is called here, and an obstacle.
+_CUTTER, _OBSTACLE = 2 * _NAME - 4, 22
+_COLOURS = {True: "green", False: "red", None: "yellow"}
+
+
+def cell(text: str, style: str = "") -> Text:
+    """A text from a file, for a table or a paragraph."""
+    return Text(clean(text), style)
+
+
+def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
+    """A row for each cutter, of many the best alone, and how many more there are."""
+    rows = list(story.cutters)
+    if not verbose and len(rows) > MOST_ROWS:
+        missing_shares = {c.id: leaves(c) for c in plan.cutters}
+        shown = sorted(rows, key=lambda c: (c.id != story.taken, missing_shares[c.id]))[:MOST_ROWS]
+        rows = [c for c in rows if c in shown]
+    here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
+    lines: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
+    short = _distinct([clean(c.name) for c in rows], _CUTTER)
+    table = _table(("  cutter", "feasible"), tuple(WORDS.values()), apart=1)
+    for c, name in zip(rows, short, strict=True):
+        taken = c.id == story.taken
+        table.add_row(
+            Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
+            Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]),
+            *(c.shares[word] for word in WORDS),
+        )
+    lines.append(_Fitting(table, [_listed(c, c.id == story.taken) for c in rows]))
+    if len(rows) < len(plan.cutters):
+        lines.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
+    return lines
+
+
+def _listed(c: "CutterStory", taken: bool) -> Text:
+    text = ", ".join(f"{word} {c.shares[key]}" for key, word in WORDS.items() if c.shares[key] != "0 %")
+    return Text.assemble(
+        cell(f"{'>' if taken else ' '} {c.name}: ", "bold" if taken else ""),
+        (FEASIBLE[c.feasible], _COLOURS[c.feasible]),
+        f"; {text}",
+    )
+
+
+def worst_faces(story: "Story") -> list[Any]:
+    """Where the cutter shown fails: the faces on which it leaves the most area."""
+    c = story.cutter(story.shown)
+    if not c.faces:
+        return []
+    few = c.failing > len(c.faces)
+    which = f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
+    lines: list[Any] = [cell(f"Where {c.name} {'fails' if c.feasible is False else 'is not sure'}, {which}:")]
+    table = _table(("  face", "mainly", "in the way"), (f"{unit()}2 not reached", "of the face", f"{unit()} too deep"))
+    for f in c.faces:
+        table.add_row(f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-")
+    return [*lines, _Fitting(table, [cell(f"  {worst_face_text(f)}") for f in c.faces])]
+
+
+@dataclass(frozen=True)
+class _Fitting:
+    """A table is shown where there is room for all of it, and lines elsewhere."""
+
+    table: Table
+    lines: Sequence[Text]
+
+    def __rich_console__(self, page: "Console", options: "ConsoleOptions") -> "Iterator[Table | Text]":
+        if Measurement.get(page, options.update_width(1000), self.table).maximum <= page.width:
+            yield self.table
+        else:
+            for line in self.lines:
+                yield from wrapped(line, page)
+
+
+def _table(words: Sequence[str], numbers: Sequence[str], *, apart: int = 2) -> Table:
+    """An empty table without lines: columns of words, then of numbers, `apart` blanks from each other."""
+    table = Table(box=None, pad_edge=False, padding=(0, apart, 0, 0), header_style="bold")
+    for name in (*words, *numbers):
+        table.add_column(name, justify="right" if name in numbers else "left", no_wrap=True)
+    return table
+
+
+def _in_lines(name: str) -> str:
+    """A name in lines that its column has room for, all but the first indented."""
+    return "\n".join(textwrap.wrap(name, _NAME, subsequent_indent="    ", break_on_hyphens=False)) or name
+
+
+def _distinct(names: Sequence[str], most: int) -> list[str]:
+    """Names no longer than `most`, each still another one's: the middle is left out, or a number tells them apart.
+
+    Examples
+    --------
+    >>> _distinct(["R6L80", "a long ball nose R3", "a long ball nose R4"], 13)
+    ['R6L80', 'a lon...se R3', 'a lon...se R4']
+    """
+    short = [name if len(name) <= most else f"{name[: (most - 2) // 2]}...{name[-(most - 3) // 2 :]}" for name in names]
+    return [
+        text if short.count(text) == 1 or names[i] == text else f"{text[: most - len(str(i)) - 2]}#{i + 1}"
+        for i, text in enumerate(short)
+    ]
+
 
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 

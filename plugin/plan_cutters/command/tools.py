@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import ENDED, USAGE, faults, run
-from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import options
+from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.values import File, Folder
+from plan_cutters.command.validation import File, Folder
 from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.library.records import Entry, Library
+    from plan_cutters.library.raw_tool import Entry, Library
 
 _SELF = "plan-cutters tools"
 _COLUMNS = ("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used")

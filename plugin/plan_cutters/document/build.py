@@ -2,30 +2,242 @@
 
 import math
 import platform
+import shlex
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import FaceInfo, Orientation, Part, SurfaceSamples
+from cad_io import FaceInfo, Orientation, Part
+from cad_io.arrays import SurfaceSamples
 from cad_io.kernel.assembly import component_of
+from cad_io.read.mesh import Mesh
 from plan_cutters import __version__
-from plan_cutters.document.fixtures import references
-from plan_cutters.document.shares import counts, face_verdicts, whole_share
+from plan_cutters.domain.area import weights
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
-from plan_cutters.plan_file.carrier import CarrierEntry
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts, Witness
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
-from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo, UnitEntry
+from plan_cutters.plan_file.part_info import (
+    CarrierEntry,
+    CoveringBody,
+    FixtureEntry,
+    InsideEntry,
+    OrientationInfo,
+    PartInfo,
+    ReferenceEntry,
+    Scope,
+    SewingInfo,
+    SheetsEntry,
+    UnitEntry,
+)
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
+from plan_cutters.scene.covering import coverings, numbers, sheets
 from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.inside_material import voids
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
+
+
+def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
+    """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
+    return [fixture_entry(fixture, setups) for fixture, setups in fixtures_in(each)]
+
+
+def fixtures_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
+    """Placed fixtures of all setups, each with the setups in which it stands, in the order of `fixture_entries`."""
+    fixtures: list[tuple[PlacedFixture, list[int]]] = []
+    known: list[FixtureEntry] = []
+    for number, surroundings in enumerate(each):
+        for fixture in surroundings.fixtures:
+            mine = fixture_entry(fixture)
+            if number and mine in known:
+                fixtures[known.index(mine)][1].append(number)
+            else:
+                fixtures.append((fixture, [number]))
+                known.append(mine)
+    return fixtures
+
+
+def references(part: Part) -> list[ReferenceEntry]:
+    """The files that a part's file refers to."""
+    return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
+
+
+def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> FixtureEntry:
+    """A fixture where it stands, in some setups."""
+    fixture, source, triangles = placed.fixture, placed.source, placed.obstacles.triangles
+    file = None if source is None else source.file
+    x, y, z, rx, ry, rz = fixture.placement
+    return FixtureEntry(
+        name=placed.name,
+        file=None if file is None else Path(file).name,
+        sha256=None if source is None else source.sha256,
+        references=references(source) if isinstance(source, Part) else [],
+        unit=source.unit if isinstance(source, Mesh) else fixture.unit,
+        placement=(x, y, z, rx, ry, rz),
+        triangles=len(triangles),
+        chord_error_mm=triangles.chord_error,
+        watertight=placed.body is not None,
+        notes=list(placed.notes),
+        clamping=fixture.text if fixture.clamping is not None else None,
+        grips=[] if placed.hold is None else [f"F{number}" for number in placed.hold.grips],
+        unheld=[f"F{number}" for number in placed.unheld],
+        hidden_mm2=None if placed.hold is None else placed.hold.hidden,
+        setups=list(setups),
+    )
+
+
+def counts(
+    verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None, exempt: NDArray[np.bool_] | None = None
+) -> dict[str, Any]:
+    """How many samples have each verdict; `inside`, `exempt` (n,): those inside other bodies of the part, and not required."""
+    of = {name: int((verdict == code).sum()) for code, name in WORDS.items()}
+    return {
+        **of,
+        "inside_bodies": 0 if inside is None else int(inside.sum()),
+        "exempt": 0 if exempt is None else int(exempt.sum()),
+    }
+
+
+def face_verdicts(
+    samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None, exempt: NDArray[np.bool_] | None = None
+) -> dict[str, FaceVerdicts]:
+    """Sum up the verdicts on each face that has samples, by its id; `inside` and `exempt` as in `counts`."""
+    nowhere = np.zeros(len(samples.face), bool)
+    inside, exempt = nowhere if inside is None else inside, nowhere if exempt is None else exempt
+    entries = {}
+    for number, mine in samples.by_face().items():
+        area = weights(samples.area[mine])
+        within, free = inside[mine], exempt[mine]
+        required = ~within & ~free
+        seen = mine[required]
+        share = _share(reach.verdict[seen], reach.reason[seen], area[required])
+        part = min(1.0, float(area[within].sum() / area.sum())) if not within.all() else 1.0
+        edges = min(1.0 - part, float(area[free].sum() / area.sum())) if len(seen) else 1.0 - part
+        entries[f"F{number}"] = FaceVerdicts(
+            **counts(reach.verdict[mine], within, free), area_share=share, inside_share=part, exempt_share=edges
+        )
+    return entries
+
+
+def covered(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[float, float]:
+    """Area of the target faces that lies inside other bodies of the part, mm2, and its share of all of it."""
+    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], part)
+    area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
+    return area, min(1.0, area / max(1e-300, sum(areas.values())))
+
+
+def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> AreaShare:
+    """Give the shares of the verdicts in the finished part's surface of all target faces.
+
+    Faces without samples are not judged; those of unknown area do not count. Where the area of none is known, every face counts
+    as one.
+    """
+    targets = [
+        *((name, each.area_share, 1.0 - each.inside_share - each.exempt_share) for name, each in faces.items()),
+        *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty),
+    ]
+    areas = _areas([name for name, _, _ in targets], part)
+    seen = np.array([areas[name] * finished for name, _, finished in targets])
+    weights = (seen / max(1e-300, seen.sum())).tolist()
+    parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
+    sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
+    not_reached = {
+        reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
+    }
+    return AreaShare(**sums, lost_by={reason: share for reason, share in not_reached.items() if share})
+
+
+def sample_areas(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[NDArray[np.float64], float]:
+    """Give the area that each sample (n,) stands for, and that of faces without samples, mm2, weighed as in `whole_share`."""
+    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], part)
+    result = np.zeros(len(samples))
+    for number, mine in samples.by_face().items():
+        weight = weights(samples.area[mine])
+        result[mine] = areas[f"F{number}"] * weight / weight.sum()
+    return result, float(sum(areas[f"F{number}"] for number, _ in samples.empty))
+
+
+def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
+    """Areas of faces by their ids, mm2; 1 each where none is known."""
+    areas = weights(np.array([part.faces[int(name[1:]) - 1].area for name in names]))
+    return dict(zip(names, areas.tolist(), strict=True))
+
+
+def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[np.float64]) -> AreaShare:
+    if not len(area):
+        return AreaShare()
+    area = weights(area)
+    area = area / area.sum()
+    shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
+    not_reached = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
+    by = {
+        name: min(1.0, float(area[not_reached & (reason == i)].sum()))
+        for i, name in enumerate(REASONS)
+        if (reason[not_reached] == i).any()
+    }
+    return AreaShare(**shares, lost_by=by)
+
+
+def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
+    """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
+    inside, samples = ready.inside_bodies, ready.samples
+    if not inside.any():
+        return InsideEntry()
+    area, share = covered(faces, samples, ready.scene.part)
+    within, lying = float(samples.area[inside].sum()), sheets(ready)
+
+    def of(rows: NDArray[np.int64]) -> float:
+        """Area that some samples stand for, so that all of it comes to that of the faces."""
+        return area * float(samples.area[rows].sum()) / within if within > 0.0 else 0.0
+
+    def on(rows: NDArray[np.int64]) -> list[str]:
+        return [f"F{n}" for n in np.unique(samples.face[rows]).tolist()]
+
+    bodies = [
+        CoveringBody(
+            number=1 + each.index,
+            name=each.name,
+            own_faces=numbers(each.faces).split(","),
+            faces=on(each.rows),
+            samples=len(each.rows),
+            area_mm2=of(each.rows),
+            how=each.how,
+            largest=each.largest,
+            option=f"--ignore {shlex.quote(each.selection)}",
+        )
+        for each in ready.cache.cached("coverings", _follows_from(ready), lambda: coverings(ready))
+    ]
+    names = ready.conditions.surroundings.on_bodies
+    on_bodies = None
+    if len(lying):
+        on_bodies = SheetsEntry(faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}")
+    return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)
+
+
+def void_faces(ready: Prepared) -> list[str]:
+    """Ids of the faces whose samples inside material all lie in a closed void: no body that could be absent is around them."""
+    bodies = ready.conditions.surroundings.bodies
+    hollow, within = np.array([*voids(bodies, ready.scene.orientation), False]), ready.inside >= 0
+    in_void = within & hollow[np.minimum(ready.inside, len(bodies))]
+    shut, others = np.unique(ready.samples.face[in_void]), np.unique(ready.samples.face[within & ~in_void])
+    return [f"F{number}" for number in np.setdiff1d(shut, others).tolist()]
+
+
+def _follows_from(ready: Prepared) -> tuple[object, ...]:
+    """All that bodies over samples follow from."""
+    scene, samples, certain = ready.scene, ready.samples, ready.conditions.surroundings.certain.triangles
+    inside = ready.inside, ready.inside_bodies, samples.point, samples.face, samples.area
+    return scene.part.key, scene.ignored, certain.vertex, certain.chord_error, ready.conditions.tolerance, inside
+
 
 #: Decimals of carriers: behind them there is noise alone.
 _DIGITS = 9

@@ -1,41 +1,266 @@
 """How everything found becomes one plan."""
 
 import datetime
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.document.answers import advice_entry, least_set_entry, radius_entry, stick_out_entry
-from plan_cutters.document.build import degrees, face_entries, missing_entries, part_info, scope_of, versions
-from plan_cutters.document.effective import effective
-from plan_cutters.document.fixtures import fixture_entries
-from plan_cutters.document.inside import inside_entry, void_faces
-from plan_cutters.document.libraries import library_entry, source_entry
+from cad_io.arrays import SurfaceSamples
+from plan_cutters.document.build import (
+    counts,
+    degrees,
+    face_entries,
+    fixture_entries,
+    inside_entry,
+    missing_entries,
+    part_info,
+    scope_of,
+    versions,
+    void_faces,
+)
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.process import process_entry
-from plan_cutters.document.shares import counts
-from plan_cutters.document.travel import linear_entries, travel_entry
+from plan_cutters.document.setups import OverSetups, linear_entries, placement_entry, travel_entry
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.change import Advice, Step
 from plan_cutters.domain.fillet import Fitting
+from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
+from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.domain.over_setups import positions
+from plan_cutters.domain.own_process import cutter_of
+from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.stick_out import StickOut
+from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED
+from plan_cutters.library.raw_tool import Entry, Library
+from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
+from plan_cutters.plan_file.answers import (
+    Beyond,
+    LeastSetEntry,
+    LostAreaEntry,
+    MendEntry,
+    MoveEntry,
+    RadiusEntry,
+    RunEntry,
+    StepEntry,
+    StickOutEntry,
+)
+from plan_cutters.plan_file.effective import Effective, LocalTolerance
+from plan_cutters.plan_file.frozen import filled, posture, vector
+from plan_cutters.plan_file.model import (
+    AreaEntry,
+    CutterEntry,
+    LibraryEntry,
+    MachineEntry,
+    Plan,
+    RotaryEntry,
+    Run,
+    SampleCounts,
+    Selection,
+    SourceEntry,
+    UnusedEntry,
+)
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
-from plan_cutters.plan_file.palette import MEANING, PALETTE
-from plan_cutters.plan_file.patterns import PatternEntry
+from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry
+from plan_cutters.plan_file.reasons import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
-from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
-from plan_cutters.plan_file.words import choice as words
+from plan_cutters.plan_file.words import headline as words
+from plan_cutters.plan_file.words.next_steps import patch
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.surroundings import Surroundings
+
+
+def library_entry(library: Library) -> LibraryEntry:
+    """A library, and what of it was not used."""
+    return filled(
+        LibraryEntry,
+        library,
+        tools=len(library.entries),
+        cutters=len(library),
+        notes=list(library.notes),
+        holders=[holder.name or holder.id for holder in library.holders],
+        unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
+    )
+
+
+def source_entry(library: Library, entry: Entry) -> SourceEntry:
+    """One place where a cutter is listed."""
+    return filled(SourceEntry, entry, file=library.file, notes=list(entry.notes))
+
+
+def effective(ready: Prepared) -> Effective:
+    """Every option after defaults: as `Options` keeps it where nothing more is said here, angles in degrees."""
+    scene, options, choice, surroundings = ready.scene, ready.options, ready.chosen, ready.conditions.surroundings
+    made: dict[str, Any] = {
+        "cutters": [c.id for c in ready.cutters],
+        "units": options.reported_unit,
+        "cutter_source": " and ".join(_sources(options)) or "built-in",
+        "holder": None if options.holder is None else options.holder.id,
+        "fixtures": [each.text for each in scene.fixtures],
+        "machine": options.machine.name,
+        "setup": scene.setup,
+        "placement": placement_entry(options.placement),
+        "other_placements": [placement_entry(each) for each in options.other_placements],
+        "faces": choice.asked,
+        "ignore": list(choice.ignore),
+        "target_faces": [f"F{n}" for n in choice.targets],
+        "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
+        "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
+        "tolerance_mm": ready.conditions.tolerance,
+        "tolerance_requested_mm": scene.asked,
+        "local_tolerance": _local(ready),
+        "chord_error_mm": surroundings.certain.triangles.chord_error,
+        "chord_measured_share": surroundings.certain.triangles.measured_share,
+        "obstacle_triangles": len(surroundings.possible.triangles),
+        "area_budget": options.contacts_between(len(ready.samples)),
+        "process": _process(ready),
+        "axis_accuracy_deg": float(np.degrees(options.accuracy)),
+        "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
+    }
+    return Effective(**{name: as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
+
+
+def _local(ready: Prepared) -> list[LocalTolerance]:
+    faces, targets = ready.scene.part.faces, set(ready.chosen.targets)
+    whole = sum(faces[number - 1].area for number in targets)
+    changes = [
+        LocalTolerance(
+            face=f"F{number}",
+            chord_error_mm=error,
+            tolerance_mm=effective_tolerance(0.0, error),
+            area_mm2=faces[number - 1].area,
+            share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
+        )
+        for number, error in ready.conditions.surroundings.loose.items()
+    ]
+    return sorted(changes, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
+
+
+def _process(ready: Prepared) -> dict[str, Any] | None:
+    """The planner's own steps, their cutters by id."""
+    process = ready.options.process
+    if process is None:
+        return None
+
+    def called(word: str) -> str:
+        return cutter_of(word, ready.cutters, "process").id
+
+    steps = tuple(replace(each, cutter=called(each.cutter)) for each in process.steps)
+    forbidden = tuple(replace(each, cutter=called(each.cutter)) for each in process.forbidden)
+    return replace(process, steps=steps, forbidden=forbidden).written()
+
+
+def as_requested(options: Options, name: str) -> Any:
+    """The option of an entry's name."""
+    value = getattr(options, re.sub("_(mm|deg|s|mm_min)$", "", name))
+    if value is None or not name.endswith("_deg"):
+        return value
+    return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
+
+
+def _sources(options: Options) -> list[str]:
+    """Where the cutters are from; nothing for the built-in ones."""
+    return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
+
+
+#: Of a verdict on what lies just beyond an answer.
+_WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
+
+
+def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: Surroundings) -> StickOutEntry:
+    """A least stick-out."""
+    limited, none = stick_out.sample >= 0, np.isnan(stick_out.least)
+    return StickOutEntry(
+        least_mm=None if none else stick_out.least,
+        floor_mm=None if none else stick_out.floor,
+        longest_mm=stick_out.longest,
+        limited_by=stick_out.why,
+        served=stick_out.served,
+        beyond_mm=stick_out.beyond if limited else None,
+        beyond=_WORDS.get(stick_out.verdict),
+        face=f"F{samples.face[stick_out.sample]}" if limited else None,
+        point=vector(samples.point[stick_out.sample]) if limited else None,
+        posture=None if stick_out.axis is None else posture(stick_out.tilt, stick_out.rotation, stick_out.axis),
+        obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
+        obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
+        doubtful=surroundings.doubtful,
+    )
+
+
+def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
+    """A map of largest radii."""
+    row = radius_map.bottleneck
+    reason = None if row is None or radius_map.reason[row] == NO_REASON else REASONS[radius_map.reason[row]]
+    return RadiusEntry(
+        shape=radius_map.shape,
+        length_over_radius=radius_map.ratio,
+        step=radius_map.step,
+        least_mm=radius_map.least,
+        most_mm=radius_map.most,
+        percentiles_mm={str(q): radius for q, radius in radius_map.percentiles(samples.area).items()},
+        below=int(radius_map.less.sum()),
+        no_less=int(radius_map.no_less.sum()),
+        doubtful=doubtful,
+        bottleneck_mm=None if row is None else float(radius_map.radius[row]),
+        bottleneck_face=None if row is None else f"F{samples.face[row]}",
+        bottleneck_point=None if row is None else vector(samples.point[row]),
+        beyond=None if row is None else _WORDS.get(int(radius_map.beyond[row])),
+        reason=reason,
+    )
+
+
+def advice_entry(advice: Advice) -> MendEntry:
+    """Make the entry of what to do next with a cutter."""
+    return filled(
+        MendEntry,
+        advice,
+        lost_share=advice.share,
+        steps=[_step_entry(each) for each in advice.steps],
+        lost_areas=[_area_entry(each) for each in advice.areas],
+        more_lost_areas=advice.more_areas,
+    )
+
+
+def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
+    """The fewest runs."""
+    runs = [filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs]
+    return filled(LeastSetEntry, least, runs=runs, doubtful=doubtful)
+
+
+def _area_entry(area: Patch) -> LostAreaEntry:
+    return filled(
+        LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across, why=patch(area)
+    )
+
+
+def _joined(words: list[str]) -> str:
+    rest = " for the rest"
+    if len(words) > 1 and all(each.endswith(rest) for each in words):
+        return " and ".join(each.removesuffix(rest) for each in words) + rest
+    return ", and ".join(words)
+
+
+def _step_entry(step: Step) -> StepEntry:
+    return filled(
+        StepEntry,
+        step,
+        changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in step.moves],
+        lost_before=step.before,
+        lost_after=step.after,
+        cutters=[each.id for each in step.cutters],
+        setups=[vector(each) for each in step.setups],
+        why=_joined([each.words for each in step.moves]),
+        remains=[_area_entry(each) for each in step.remains],
+    )
 
 
 @reporting(lambda ready: ready.options.reported_unit)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from plan_cutters.errors import PlanError, extra_hint
-from plan_cutters.files.regular import regular_bytes
+from plan_cutters.files.content import regular_bytes
 from plan_cutters_base import user_files
 from plan_cutters_base.user_files import checksum, open_regular
 from plan_cutters_base.whole import whole

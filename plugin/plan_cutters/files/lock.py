@@ -6,12 +6,28 @@ import os
 import re
 import shutil
 import socket
+import tempfile
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 
 from plan_cutters.errors import PlanError
 from plan_cutters_base.system_lock import acquired, system_lock
+
+
+def require_temporary() -> None:
+    """See to it that temporary files can be written somewhere.
+
+    Raises
+    ------
+    PlanError
+        No folder for them can be written to.
+    """
+    try:
+        tempfile.gettempdir()
+    except FileNotFoundError:
+        raise PlanError("no folder for temporary files can be written to; name one with TMPDIR") from None
+
 
 _LONGEST = 4096
 

@@ -8,12 +8,12 @@ from importlib import import_module
 from typing import Any
 
 _HOME = {
-    "Entry": "records",
-    "Library": "records",
+    "Entry": "raw_tool",
+    "Library": "raw_tool",
     "holder_of": "read",
     "listing": "read",
     "read_library": "read",
-    "to_toml": "toml_out",
+    "to_toml": "toml",
 }
 __all__ = sorted(_HOME)
 

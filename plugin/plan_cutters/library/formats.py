@@ -8,20 +8,20 @@ from collections.abc import Callable
 
 from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
-from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, toml_in
+from plan_cutters.library import freecad, fusion, toml
 from plan_cutters.library.files import Content
 from plan_cutters.library.raw_tool import LibraryContent
 
 Reader = Callable[[Content], LibraryContent]
 FORMATS: tuple[Format[Reader], ...] = (
-    Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, fusion_json.read_zip),
-    Format("Fusion JSON", (".json",), fusion_json.is_json, fusion_json.read_json),
-    Format("Fusion CSV", (".csv",), fusion_csv.is_csv, fusion_csv.read_csv),
-    Format("HSMWorks", (".hsmlib",), hsmworks.is_hsmlib, hsmworks.read_hsmlib),
+    Format("Fusion tools (zip)", (".tools",), fusion.is_zip, fusion.read_zip),
+    Format("Fusion JSON", (".json",), fusion.is_json, fusion.read_json),
+    Format("Fusion CSV", (".csv",), fusion.is_csv, fusion.read_csv),
+    Format("HSMWorks", (".hsmlib",), fusion.is_hsmlib, fusion.read_hsmlib),
     Format("FreeCAD library", (".fctl",), freecad.is_library, freecad.read_library),
     Format("FreeCAD bit", (".fctb",), freecad.is_bit, freecad.read_bit),
     Format("FreeCAD holder", (".fcholder",), freecad.is_holder, freecad.read_holder),
-    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
+    Format("plan-cutters TOML", (".toml",), toml.is_toml, toml.read_toml),
 )
 
 _SQLITE = b"SQLite format 3\0"

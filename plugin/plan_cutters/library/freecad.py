@@ -16,11 +16,11 @@ from typing import Any
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.cutting import slack
+from plan_cutters.library.cutting import Preset, slack, take_feed
 from plan_cutters.library.files import MOST_TOOLS, Content, data_of, lines_of, too_many
-from plan_cutters.library.fusion_json import MOST_SECTIONS
-from plan_cutters.library.presets import Preset, take_feed
+from plan_cutters.library.fusion import MOST_SECTIONS
 from plan_cutters.library.raw_tool import (
+    Entry,
     FaultError,
     LibraryContent,
     Listed,
@@ -31,7 +31,6 @@ from plan_cutters.library.raw_tool import (
     sections,
     whole_of,
 )
-from plan_cutters.library.records import Entry
 from plan_cutters_base.user_files import is_there
 
 _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,

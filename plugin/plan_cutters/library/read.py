@@ -10,7 +10,7 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import Content, data_of
 from plan_cutters.library.formats import FORMATS, recognised
 from plan_cutters.library.milling import Ask, entry_of
-from plan_cutters.library.records import Entry, Library
+from plan_cutters.library.raw_tool import Entry, Library
 from plan_cutters_base.user_files import is_there
 
 #: How many reasons an error names, of all.

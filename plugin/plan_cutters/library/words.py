@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.standard_holders import words
-from plan_cutters.library.records import Entry, Library
+from plan_cutters.library.raw_tool import Entry, Library
 
 #: How far a gauge pin stands out of a holder that is drawn, mm.
 _PIN = 40.0

@@ -6,7 +6,7 @@ May use: domain, files. `formats.py` is the table of formats, each of which is o
 from importlib import import_module
 from typing import Any
 
-_HOME = {"machine_of": "read", "plain": "toml_out", "read_machine": "read", "to_toml": "toml_out"}
+_HOME = {"machine_of": "read", "plain": "toml", "read_machine": "read", "to_toml": "toml"}
 __all__ = sorted(_HOME)
 
 

@@ -9,19 +9,19 @@ from collections.abc import Callable
 from plan_cutters.domain.machine import Machine
 from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
-from plan_cutters.machines import freecad, fusion, linuxcnc, toml_in
+from plan_cutters.machines import freecad, fusion, linuxcnc, toml
 from plan_cutters.machines.files import Added, Content
 
 Reader = Callable[[Content, Added], Machine]
 FORMATS: tuple[Format[Reader], ...] = (
-    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
-    Format("plan-cutters JSON", (".json",), toml_in.is_json, toml_in.read_json),
+    Format("plan-cutters TOML", (".toml",), toml.is_toml, toml.read_toml),
+    Format("plan-cutters JSON", (".json",), toml.is_json, toml.read_json),
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
     Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
     # By its name alone, so that it is said where it is no TOML or what is missing.
-    Format("plan-cutters TOML", (".toml",), toml_in.is_named, toml_in.read_toml),
+    Format("plan-cutters TOML", (".toml",), toml.is_named, toml.read_toml),
 )
 
 _TOML = "write the machine as TOML (docs/machines.md)"

@@ -14,7 +14,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.own_process import LEFT, Forbidden, OwnProcess, OwnStep, unit_axis
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files import content
-from plan_cutters.machines.toml_in import Number, Vector, explained
+from plan_cutters.machines.toml import Number, Vector, explained
 
 #: Bytes and steps that no process written by hand has.
 _MOST, _STEPS = 1 << 20, 500

@@ -24,7 +24,7 @@ from plan_cutters.plan_file.operations import (
     RestEntry,
     runs,
 )
-from plan_cutters.plan_file.palette import operation_colour
+from plan_cutters.plan_file.reasons import operation_colour
 
 #: The fastest plan against a bound, with the area, mm2, that the samples compared stand for.
 Timed = tuple[FastestEntry, float]

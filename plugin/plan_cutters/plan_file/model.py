@@ -8,20 +8,21 @@ from typing import Literal
 from pydantic import Field
 
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
-from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
-from plan_cutters.plan_file.inside import InsideEntry
-from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
-from plan_cutters.plan_file.operations import OperationsEntry
-from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
-from plan_cutters.plan_file.patterns import PatternEntry
-from plan_cutters.plan_file.process import ProcessEntry
-from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
+from plan_cutters.plan_file.operations import OperationsEntry, ProcessEntry, SplitEntry
+from plan_cutters.plan_file.part_info import (
+    CarrierEntry,
+    FixtureEntry,
+    InsideEntry,
+    InsideRadiusEntry,
+    PartInfo,
+    PatternEntry,
+    Scope,
+    SharpEdgeEntry,
+)
+from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach, TravelEntry
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
-from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
-from plan_cutters.plan_file.split import SplitEntry
-from plan_cutters.plan_file.travel import TravelEntry
 
 FORMAT_VERSION = 1
 

@@ -1,10 +1,107 @@
-"""The part as the plan names it: its file, its faces in and out of scope, what is odd about it, and what stands beside it."""
+"""Entries on the part itself: its file, its bodies, and what is told of the form of its faces."""
 
 from typing import Literal
 
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
+
+
+class CarrierEntry(Frozen):
+    """The whole plane, cylinder, cone, sphere or torus that a face is a part of, as `shape` of the face says."""
+
+    point_mm: Vector = Field(
+        description="the point of a plane or of a cylinder's axis that is nearest the origin, the apex of a cone, the centre of "
+        "a sphere or torus"
+    )
+    direction: Vector | None = Field(
+        default=None,
+        description="unit normal of a plane, unit direction of an axis: the first of its longest components is positive, of a "
+        "cone it points from the apex to the face; null of a sphere",
+    )
+    radius_mm: float | None = Field(
+        default=None, description="of a cylinder or sphere, and of the circle about which a torus lies"
+    )
+    minor_radius_mm: float | None = Field(default=None, description="of the tube of a torus")
+    half_angle_deg: float | None = Field(default=None, description="between the axis and the surface of a cone")
+    outward: bool | None = Field(
+        default=None,
+        description="whether the normal out of the material points along a plane's direction, or away from an axis, from a "
+        "centre or from the middle of a tube: of a hole it does not; null where that is a guess",
+    )
+
+
+class SharpEdgeEntry(Frozen):
+    """Where two faces meet at an angle below 180 deg without a fillet, and what the cutter `shown` leaves there."""
+
+    faces: tuple[str, str]
+    length_mm: float = Field(description="of all edges between the two faces that are sharp")
+    angle_deg: float = Field(description="between the faces, through the air; the mean along the edges")
+    radius_mm: float = Field(description="of the fillet that the cutter leaves, its allowance included")
+    width_mm: float = Field(description="of the strip on each face, as between planes at this angle")
+    area_mm2: float = Field(description="that the cutter leaves on both faces, by its samples with the reason `sharp_edge`")
+
+
+class CoveringBody(Frozen):
+    """A body of the part, and what of the target faces lies inside it."""
+
+    number: int = Field(description="from 1")
+    name: str = Field(description="of its component; empty where it has none of its own")
+    own_faces: list[str] = Field(description="runs of them, as `F7-12`")
+    faces: list[str] = Field(description="target faces that it covers, some of each at least")
+    samples: int
+    area_mm2: float
+    how: Literal["overlaps", "stands_on", "touches_or_overlaps"] = Field(
+        description="stands_on: the shells touch and the volumes do not intersect, as a clamp modelled as a solid"
+    )
+    largest: bool = Field(default=False, description="no other body is larger")
+    option: str = Field(description="of the command, which leaves the body out")
+
+
+class SheetsEntry(Frozen):
+    """Construction sheets on the skin of a body: what of them faces into it."""
+
+    faces: list[str]
+    samples: int
+    area_mm2: float
+    option: str = Field(description="of the command, which leaves them out")
+
+
+class InsideEntry(Frozen):
+    """This much of the target faces lies inside other bodies of the part: it is no surface of the finished part."""
+
+    samples: int = 0
+    area_mm2: float = 0.0
+    share: float = Field(default=0.0, description="of the target faces' area, 0 to 1")
+    bodies: list[CoveringBody] = Field(default=[], description="those that cover the largest area first")
+    sheets: SheetsEntry | None = None
+
+
+class InsideRadiusEntry(Frozen):
+    """A face that bends inwards more than the cutter `shown`, which is not reached there for that."""
+
+    face: str
+    radius_mm: float = Field(description="inside radius that most of the area that is not reached there has, or a larger one")
+    cutter_radius_mm: float = Field(description="radius or corner radius of the cutter, its allowance included")
+    area_mm2: float = Field(description="of the face that is not reached for local or rear gouge")
+    fits_mm: float | None = Field(description="largest usual diameter whose radius fits; null where none is that small")
+
+
+class PatternEntry(Frozen):
+    """Faces that are equal under a rotation, a mirror or shifts, within a millionth of the part's size."""
+
+    kind: Literal["rotation", "mirror", "shift"]
+    order: int = Field(description="copies: the whole turn over the angle of a rotation; 2 of a mirror")
+    whole: bool = Field(description="whether each motion carries the whole part onto itself")
+    place_mm: Vector | None = Field(description="a point of the axis or of the mirror; null for shifts")
+    direction: Vector | None = Field(description="unit, of the axis, or the mirror's normal; null for shifts")
+    shifts_mm: list[Vector] = Field(default=[], description="from the first copy to each other one; of shifts alone")
+    faces: list[list[str]] = Field(description="by copy, the first one first: equal faces stand in the same place")
+    moved: int = Field(
+        default=0, description="samples of all cutters and setups whose posture is that of an equal one, tested in its place"
+    )
+    followed: int = Field(default=0, description="samples that were found not to be reached as equal ones are, without a search")
+    verified: int = Field(default=0, description="samples that were searched by themselves to verify that")
 
 
 class ReferenceEntry(Frozen):

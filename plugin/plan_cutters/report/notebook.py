@@ -18,8 +18,7 @@ from plan_cutters.files.markup import plain, template
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
-from plan_cutters.plan_file.words.story import Story, story_of
-from plan_cutters.plan_file.words.text import further, of_the_plan
+from plan_cutters.plan_file.words.text import Story, further, of_the_plan, story_of
 from plan_cutters.plan_file.words.text import text_of as made_of
 from plan_cutters.report.page.write import page
 from plan_cutters.report.protocol import Judged

@@ -20,8 +20,7 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
-from plan_cutters.option_types import SceneOptions
-from plan_cutters.options import MOST_TOLERANCE, Options
+from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
 from plan_cutters.scene.overlap import overlaps, refuse_overlaps

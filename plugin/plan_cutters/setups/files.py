@@ -16,7 +16,7 @@ from plan_cutters.domain.posture import along
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files import content
 from plan_cutters.machines.chain import scaled
-from plan_cutters.machines.toml_in import Vector, explained
+from plan_cutters.machines.toml import Vector, explained
 
 
 class Content(content.Content):

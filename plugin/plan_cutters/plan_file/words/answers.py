@@ -8,8 +8,7 @@ from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters.plan_file.words.headline import every
-from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.names import Line, named
 from plan_cutters.plan_file.words.next_steps import is_excluded, remaining, step_text
 
 #: Steps that are said of a cutter.

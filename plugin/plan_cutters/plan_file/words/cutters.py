@@ -10,8 +10,7 @@ from plan_cutters.plan_file.reasons import REASONS, Reason
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
-from plan_cutters.plan_file.words.needs import first_tries
-from plan_cutters.plan_file.words.next_steps import first_step, step_text
+from plan_cutters.plan_file.words.next_steps import first_step, first_tries, step_text
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3

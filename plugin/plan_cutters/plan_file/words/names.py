@@ -3,11 +3,25 @@
 import math
 import re
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.plan_file.model import CutterEntry, Plan
+
+
+class Line(NamedTuple):
+    """A sentence or two.
+
+    Before it stands its kind (`mark`), behind it what a person may type, as it must be typed. `minor`: only for those who ask
+    for all.
+    """
+
+    text: str
+    mark: str = ""
+    typed: str = ""
+    minor: bool = False
+
 
 #: Numbers in the tool changer that are named of one cutter.
 _PLACES = 3

@@ -1,11 +1,119 @@
-"""Put the next steps into words."""
+"""Put changes, next steps, and what would help against a cause into words."""
 
-from plan_cutters.domain.figures import percent
+import math
+import re
+from collections.abc import Sequence
+
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import angle, listed, mm, percent, reported
+from plan_cutters.domain.figures import area as size
+from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.domain.spec import notation
+from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.plan_file.answers import MendEntry, RunEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP
+from plan_cutters.plan_file.operations import UNJUDGED_CAUSE, FitEntry, HelpEntry, RemainingEntry
+from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.headline import not_sampled
+from plan_cutters.plan_file.words.names import kind
+from plan_cutters.plan_file.words.scope import shown_cutter
+
+Range = tuple[float, float]
+
+#: Faces that are named one by one.
+_FACES = 5
+_ORDER = {2: "second", 3: "third", 4: "fourth"}
+
+
+def tolerance(requested: float, now: float) -> str:
+    return f"a tolerance of {mm(requested)} instead of {mm(now)}"
+
+
+def tilt_range(wanted: Range, now: Range) -> str:
+    return f"tilts from {angle(wanted[0])} to {angle(wanted[1])} in the search instead of {angle(now[0])} to {angle(now[1])}"
+
+
+def tilt_limit(requested: float, now: float | None, machine: str) -> str:
+    """Name a machine that tilts further; `now` is None where rotary axes limit it, not an angle."""
+    instead = f"every way instead of {machine}" if now is None else f"instead of {angle(now)}"
+    return f"a machine that tilts by {angle(requested)} {instead}"
+
+
+def stick_out(requested: float, now: Cutter) -> str:
+    """Name a stick-out; one of more than the usual diameters says so."""
+    how, ratio = notation(now.name), requested / (2.0 * now.radius)
+    return f"a stick-out of {how.mm(requested)}{_ratio(ratio)} instead of {how.mm(now.length)}"
+
+
+def tool(cutter: Cutter) -> str:
+    """Name a cutter that is sold, by kind, size and stick-out.
+
+    >>> tool(Cutter.parse("D4L20rc2")), tool(Cutter.parse("R2L40rc0.5"))
+    ('a ball end D4 held 20 mm out', 'a bull nose R2 rc0.5 held 40 mm out (10 D, more than the usual 5 D)')
+    """
+    how = notation(cutter.name)
+    return f"a {kind(cutter)} {typed_size(cutter)} held {how.mm(cutter.length)} out{_ratio(slenderness(cutter))}"
+
+
+def typed_size(cutter: Cutter) -> str:
+    """The size of an end mill as it is typed, with the corner of a bull nose.
+
+    >>> typed_size(Cutter.parse("D4L20rc2")), typed_size(Cutter.parse("R2L40rc0.5"))
+    ('D4', 'R2 rc0.5')
+    """
+    how = notation(cutter.name)
+    corner = f" rc{how.length(cutter.corner_radius)}" if kind(cutter) == "bull nose" else ""
+    return f"{how.by}{how.across(cutter.radius)}{corner}"
+
+
+def _ratio(ratio: float) -> str:
+    return f" ({ratio:.3g} D, more than the usual {USUAL:g} D)" if ratio > USUAL * (1.0 + 1e-9) else ""
+
+
+def holder(requested: Holder, now: Cutter) -> str:
+    how = notation(now.name)
+    return f"the holder {requested.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
+
+
+def rest(cutter: str) -> str:
+    return f"{cutter} for the rest"
+
+
+def clamped(axis: Sequence[float], degrees: float) -> str:
+    """Say how the part is clamped for a setup axis that is so many degrees from the present one."""
+    words = axis_words(axis)
+    return f"turned over (setup {words})" if degrees > 179.0 else f"clamped with {words} along the spindle"
+
+
+def more_setup(axis: Sequence[float], degrees: float, number: int) -> str:
+    return f"{clamped(axis, degrees)} as a {_ORDER.get(number, 'further')} setup"
+
+
+def patch(area: Patch) -> str:
+    """An area that is lost, with its place.
+
+    >>> patch(Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13))
+    '57.2 mm² of F31, about (12, 3, -8.04), 4.1 mm across'
+    """
+    wide = f", {mm(float(f'{area.across:.2g}'))} across" if area.across else ""
+    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in area.place)
+    return f"{size(area.area)} of {listed(area.faces, _FACES)}, about ({where}){wide}"
+
+
+def excluded_areas(areas: Sequence[Patch], area: float) -> str:
+    """Say which connected areas to leave to another process, and how much they are in all, mm2."""
+    if len(areas) == 1:
+        return f"leave to another process: {patch(areas[0])}"
+    return f"leave to another process: {size(area)} in {len(areas):,} places, the largest {patch(areas[0])}"
+
+
+def samples(count: int) -> str:
+    """Give a number of samples as the subject of a sentence and its verb."""
+    return "1 sample is" if count == 1 else f"{count:,} samples are"
+
 
 #: Runs that are named one by one.
 _RUNS = 6
@@ -90,3 +198,98 @@ def remaining(advice: MendEntry) -> str:
     if best is None or not best.remains:
         return ""
     return "; ".join(each.why for each in best.remains)
+
+
+#: Faces that are named; shares of an area from which on points are named, and from which on they are most of it.
+_FEW, _NAMED, _POINTS, _MAINLY = 2, 3, 0.05, 0.5
+#: A step that does less of an area is no answer to it; what does so much leaves hardly any; a size that fits less does not fit.
+_HELPS, _NEARLY, _SOME = 0.1, 0.9, 0.01
+#: Shares that differ by less are alike.
+_ALIKE = 0.05
+
+
+def needs(plan: Plan, entry: RemainingEntry) -> str:
+    """Say what would help against a cause, in a clause; empty where nothing is known."""
+    if entry.cause == "sharp_edge" and plan.sharp_edges:
+        return f"the model has no fillet there, and the cutter leaves one of R{reported(plan.sharp_edges[0].radius_mm):.4g}"
+    if entry.cause == UNJUDGED_CAUSE:
+        faces = set(entry.faces)
+        return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
+    if entry.cause not in REASONS:
+        return ""
+    if entry.cause == "buried" and (shut := [face for face in entry.faces if face in plan.part.void_faces]):
+        if len(shut) == len(entry.faces):
+            return CLOSED_VOID
+        return f"{CLOSED_VOID} at {listed(shut, _NAMED)}; for the rest {REASONS[entry.cause].hint}"
+    advice = shown_cutter(plan).mend
+    hint = first_tries(entry.cause, advice)
+    if advice is not None and (best := _best(entry, advice)) is not None:
+        what = re.sub(r" \([^()]*\)|,? for the rest$", "", advice.steps[best.step].why)
+        first, share = f"{what} {'may finish' if advice.unsure else 'finishes'} {_share(best.share)} of it", best.share
+    elif hint and entry.fits is not None:
+        # What was judged says more than a hint; a size that reaches next to nothing is none that fits.
+        first = _sizes(entry.fits)
+        share = entry.fits[-1].share if first else 0.0
+    else:
+        first, share = hint or "no change that was tried helps", 0.0
+    points = _points(entry, share)
+    return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
+
+
+def _best(entry: RemainingEntry, advice: MendEntry) -> HelpEntry | None:
+    """The step that does most of an area; where others do hardly less, one on the same machine, of fewer changes."""
+    known = [each for each in entry.helped if each.step < len(advice.steps) and each.share >= _HELPS]
+
+    def effort(each: HelpEntry) -> tuple[bool, int, float, int]:
+        things = [change.thing for change in advice.steps[each.step].changes]
+        return "tilt_limit" in things, len(things), -each.share, each.step
+
+    return min((each for each in known if each.share >= known[0].share - _ALIKE), key=effort, default=None)
+
+
+def first_tries(cause: str, advice: MendEntry | None) -> str:
+    """Say what to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
+    if cause not in REASONS:
+        return ""
+    return ", or ".join(words for words, means in REASONS[cause].tries if not (means and all(_refuted(advice, m) for m in means)))
+
+
+def _refuted(advice: MendEntry | None, means: str) -> bool:
+    """Whether steps were looked for, and none of them is such a change."""
+    return (
+        advice is not None
+        and bool(advice.steps)
+        and all(change.thing != means for step in advice.steps for change in step.changes)
+    )
+
+
+def _sizes(fits: list[FitEntry]) -> str:
+    """Which sizes reach how much; empty where they reach less than a hundredth.
+
+    >>> fits = [("R1.5L40", "D3", 3.0, 0.749), ("R1L40", "D2", 2.0, 0.9)]
+    >>> _sizes([FitEntry(cutter=spec, kind="flat end", size=d, diameter_mm=mm, share=s) for spec, d, mm, s in fits])
+    'flat end D3 fits 74 % of it, D2 90 %'
+    """
+    if not fits or fits[0].share < _SOME:
+        return ""
+    first, *more = fits
+    smaller = [f"{each.size} {_share(each.share)}" for each in more]
+    return ", ".join([f"{first.kind} {first.size} fits {_share(first.share)} of it", *smaller])
+
+
+def _share(share: float) -> str:
+    """A share in whole percents, no more than it is.
+
+    >>> _share(0.749), _share(1.0), _share(0.004)
+    ('74 %', '100 %', '<0.1 %')
+    """
+    return percent(math.floor(100.0 * share + 1e-9) / 100.0, some=True)
+
+
+def _points(entry: RemainingEntry, share: float) -> str:
+    """Say that no end fits the points of cones: where they are most of an area, or much of one of which a share leaves a part."""
+    points = entry.points
+    if points is None or points.share < (_MAINLY if share >= _NEARLY else _POINTS):
+        return ""
+    which = "" if share else f" ({listed(points.faces, _FEW)})"
+    return f"no end fits a cone's point{which}: left for a drill or by hand"

@@ -8,8 +8,7 @@ from plan_cutters.domain.figures import ROUNDING, bound, count, duration, joined
 from plan_cutters.domain.figures import area as size
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
-from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.names import Line, named
 
 #: Operations that are listed, and faces that are named of one.
 _LISTED, _FACES = 12, 4

@@ -9,7 +9,7 @@ from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.process import (
+from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
     UNJUDGED_CAUSE,
@@ -19,10 +19,9 @@ from plan_cutters.plan_file.process import (
     RemainingEntry,
 )
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
-from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.needs import needs
-from plan_cutters.plan_file.words.next_steps import is_excluded
+from plan_cutters.plan_file.words.next_steps import is_excluded, needs
+from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.

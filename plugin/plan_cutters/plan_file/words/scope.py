@@ -1,11 +1,17 @@
-"""Say which faces and samples were judged and which were not, and how much is known between the samples."""
+"""Say what was judged: which faces and samples, what is undecided, what is odd about faces, and which setups were proposed."""
 
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
 
-from plan_cutters.domain.figures import joined, mm, percent, size
+from plan_cutters.domain.figures import area as mm2
+from plan_cutters.domain.figures import capital, count, joined, listed, mm, percent, ranges, reported, size, some
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.part_info import Scope
+from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, Scope
+from plan_cutters.plan_file.setups import ProposedSetup
+from plan_cutters.plan_file.shares import part_of
 
 #: Choices that name kinds of faces, not faces.
 _BY_KIND = frozenset({"sculptured", "blends", "all"})
@@ -96,3 +102,249 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
         f"What lies between the samples was not seen: they are up to {mm(plan.samples.max_gap_mm)} apart{on}, more than the "
         f"radius of {names[entry.id]}, {mm(entry.radius, 4)}. --spacing {entry.radius:.4g} looks more closely."
     ]
+
+
+#: Faces that are named one by one.
+_FACES = 3
+#: A tolerance that is finer by this is the next to try.
+_FINER = 2.0
+
+
+def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
+    """Two sentences, how much and where, and why with what would decide it; none where no sample is undecided."""
+    entry = headline_cutter(plan)
+    if not entry.undecided:
+        return []
+    share = part_of(entry, entry.area_share, ["undecided"])
+    where = (
+        f"{capital(names[entry.id])} leaves {share} of the area undecided ({count(entry.undecided, 'sample')}): "
+        f"{_where(plan, entry)}."
+    )
+    return [where, " ".join(_causes(plan, entry))]
+
+
+def _where(plan: Plan, entry: CutterEntry) -> str:
+    """Faces with their own undecided shares, the largest undecided area first."""
+
+    def area(name: str) -> float:
+        face_entry = entry.faces[name]
+        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share) * sizes[name]
+        return mm2 if math.isfinite(mm2) else 0.0
+
+    sizes = {face.id: face.area_mm2 for face in plan.faces}
+    faces = sorted((name for name, face_entry in entry.faces.items() if face_entry.undecided), key=lambda name: -area(name))
+    each = [f"{part_of(entry.faces[f], entry.faces[f].area_share, ['undecided'])} of {f}" for f in faces]
+    return listed(each, _FACES)
+
+
+def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
+    """Say each cause that there may be. Which of several left a sample undecided is known only for the tolerance."""
+    tolerance, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
+    # Of a cutter that is too small, all samples; else those on faces that triangles do not follow.
+    coarse = entry.undecided_by_reason.get("tolerance", 0)
+    if coarse and coarse >= plan.samples.judged:
+        way = (
+            "No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
+            if raised
+            else "A smaller --tolerance decides it"
+        )
+        yield f"The tolerance, {mm(tolerance)}, is too coarse for this cutter. {way}."
+        return
+    loose, missing = plan.effective.local_tolerance, plan.missing
+    if loose:
+        names, it = listed([each.face for each in loose], _FACES), "it" if len(loose) == 1 else "they"
+        share = sum(each.share for each in loose)
+        of = f", {percent(share)} of the area to be machined" if share > 0.0 else ""
+        yield (
+            f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
+            "undecided until the model is rebuilt there in CAD."
+        )
+    if missing:
+        unread = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
+        yield (
+            f"Obstacles are missing or only guessed ({listed(unread, _FACES)}): what they may forbid stays undecided until "
+            "the file is repaired."
+        )
+    if coarse == entry.undecided:
+        return
+    finer = f"--tolerance {tolerance / _FINER:.3g}"
+    if raised:
+        yield f"The tolerance had to be raised to {mm(tolerance)}: what is this narrow stays undecided."
+    elif loose or missing:
+        yield f"What is left is too narrow for the tolerance; {finer} looks more closely."
+    else:
+        yield (
+            f"The cutter is so near to an obstacle there that the tolerance, {mm(tolerance)}, does not decide; {finer} looks "
+            "more closely."
+        )
+
+
+def inside(plan: Plan, most: int = 5) -> list[str]:
+    """Say how much lies inside other bodies of the part, then name the bodies that a planner must look at."""
+    entry = plan.inside_other_bodies
+    if not entry.samples:
+        return []
+    share = percent(entry.share, some=True, whole=entry.samples == plan.samples.count)
+    lines = [
+        f"{share} of the target area ({entry.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
+        "part: it is no surface of the finished part, and what follows is about the rest."
+    ]
+    covering_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
+    lines += [_body_text(each) for each in covering_bodies[:most]]
+    lines += _more(covering_bodies[most:], "body covers", "bodies cover")
+    over = [each for each in entry.bodies if each.how == "overlaps"]
+    if over:
+        each = "; ".join(f"{_called(b)} covers {mm2(b.area_mm2)} of {listed(b.faces, 4)}" for b in over[: most - 2])
+        rest = len(over) - (most - 2)
+        lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
+    if entry.sheets is not None:
+        sheets, area = entry.sheets, mm2(entry.sheets.area_mm2)
+        what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
+        lines.append(
+            f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. {sheets.option} leaves such sheets out."
+        )
+    return lines
+
+
+def _body_text(body: CoveringBody) -> str:
+    on, area = listed(body.faces, 4), mm2(body.area_mm2)
+    verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
+    if body.largest:
+        touch = "touches" if len(body.faces) == 1 else "touch"
+        return f"{_called(body, first=True)} covers {area} of {on}, which {touch} it."
+    return (
+        f"{_called(body, first=True)} {verb} {on} and covers {area} there. It stays in the way, and what lies under "
+        f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
+        f"{body.option}."
+    )
+
+
+def _called(body: CoveringBody, *, first: bool = False) -> str:
+    """A body as it is told: its number, its name, its faces."""
+    name = f' "{body.name}"' if body.name else ""
+    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 2)})"
+
+
+def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:
+    if not bodies:
+        return []
+    area = mm2(sum(each.area_mm2 for each in bodies))
+    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area}: see plan.json."]
+
+
+def inside_radii(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
+    """One sentence on all of them; nothing where no face bends more than the cutter shown."""
+    faces = plan.inside_radii
+    if not faces or plan.shown is None:
+        return
+    smallest = faces[0]
+    fits = f"the largest usual size that fits is D{smallest.fits_mm:g}" if smallest.fits_mm else "no usual size is that small"
+    yield (
+        f"The smallest inside radius of {listed([each.face for each in faces], _FACES)} is {mm(smallest.radius_mm)}, and "
+        f"{names[plan.shown]} has R{smallest.cutter_radius_mm:.4g}: {fits}."
+    )
+
+
+#: Pairs of faces that are named.
+_PAIRS = 3
+
+
+def sharp_edges(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
+    """One sentence on all of them; nothing where the cutter shown leaves nothing at such edges."""
+    edges = plan.sharp_edges
+    if not edges or plan.shown is None:
+        return
+    pairs = [f"{one} meets {other}" for one, other in (each.faces for each in edges[:_PAIRS])]
+    more = len(edges) - len(pairs)
+    others = f" and at {count(more, 'more pair')} of faces" if more else ""
+    yield (
+        f"The model has sharp inside edges where {', '.join(pairs)}{others}: {names[plan.shown]} leaves a fillet of "
+        f"R{reported(edges[0].radius_mm):.4g} there, {mm2(sum(each.area_mm2 for each in edges))}."
+    )
+
+
+#: Copies from which on a pattern stands in the summary; faces that are named; patterns that are listed.
+_COPIES, _NAMED, _LISTED = 3, 24, 3
+
+
+def patterns(plan: Plan) -> Iterator[str]:
+    """Sentences on the patterns of a plan, those with most faces first."""
+    largest = sorted(plan.patterns, key=lambda each: (not each.whole, -sum(map(len, each.faces))))[:_LISTED]
+    # The same faces may be equal in two mirrors.
+    yield from dict.fromkeys(map(_sentence, largest))
+    if len(plan.patterns) > len(largest):
+        yield f"{len(plan.patterns) - len(largest)} more patterns of equal faces are in plan.json."
+
+
+def in_summary(plan: Plan) -> str:
+    """The sentence on what was judged once or is repeated; empty where that is not worth a line."""
+    whole = [each for each in plan.patterns if each.whole and each.kind == "rotation" and each.order >= _COPIES and each.faces]
+    if whole:
+        return _sentence(max(whole, key=lambda each: each.order))
+    targets = set(plan.effective.target_faces)
+    shares = [(len(targets.intersection(_names(each))), each) for each in plan.patterns if not each.whole]
+    best = max(shares, key=lambda each: each[0], default=None)
+    return _sentence(best[1]) if best is not None and 2 * best[0] >= len(targets) else ""
+
+
+def _names(each: PatternEntry) -> list[str]:
+    """Its faces, one after the other: some may be in several copies."""
+    return list(dict.fromkeys(name for copy in each.faces for name in copy))
+
+
+def _sentence(each: PatternEntry) -> str:
+    """One pattern, and what was done with it."""
+    names = _names(each)
+    few = names if len(names) <= _NAMED else names[:1]
+    # A file may have any words there.
+    numbered = all(re.fullmatch(r"F\d{1,9}", name) for name in few)
+    listed = ranges(int(name[1:]) for name in few) if numbered else ", ".join(few)
+    more = f" and {len(names) - 1} more" if len(names) > _NAMED else ""
+    per = len(each.faces[0]) if each.faces else 0
+    what = "equal faces" if per <= 1 else f"equal groups of {per} faces"
+    if each.kind == "mirror":
+        text = f"{listed}{more} are equal in a mirror" if names else "The part is its own mirror image"
+    elif each.kind == "rotation":
+        text = f"{listed}{more} are {each.order} {what}, {360.0 / each.order:.4g} deg apart"
+    else:
+        text = f"{listed}{more} are {each.order} {what}, shifted"
+    return f"{text}{_judged(each)}."
+
+
+def _judged(each: PatternEntry) -> str:
+    if each.moved or each.followed:
+        return ": judged once" + (f", verified at {count(each.verified, 'sample')}" if each.verified else "")
+    return ""
+
+
+def proposal(plan: Plan) -> tuple[str, ...]:
+    """Which setups were proposed, and whether their plan holds what was promised; nothing where none was requested."""
+    entry = plan.setup_proposal
+    if entry is None:
+        return ()
+    one = len(entry.setups) == 1
+    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in entry.setups]
+    where[0] += " of the part along the spindle"
+    text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
+    share = percent(entry.found)
+    among = "Over a table and nothing else that holds the part, " + ("it reaches" if one else "they reach")
+    if any(each.clamping != "table" for each in entry.setups):
+        among = "So held, it reaches" if one else "So held, they reach"
+    lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
+    for k, each in enumerate(entry.setups, 1):
+        texts = [each.why_held] * bool(each.why_held)
+        texts += [f"what it hides of {listed(left.faces)} is machined in setup {left.setup + 1}" for left in each.left_for]
+        if texts:
+            lines.append(f"{'Compared' if one else f'Setup {k}'}: {'; '.join(texts)}.")
+    if not entry.held:
+        lines.append(
+            f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
+            "proposal did better. Name a setup with its fixtures."
+        )
+    return tuple(lines)
+
+
+def _stands(each: ProposedSetup) -> str:
+    if each.clamping != "table":
+        return f"in a {each.clamping} that grips {', '.join(each.grips)}"
+    return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"

@@ -1,16 +1,161 @@
-"""The text that stands in a plan file: made once, when the plan is made, and shown by every reader."""
+"""A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
-from plan_cutters.domain.figures import count
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from plan_cutters.domain.figures import count, sentence
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
-from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
-from plan_cutters.plan_file.words.cutters import CutterStory
-from plan_cutters.plan_file.words.doubts import repeated_warnings
-from plan_cutters.plan_file.words.patterns import in_summary
-from plan_cutters.plan_file.words.process import shortened, with_process_words, wrapped
-from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
-from plan_cutters.plan_file.words.story import Story, story_of
-from plan_cutters.plan_file.words.undecided import undecided
+from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.words import notes
+from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
+from plan_cutters.plan_file.words.headline import Headline, could_not, headline
+from plan_cutters.plan_file.words.names import Line, named, short_names
+from plan_cutters.plan_file.words.next_steps import together
+from plan_cutters.plan_file.words.notes import repeated_warnings
+from plan_cutters.plan_file.words.operations import in_short, operations
+from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
+from plan_cutters.plan_file.words.scope import (
+    in_summary,
+    inside,
+    inside_radii,
+    not_judged,
+    not_seen,
+    patterns,
+    proposal,
+    sharp_edges,
+    undecided,
+    unseen,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """A story puts a plan into words, in the order in which people read them.
+
+    Attributes
+    ----------
+    names : dict
+        Id of a cutter -> its name in the texts.
+    taken, shown : str
+        Ids of the cutter that the headline says to take, if any, and of the one that the models show.
+    inside, scope, between : tuple of str
+        Surface that does not belong to the finished part, which comes first; what is undecided, which faces were not judged or
+        not seen, and how much the cutters reach together; how much is known between the samples.
+    process : ProcessStory, optional
+        Its steps, what is left and what to do next; None where an older file has none.
+    proposal, in_short : tuple of str
+        Setups that were proposed; what the plan of operations leaves, and how many orientations it needs.
+    setups, operations, answers, notes : tuple of Line
+    doubts : dict
+        Causes that make verdicts unsure, by their kind in the plural.
+    """
+
+    names: Mapping[str, str]
+    taken: str | None
+    shown: str
+    inside: tuple[str, ...]
+    headline: Headline
+    process: ProcessStory | None
+    proposal: tuple[str, ...]
+    in_short: tuple[str, ...]
+    scope: tuple[str, ...]
+    between: tuple[str, ...]
+    cutters: tuple[CutterStory, ...]
+    setups: tuple[Line, ...]
+    operations: tuple[Line, ...]
+    answers: tuple[Line, ...]
+    doubts: Mapping[str, tuple[Line, ...]]
+    notes: tuple[Line, ...]
+
+    def cutter(self, name: str) -> CutterStory:
+        """The story of a cutter, by its id."""
+        return next(each for each in self.cutters if each.id == name)
+
+
+@reporting(lambda plan: plan.effective.units)
+def story_of(plan: Plan) -> Story:
+    """Tell a plan."""
+    names, best = short_names(plan), shown(plan)
+    cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
+    finished = plan.selected or plan.selected_over_setups
+    pair = "" if finished else together(plan)
+    return Story(
+        names=names,
+        taken=finished or plan.selected_for_setup,
+        shown=best.id,
+        inside=tuple(named(plan, line) for line in inside(plan)),
+        headline=headline(plan, names),
+        process=process_story(plan, names),
+        proposal=proposal(plan),
+        in_short=tuple(in_short(plan)),
+        scope=(
+            *undecided(plan, names),
+            *sharp_edges(plan, names),
+            *inside_radii(plan, names),
+            *not_judged(plan),
+            *not_seen(plan, names),
+            *([sentence(named(plan, pair))] if pair else []),
+        ),
+        between=tuple(each.between for each in cutters if each.between),
+        cutters=cutters,
+        setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
+        operations=tuple(operations(plan)),
+        answers=tuple(answers(plan)),
+        doubts={
+            "warnings": tuple(notes.warnings(plan)),
+            "faces that are not judged": tuple(notes.unjudged(plan)),
+            "missing obstacles": tuple(notes.missing(plan)),
+        },
+        notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
+    )
+
+
+def shown(plan: Plan) -> CutterEntry:
+    """The cutter that the models show: the selected, else the one that leaves the least area."""
+    return next((c for c in plan.cutters if c.id == plan.selected), None) or nearest(plan.cutters)
+
+
+class Chip(NamedTuple):
+    """A kind (`good`, `unsure` or `bad`: its colours), a sign, and a word."""
+
+    kind: str
+    sign: str
+    word: str
+
+
+#: Of a cutter: feasible, not, undecided.
+CHIPS = {True: Chip("good", "✓", "Feasible"), False: Chip("bad", "✕", "Not feasible"), None: Chip("unsure", "?", "Undecided")}
+#: Where it says more than that.
+_WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
+_IN_PART = Chip("unsure", "◐", "Feasible in part")
+#: The tone of a text, by its chip.
+TONES: dict[Chip, Tone] = {
+    CHIPS[True]: "good",
+    CHIPS[False]: "bad",
+    CHIPS[None]: "unsure",
+    _WHERE_JUDGED: "unsure",
+    _IN_PART: "partly",
+}
+
+
+def chip(plan: Plan, story: Story) -> Chip:
+    """The verdict on the part. Feasible without more words is only what the exit code calls so, too."""
+    good = story.headline.good
+    if good:
+        return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
+    if good is None and not (plan.process is not None and plan.process.finished) and any(c.blocked for c in plan.cutters):
+        return _IN_PART
+    return CHIPS[good]
+
+
+def cutter_chip(plan: Plan, cutter: CutterEntry) -> Chip:
+    """The verdict on a cutter. As of the part: feasible without more words only where all was judged and seen."""
+    unseen = plan.effective.sampled_by == "default" and not cutter.seen
+    return _WHERE_JUDGED if cutter.feasible and (unseen or could_not(plan)) else CHIPS[cutter.feasible]
+
 
 #: Most lines: with the headline and the path of the page they are 25 in a terminal.
 MOST = 22

@@ -1,23 +1,248 @@
-"""Make the tables and lists that the page shows without JavaScript, in the form that the template takes."""
+"""All that the page has beside arrays: its `meta` object, its plan of operations, and its tables without JavaScript."""
 
 import math
 import re
 from typing import Any, NamedTuple
 
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.document.build import counts, degrees
 from plan_cutters.domain import figures as numbers
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.outline import Outline, outline, points
+from plan_cutters.domain.shapes import modes
+from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.plan_file.palette import label
-from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, OPERATIONS, PALETTE, REASONS, label, operation_colour
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
-from plan_cutters.plan_file.words.chip import CHIPS, chip
-from plan_cutters.plan_file.words.doubts import repeated_warnings
-from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.cutters import spot as sentence
+from plan_cutters.plan_file.words.names import Line, named, short_names
 from plan_cutters.plan_file.words.next_steps import step_text
-from plan_cutters.plan_file.words.story import Story, story_of
-from plan_cutters.report.page import operations
-from plan_cutters.report.page.facts import Spot
+from plan_cutters.plan_file.words.notes import repeated_warnings
+from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text
+from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
+from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
 from plan_cutters.report.protocol import Judged
+
+#: Patterns of operations, another one each time that the colours come round.
+_PATTERNS = ("plain", "hatch", "cross", "dots")
+
+
+def key(plan: OperationPlan | OperationPlanEntry) -> str:
+    """The name of a plan in names of arrays."""
+    return plan.name.replace(" ", "_")
+
+
+def operation_arrays(result: Judged) -> Arrays:
+    """For each plan the operation of each sample, counted from 1, 0 is none; and where its tool leans."""
+    operations, arrays = result.answers.operations, Arrays()
+    for plan in operations.plans if operations else ():
+        arrays[f"operation.{key(plan)}"] = Stored.of(_numbers(plan))
+        arrays[f"operation_lean.{key(plan)}"] = Stored.of(turned_by(result.samples, plan.lean))
+        if (share := shares(plan.lean)) is not None:
+            arrays[f"operation_share.{key(plan)}"] = Stored.of(share)
+    return arrays
+
+
+def _numbers(plan: OperationPlan) -> Any:
+    kind = np.uint8 if len(plan.operations) < 255 else np.uint16
+    return (plan.label + 1).astype(kind)
+
+
+def operations_of(result: Judged) -> dict[str, Any] | None:
+    """Collect what the script needs of the operations beside the tables; None where they were not requested."""
+    operations, entry = result.answers.operations, result.plan.operations
+    if operations is None or entry is None:
+        return None
+    return {
+        "plans": [
+            {
+                "key": key(mine),
+                "name": each.name,
+                "array": f"operation.{key(mine)}",
+                "lean": f"operation_lean.{key(mine)}",
+                "operations": [
+                    _operation(result.plan, one, k, row)
+                    for k, (one, row) in enumerate(zip(each.operations, _shown_at(mine, result.samples), strict=True))
+                ],
+            }
+            for mine, each in zip(operations.plans, entry.plans, strict=True)
+        ]
+    }
+
+
+def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict[str, Any]:
+    pattern = _PATTERNS[number // len(OPERATIONS) % len(_PATTERNS)]
+    words = operation_text(plan, entry)
+    return {
+        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": operation_colour(number), "pattern": pattern,
+        "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
+    }  # fmt: skip
+
+
+def _shown_at(plan: OperationPlan, samples: SurfaceSamples) -> list[int]:
+    """A sample of each operation, where its tool is shown: amid its largest connected region.
+
+    A region may be bent, so that its middle is no part of it: the sample next to the middle is taken.
+    """
+    label, edge = plan.label, samples.neighbours
+    same = edge[label[edge[:, 0]] == label[edge[:, 1]]]
+    graph = coo_array((np.ones(len(same), np.int8), tuple(same.T)), shape=(len(label), len(label)))
+    piece = connected_components(graph, directed=False)[1]
+    area, samples_shown = np.nan_to_num(samples.area), []
+    for k in range(len(plan.operations)):
+        rows = np.flatnonzero(label == k)
+        size = np.bincount(piece[rows], area[rows])
+        rows = rows[piece[rows] == size.argmax()] if size.any() else rows
+        middle = samples.point[rows].mean(axis=0)
+        samples_shown.append(int(rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]))
+    return samples_shown
+
+
+class OperationTables(NamedTuple):
+    """These are what the template shows of the operations; `process`: the plan and the place in it of each one of the process."""
+
+    lines: list[Line]
+    plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
+    process: dict[str, tuple[str, int]]
+
+
+def tables(plan: Plan, story: Story) -> OperationTables | None:
+    """Sentences and rows of tables; None where operations were not requested."""
+    operations = plan.operations
+    if operations is None:
+        return None
+    plans = [
+        (
+            each,
+            key(each),
+            [operation_text(plan, one) for one in each.operations],
+            all(o.seconds is not None for o in each.operations),
+        )
+        for each in operations.plans
+    ]
+    places = {
+        one.id: (key(each), k)
+        for each in operations.plans
+        if plan.process is not None and each.name == plan.process.plan
+        for k, one in enumerate(each.operations)
+    }
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans, places)
+
+
+FORMAT = 1
+#: Chord of the outlines of tools, mm.
+_CHORD = 0.005
+
+
+def meta_of(result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]) -> dict[str, Any]:
+    """All of it but the arrays, and what was left out of them."""
+    plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
+    low, high = box
+    return {
+        "format": FORMAT,
+        "part": {**_of(plan.part, "file", "sha256", "size_mm"), "low": low.tolist(), "high": high.tolist()},
+        "setup": {"z": effective.setup, "x": effective.placement and effective.placement.x},
+        "machine": plan.machine.name,
+        "tolerance_mm": effective.tolerance_mm,
+        "shown": result.shown,
+        "selected": plan.selected,
+        "reasons": plan.reasons,
+        "verdicts": {str(code): word for code, word in WORDS.items()},
+        "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
+        "causes": {each.code: _of(each, "name", "sentence", "colour", "pattern") for each in (*REASONS.values(), NO_CONTACT)},
+        "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
+        "tilt_deg": list(degrees(result.postures.tilt)),
+        "tilt_limit_deg": plan.machine.tilt_limit_deg,
+        "rotary": plan.machine.rotary is not None,
+        "axes": [axis.name for axis in result.conditions.machine.rotary or ()],
+        "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
+        "setups": []
+        if not result.elsewhere
+        else [
+            {"z": each.setup.tolist(), "kinematics": each.kinematics and _kinematics(each.kinematics)}
+            for each in result.ready.setups
+        ],
+        "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
+        "faces": [_face(entry, surface) for entry in plan.faces],
+        "fixtures": [
+            {"name": fixture.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
+            for i, (fixture, setups) in enumerate(fixtures_of(result))
+        ],
+        "cutters": [
+            _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
+            for entry in plan.cutters
+        ],
+        "spots": [_spot(each) for each in spots],
+        "operations": operations_of(result),
+    }
+
+
+def _kinematics(axes: Kinematics) -> dict[str, Any]:
+    """Describe the rotary axes: the page finds with them which tool axes the machine holds; None: no limit that way."""
+    ends = [[end if math.isfinite(end) else None for end in pair] for pair in np.degrees(axes.limit).tolist()]
+    return {"direction": axes.direction.tolist(), "limit_deg": ends, "tool": axes.tool.tolist()}
+
+
+def _face(entry: Any, surface: Surface) -> dict[str, Any]:
+    number = int(entry.id[1:])
+    start, count = surface.faces.get(number, (0, 0))
+    words = ("id", "name", "component", "surface", "target", "ignored", "area_mm2")
+    return {"number": number, **_of(entry, *words), "start": start, "count": count}
+
+
+def _of(record: Any, *words: str) -> dict[str, Any]:
+    """Attributes of a record by their names."""
+    return {word: getattr(record, word) for word in words}
+
+
+def _cutter(name: str, entry: CutterEntry, cutter: Cutter, data: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "name": name,
+        **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
+        "modes": [_mode(mode) for mode in modes(cutter)],
+        "outline": _outline(cutter),
+        "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
+        "counts": data,
+        "by_reason": {name: n for name, n in entry.by_reason.items() if n},
+        "undecided_by_reason": {name: n for name, n in entry.undecided_by_reason.items() if n},
+    }
+
+
+def _mode(mode: Any) -> dict[str, float]:
+    low, high = degrees((mode.low, mode.high))
+    return {**_of(mode, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high}
+
+
+def _outline(cutter: Cutter) -> list[dict[str, Any]]:
+    """The polyline of each part of a tool, from the tip up."""
+    whole, rows = outline(cutter), []
+    for part in whole.parts:
+        segments = whole.of(part)
+        line = points(Outline(segments), _CHORD)
+        line[0] = segments[0].start
+        rows.append({"part": part, "points": line.round(4).tolist()})
+    return rows
+
+
+def _spot(spot: Spot) -> dict[str, Any]:
+    w, best = spot.witness, spot.witness.best_posture
+    return {
+        **_of(spot, "cutter", "sample"),
+        **_of(w, "face", "reason", "point", "obstacle_face", "obstacle_point", "depth_mm"),
+        "tilt_deg": best and best.tilt,
+        "lean_deg": best and best.rotation,
+        "axis": best and best.axis,
+        "text": sentence(w),
+    }
+
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.
 _FACES, _CUTTERS = 1000, 40
@@ -87,7 +312,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "drawing": drawing,
         "left": omitted,
         "empty": headline.not_sampled(plan),
-        "operations": operations.tables(plan, story),
+        "operations": tables(plan, story),
     }
 
 

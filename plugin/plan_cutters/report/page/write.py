@@ -12,14 +12,8 @@ from plan_cutters.domain.tolerance import depths
 from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.page import arrays, tables
-from plan_cutters.report.page.arrays import Arrays
-from plan_cutters.report.page.atlas import atlas_of
-from plan_cutters.report.page.encode import joined
-from plan_cutters.report.page.facts import spots_of
-from plan_cutters.report.page.meta import meta_of
-from plan_cutters.report.page.operations import operation_arrays
-from plan_cutters.report.page.surface import box_of, surface_of
-from plan_cutters.report.page.tables import Drawing
+from plan_cutters.report.page.arrays import Arrays, atlas_of, box_of, joined, spots_of, surface_of
+from plan_cutters.report.page.tables import Drawing, meta_of, operation_arrays
 from plan_cutters.report.protocol import Judged
 
 #: Bytes that a page may have.

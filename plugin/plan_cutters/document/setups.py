@@ -1,16 +1,72 @@
-"""Where the part stands, and the linear travel that a cutter needs there, as the plan file has them."""
+"""Entries on setups: the verdicts over all of them, how much is reached in each, and where the part stands."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from cad_io import SurfaceSamples
+from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.plan_file.frozen import vector
+from plan_cutters.judging.setups import AXES, within_limits
+from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import LinearEntry
-from plan_cutters.plan_file.travel import AxisTravel, BeyondTravel, PlacementEntry, TravelEntry
+from plan_cutters.plan_file.setups import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
 from plan_cutters.scene.preparation import Prepared
+
+#: A setup axis, and what each cutter reaches there by its id.
+OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
+
+
+@dataclass(frozen=True, slots=True)
+class OverSetups:
+    """The verdicts of each cutter over all setups and in each of them, by its id."""
+
+    #: In one setup or another.
+    reaches: dict[str, Verdicts]
+    #: In the first one.
+    here: dict[str, Verdicts]
+    #: The setup that serves each sample, (n,) int32.
+    served_in: dict[str, Ints]
+    #: (float, float, float); its axis.
+    first: Vector
+    #: In each other setup.
+    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
+
+    def each(self) -> tuple[OtherSetup, ...]:
+        """Every setup with what is reached there, the first one first."""
+        return ((self.first, self.here), *self.elsewhere)
+
+
+def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
+    """Tell how much is within the axis limits and is reached in each setup asked for, `within` (n,) each, and how much would be
+    within them in each along the part's own axes.
+    """
+    if not ready.conditions.machine.limited:
+        return []
+    finished = ready.finished
+    whole = float(ready.samples.area[finished].sum())
+
+    def share(mine: NDArray[np.bool_]) -> float:
+        return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
+
+    entries: dict[Vector, SetupEntry] = {}
+    for k, (axis, each) in enumerate(over.each()):
+        mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
+        entries.setdefault(
+            axis,
+            SetupEntry(
+                axis=axis, within=int(within[k].sum()), share=share(within[k]), reached=int(mine.sum()), reached_share=share(mine)
+            ),
+        )
+    for axis in AXES:
+        if axis not in entries:
+            mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+            entries[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
+    return list(entries.values())
 
 
 def placement_entry(placement: Placement | None) -> PlacementEntry | None:
