@@ -119,7 +119,7 @@ def test_sheets_of_many_triangles_on_bodies(keeps):
     plates = [round_plate(5.1, at) for at in ((0, 0, 17.1), (31, 0, 8.2), (35, 0, 0), (38, 1, 0), (70, 0, 0))]
     of = read_part(compound(rod(9.3, 17.1), rod(7.1, 8.2, (31.0, 0.0, 0.0)), *tubes, *plates))
     keeps("sheets", [[around.on_bodies, around.doubts, len(around.certain.triangles)]
-                     for around in (surroundings(of, chord) for chord in (0.3, 0.02))])  # fmt: skip
+                     for around in (surroundings(of, chord) for chord in (0.3, 0.1, 0.02))])  # fmt: skip
 
 
 @pytest.mark.parametrize("errors", [{2: 0.3}, {1: 0.04, 8: 2.5, 13: 9.9}])
