@@ -8,7 +8,7 @@ import pytest
 from cad_io.arrays import FaceGrid
 from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, Witness, blank
+from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, Witness, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.judging import map_budget, witness
 from plan_cutters.judging.access import access
@@ -139,6 +139,16 @@ def test_cells_as_they_are_laid_and_cut(name, keeps):
     ]})  # fmt: skip
 
 
+def test_cells_beside_the_first_sample_of_all():
+    """Cells without a sample begin with the posture of one beside them, the first one of a part as well as any other."""
+    made = ready("drum", cutters=("D3L20",), grid=4, faces="F3")
+    (grid,) = made.samples.grids
+    free = replace(judge(made, made.cutters[0]), verdict=np.full(len(made.samples), INTERFERENCE_FREE, np.uint8))
+    _, _, bare = laid(made.scene.part, made.scene.orientation, made.samples, grid, free, made.conditions)
+    assert 0 in bare.sample
+    assert (bare.flat == (bare.sample >= 0)).all()
+
+
 def of_face(made, k, work=None, **more):
     """A face's cells, and the contacts to begin with."""
     cutter = made.cutters[0]
@@ -238,6 +248,8 @@ def test_dummies_and_searches_of_some_samples(keeps):
     loose = replace(around, certain=replace(around.certain, triangles=triangles))
     doubtful = context.under(replace(made.conditions, surroundings=loose))
     said["loose"] = access(samples, free, doubtful, inside=made.inside)
+    buried = np.where(samples.face == 5, np.arange(len(samples)) % 2 - 1, made.inside).astype(np.int32)
+    said["some loose"] = [access(samples, free, doubtful, inside=each, rows=rows) for each in (made.inside, buried)]
     coarse = replace(context.under(replace(made.conditions, tolerance=0.5)))
     said["coarse"] = [coarse.judges, access(samples, free, coarse, rows=rows)]
     said["rows"] = judge(made, made.cutters[0], rows=rows[5:90])

@@ -29,8 +29,8 @@ class Reach:
     def __init__(self, root, copies):
         self.root, self.copies = f"{root}{os.sep}", copies
         self.of_program = tuple(f"{self.root}{each}{os.sep}" for each in ("plugin", "cad_io"))
-        self.waiting, self.codes, self.entries, self.tests = {}, [], set(), {}
-        self.compiled, self.modules, self.starts = defaultdict(set), 0, False
+        self.waiting, self.codes, self.entries, self.names, self.tests = {}, [], set(), set(), {}
+        self.starts = False
 
     def audit(self, event, values):
         """Note that a test starts an interpreter, of which nothing is seen here."""
@@ -71,18 +71,15 @@ class Reach:
             table = found.values() if type(found) is dict else found if type(found) in (tuple, list) else ()
             self.entries |= {each for each in (found, *table) if hasattr(each, "py_func")}
             if name not in frame.f_globals:
-                self.entries |= self.named(name)
+                self.names.add(name)
 
-    def named(self, name):
-        """Compiled functions of this name in any module that is imported by now."""
-        if self.modules != len(sys.modules):
-            self.modules = len(sys.modules)
-            for of, module in [*sys.modules.items()]:
-                if of.partition(".")[0] in PACKAGES:
-                    for key, each in vars(module).items():
-                        if hasattr(each, "py_func"):
-                            self.compiled[key].add(each)
-        return self.compiled.get(name, set())
+    def named(self):
+        """Compiled functions of the names that functions used; asked once all that they import is there."""
+        found = set()
+        for of, module in [*sys.modules.items()]:
+            if of.partition(".")[0] in PACKAGES:
+                found |= {each for key, each in vars(module).items() if key in self.names and hasattr(each, "py_func")}
+        return found
 
     def taken(self):
         """Lines since the last call, as a number with a bit for each in each module, and the compiled functions called."""
@@ -92,11 +89,11 @@ class Reach:
                 seen |= {(path, int(line)) for path, line in (row.rstrip("\n").split("\t") for row in file)}
             os.remove(self.copies)
         lines, starts, self.starts = defaultdict(int), self.starts, False
-        named = {_name(each): _reached(each) for each in self.entries}
+        named = {_name(each): _reached(each) for each in self.entries | self.named()}
         for path, line in chain(seen, *named.values()):
             if path.startswith(self.of_program):
                 lines[path.removeprefix(self.root)] |= 1 << line
-        for each in (self.waiting, self.entries, self.codes):
+        for each in (self.waiting, self.entries, self.names, self.codes):
             each.clear()
         return {"lines": {path: f"{each:x}" for path, each in lines.items()}, "entries": sorted(named), "starts": starts}
 

@@ -83,6 +83,10 @@ def test_limits_of_machines(keeps):
         with pytest.raises(ValueError, match="finite"):
             require_finite(bad, np.arange(5))
         require_finite(bad, np.arange(4, 9))
+        context, verdicts = Context.of(CUTTERS["ball"], among(blocks())), blank(len(contacts.point))
+        with pytest.raises(ValueError, match="finite"):
+            search_postures(bad, np.arange(5), context, verdicts)
+        assert (verdicts.verdict == UNJUDGED).all()
     keeps("machines", said)
 
 
@@ -141,6 +145,35 @@ def test_axes_that_stay(name, keeps):
                 "none": served_by(rows[:0], axes, samples, context)[1],
             } | ({"point": taken.point, "normal": taken.normal} if not k else {})  # fmt: skip
     keeps(f"axes_{name}", said)
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_axes_at_the_ends_of_what_was_asked_serve(end):
+    """Tilts and rotations that are an end but for rounding serve, those beyond it by 1e-7 do not: nothing else is in the way."""
+    made, rng = blocks(), np.random.default_rng(23 + end)
+    n = len(made.samples)
+    normal = unit(rng.normal(size=(n, 3)))
+    direction = unit(np.cross(normal, rng.normal(size=(n, 3))))
+    far = made.samples.point.max(axis=0) + 300.0 * unit(rng.normal(size=(n, 3)))
+    samples = replace(
+        made.samples, point=far + 300.0 * normal, normal=normal, direction_max=direction, curvature=np.zeros((n, 2))
+    )
+    left, tilts, turns = np.cross(normal, direction), (0.3, 1.1), (0.7, 2.9)
+    outward = 2 * end - 1
+    for by_tilt, by_turn, serve in (
+        (0.0, None, True),
+        (None, 0.0, True),
+        (0.0, 0.0, True),
+        (1e-7, None, False),
+        (None, 1e-7, False),
+    ):
+        tilt = 0.7 if by_tilt is None else tilts[end] + outward * by_tilt
+        turn = 1.9 if by_turn is None else turns[end] + outward * by_turn
+        lean = np.cos(turn) * direction + np.sin(turn) * left
+        axis = np.cos(tilt) * normal + np.sin(tilt) * lean
+        context = Context.of(CUTTERS["ball"], among(made, tilt=tilts, rotation=turns))
+        free = [serves(np.array([k]), axis[k], samples, context)[0] for k in range(0, n, 5)]
+        assert all(free) if serve else not any(free), (by_tilt, by_turn)
 
 
 def test_axes_at_an_angle_to_normals(keeps):

@@ -12,6 +12,7 @@ from OCP.TopLoc import TopLoc_Location
 from cad_io import read_part
 from cad_io.arrays import Triangles
 from cad_io.errors import CadIoError
+from cad_io.kernel import faces
 from cad_io.kernel.assembly import Node
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, Machine, Scene
@@ -99,6 +100,26 @@ def test_what_stands_around_a_part(name, keeps):
     of = part(name)
     keeps(f"around_{name}", [of_surroundings(surroundings(of, 0.05)),
                              of_surroundings(surroundings(of, 0.2, ignored=(2, 3), jobs=2))])  # fmt: skip
+
+
+def half_tube(radius, at):
+    tube = cut(rod(radius, 9.3, at), box(99, 99, 99, (at[0], -50, -50)))
+    return next(each for each in faces(tube) if cq.Face(each).geomType() == "CYLINDER")
+
+
+def round_plate(radius, at):
+    """With a hole beside its middle."""
+    bored = cut(rod(radius, 9.3, at), rod(0.5 * radius, 99, (at[0] + 1, at[1], -9)))
+    return next(each for each in faces(bored) if abs(cq.Face(each).Center().z - at[2]) < 1e-6)
+
+
+def test_sheets_of_many_triangles_on_bodies(keeps):
+    """On two rods, nearly on them, more or less than half of them beyond, and in the open."""
+    tubes = [half_tube(radius, at) for radius, at in ((9.3, (0, 0, 0.4)), (9.9, (0, 0, 2.1)))]
+    plates = [round_plate(5.1, at) for at in ((0, 0, 17.1), (31, 0, 8.2), (35, 0, 0), (38, 1, 0), (70, 0, 0))]
+    of = read_part(compound(rod(9.3, 17.1), rod(7.1, 8.2, (31.0, 0.0, 0.0)), *tubes, *plates))
+    keeps("sheets", [[around.on_bodies, around.doubts, len(around.certain.triangles)]
+                     for around in (surroundings(of, chord) for chord in (0.3, 0.1, 0.02))])  # fmt: skip
 
 
 @pytest.mark.parametrize("errors", [{2: 0.3}, {1: 0.04, 8: 2.5, 13: 9.9}])
@@ -546,6 +567,38 @@ def test_scenes(keeps):
     keeps("scenes", said)
 
 
+def test_files_of_fixtures_are_read_once_and_before_any_work(tmp_path):
+    mesh().export(tmp_path / "jaw.stl")
+    scene = Scene.of(part("bodies"), fixtures=[f"{tmp_path / 'jaw.stl'}@40,0,5", "table"])
+    scene.read_fixtures(60.0)
+    (tmp_path / "jaw.stl").unlink()
+    assert [each.name for each in scene.surround().fixtures] == ["fixture:jaw", "fixture:table"]
+    with pytest.raises(CadIoError, match="no such file"):
+        Scene.of(part("bodies"), fixtures=[str(tmp_path / "jaw.stl")]).read_fixtures(60.0)
+
+
+def test_scenes_that_are_asked_and_others_are_equal():
+    one, other = (Scene.of(part("bodies"), tolerance=0.02, fixtures=["table"]) for _ in range(2))
+    one.surround()
+    assert one == other != Scene.of(part("bodies"), tolerance=0.01, fixtures=["table"])
+
+
+def test_cells_about_a_part_on_a_large_fixture_that_stands_askew(keeps):
+    """A triangle across all the cells, and the part's own: what is surely outside, with the part near and with none."""
+    large = np.array([[[-90.0, -75.0, -31.0], [110.0, -60.0, 33.0], [3.0, 140.0, 55.0]]])
+    block = solids.box(np.array([0.0, 0.0, 20.0]), np.array([7.1, 5.3, 24.2]))
+    triangles = Triangles(np.concatenate([block, large]), np.r_[np.full(12, 3), -1].astype(np.int32), 0.01, ())
+    said = []
+    for near in (None, np.array([[0.0, 0.0, 20.0], [7.1, 5.3, 24.2]])):
+        for gap in (0.0, 0.2, 1.1, 40.0):
+            for boxes in (np.zeros((0, 2, 3)), np.array([[[6.0, 4.0, 23.0], [9.0, 6.0, 26.0]]])):
+                around = Obstacles(triangles, np.r_[np.ones(12), 0].astype(np.int8))
+                around = replace(around, near=near, gap=gap, open_boxes=boxes)
+                cell, origin, size, whole = around._cells()
+                said.append([cell, int(cell.sum()), origin, size, whole, around._end, around._extent])
+    keeps("cells_askew", said)
+
+
 def test_samples_where_nobody_says_how_many(keeps, monkeypatch):
     of, said = part("bracket"), {}
     side = orient(of, towards=UP, flip=False)
@@ -612,7 +665,7 @@ def test_copies(keeps):
     keeps("copies_nearly", [nearly.master, nearly.motion, nearly.frames])
     keeps("copies_inside", [buried.master, buried.motion, buried.frames, buried.verified, buried.group])
     shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
-    keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut])
+    keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut, shut.alike, shut.clamped, shut.machinable, shut.somewhere])
     coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)
     assert coarse.copies is None
 
@@ -627,4 +680,6 @@ def test_work_in_pieces(keeps):
 
     totals = [in_chunks(work, rows, 1, lambda *each: told.append(each), chunk, fixed=fixed) for chunk in (3, 11, 100, 512)
               for fixed in (False, True)]  # fmt: skip
+    none = [in_chunks(work, rows[:0], 1, lambda *each: told.append(each), fixed=fixed) for fixed in (False, True)]
+    totals += [*none, in_chunks(work, rows[:1], 2, chunk=100, fixed=True)]
     keeps("pieces", {"pieces": pieces, "told": told, "totals": totals, "company": with_company(rows[:5], 1400)})

@@ -5,10 +5,16 @@ import pytest
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.Geom import Geom_OffsetSurface
+from OCP.Geom2d import Geom2d_Ellipse, Geom2d_Hyperbola, Geom2d_OffsetCurve, Geom2d_Parabola
+from OCP.Geom2dAdaptor import Geom2dAdaptor_Curve
+from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pnt2d
 
 from cad_io import read_part
+from cad_io.arrays import LostFace
+from cad_io.part.part import Part
 from cad_io.part.unjudged import NO_AREA
 from cad_io.tessellate import tessellate
+from cad_io.tessellate.curves import farthest, packed, point, workspace
 from cad_io.tessellate.flips import delaunay
 from cad_io.tessellate.meridian import meridian
 from cad_io.tessellate.proxies import stand_ins
@@ -95,12 +101,53 @@ def test_proxies_are_those_that_are_kept(keeps):
     keeps("proxies", [stand_ins(part, which, chord) for which in (every, areas) for chord in (0.31, 0.023)])
 
 
+def test_boxes_of_faces_that_are_only_in_the_file_are_those_that_are_kept(keeps):
+    """Of such as have a box and no number: the others stand as they are, or nobody knows where they stood."""
+    part = Part(
+        box(9.1, 7.3, 5.2),
+        lost=(
+            LostFace("#1", "", "it is gone", box=((1.1, 2.3, 3.9), (4.2, 9.7, 5.3))),
+            LostFace("#2", "", "it is gone"),
+            LostFace("#3", "", "a hole is gone", 4, ((0.0, 0.0, 0.0), (9.1, 7.3, 0.0))),
+            LostFace("#4", "", "it is gone", box=((-3.3, 0.7, -1.1), (2.2, 0.7, 8.8))),
+        ),
+    )
+    keeps("proxies_lost", [stand_ins(part, which, 0.1) for which in ((), ((2, "tried"),))])
+
+
 @pytest.mark.parametrize("name", ["pocketed", "drilled", "loose", "many", "cut ring"])
 def test_proxies_of_faces_of_triangles_are_those_that_are_kept(keeps, name):
     """As they are, and without some of them: caps close what is open."""
     part = read_part(triangulated(SHAPES[name]()))
     every = [(face.number, "tried") for face in part.faces]
     keeps(f"proxies_{name.replace(' ', '_')}", [stand_ins(part, which, 0.1) for which in (every, every[1:], every[::2])])
+
+
+def flat_curve(name):
+    """Curves of a parameter plane that are no lines, conics or splines."""
+    axes = gp_Ax22d(gp_Pnt2d(0.3, -0.7), gp_Dir2d(0.8, 0.6))
+    if name == "parabola":
+        return Geom2d_Parabola(axes, 1.3), (-2.1, 1.7)
+    if name == "hyperbola":
+        return Geom2d_Hyperbola(axes, 1.9, 1.1), (-0.7, 1.2)
+    return Geom2d_OffsetCurve(Geom2d_Ellipse(axes, 4.3, 2.9), 0.7), (0.4, 4.9)
+
+
+@pytest.mark.parametrize("name", ["parabola", "hyperbola", "offset"])
+def test_borders_that_are_replaced_are_where_they_were(keeps, name):
+    """They run through points of theirs, and nearly as they do between; what is said of their chords holds."""
+    curve, ends = flat_curve(name)
+    adaptor = Geom2dAdaptor_Curve(curve)
+    made, exact = packed([adaptor], [ends])
+    assert not exact
+    t = np.linspace(*ends, 400)
+    ours = np.array([point(made, 0, each, workspace()) for each in t])
+    there = np.array([adaptor.Value(each).Coord() for each in t.tolist()])
+    np.testing.assert_allclose(ours, there, atol=1e-7)
+    cut_at = np.linspace(*ends, 8)
+    most = np.zeros((1, 2))
+    farthest(made, np.zeros(7, np.int64), np.stack([cut_at[:-1], cut_at[1:]], axis=1), most)
+    keeps(f"border_{name}", [made, most])
 
 
 def test_flipped_triangles_are_those_that_are_kept(keeps):
