@@ -193,7 +193,7 @@ def test_a_judge_of_every_radius_agrees(shape, seed):
     assert {INACCESSIBLE, UNDECIDED, UNJUDGED} == set(found.beyond.tolist())
 
 
-@pytest.mark.slow("another kind of the same law")
+@pytest.mark.slow("plans again for each answer")
 @pytest.mark.parametrize("shape", ENDS)
 def test_the_postures_told_hold_the_tolerance(shape):
     """Independent of tree and search: every corner and middle of a triangle is no deeper in the cutter than the tolerance."""

@@ -5,8 +5,10 @@ from functools import cache
 import cadquery as cq
 
 from cad_io import read_part
+from cad_io.errors import CadIoError
 from cad_io.kernel import faces
 from plan_cutters import Options
+from plan_cutters.errors import PlanError
 from plan_cutters.pipeline import prepare
 from tests.support.cad_parts import box, compound, cut, holed_patch, patch, rod
 from tests.support.grooves import tee
@@ -96,3 +98,11 @@ def _ready(name, options):
 def ready(name, **options):
     """The same of one of `SHAPES`, once a process."""
     return _ready(name, tuple(options.items()))
+
+
+def said_by(call, *given, **more):
+    """What a call returns, or the line with which it refuses."""
+    try:
+        return call(*given, **more)
+    except (PlanError, CadIoError, ValueError) as error:
+        return f"{type(error).__name__}: {error}"

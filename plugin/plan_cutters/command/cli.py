@@ -202,7 +202,6 @@ def _watched(words: list[str], name: str) -> int:
     from plan_cutters.command.partial_plan import supervised
     from plan_cutters.command.progress import Display
     from plan_cutters.command.validation import check
-    from plan_cutters.errors import OptionError
     from plan_cutters.plan_file.words.names import called
 
     if not words:
