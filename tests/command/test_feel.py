@@ -603,6 +603,20 @@ def test_a_request_to_end_is_an_interrupt_in_commands_without_a_child(tmp_path, 
     assert (done.returncode, done.stderr) == (130, "plan-cutters tools: interrupted; no file is half-written\n")
 
 
+@pytest.mark.parametrize("words", [("tools", SAMPLES / "shop.toml"), (GROOVE,)])
+def test_an_interrupt_that_nobody_can_raise_ends_the_command(tmp_path, words):
+    """Within a callback, as that of a lock of an import, Python swallows it."""
+    trap = "import builtins, os, signal\nreal = builtins.__import__\n"
+    trap += "class Deaf:\n    def __del__(self): os.kill(os.getpid(), signal.SIGINT)\n"
+    trap += "def deaf(name, *rest):\n    if name == 'click': Deaf()\n    return real(name, *rest)\nbuiltins.__import__ = deaf\n"
+    call = f"{trap}from plan_cutters.command.entry import plan_cutters; plan_cutters()"
+    done = subprocess.run(
+        [sys.executable, "-c", call, *words], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False
+    )
+    name = "plan-cutters tools" if words[0] == "tools" else "plan-cutters"
+    assert (done.returncode, done.stderr) == (130, f"{name}: interrupted; no file is half-written\n")
+
+
 def interrupted_import(*_):
     """What a compiled module does whose import is interrupted: it raises an error of its own."""
     try:

@@ -17,7 +17,7 @@ import click
 
 from cad_io.errors import CadIoError
 from plan_cutters.command import option_groups, terminal
-from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts
+from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts, raise_interrupts
 from plan_cutters.command.entry import module_of, sentences
 from plan_cutters.command.option_groups import EXAMPLES, options
 from plan_cutters.command.part_cases import PartCases
@@ -62,6 +62,7 @@ def spooled(command: click.Command, words: Sequence[str]) -> Iterator[list[str]]
 
     data = _standard_input().read()
     suffix = _SUFFIXES.get(sniff(data, PIPE), "")
+    raise_interrupts()
     with tempfile.TemporaryDirectory(prefix="plan-cutters-") as folder:
         file = Path(folder) / f"stdin{suffix}"
         file.write_bytes(data)

@@ -67,6 +67,14 @@ def interrupt(number: int, _: object) -> NoReturn:
     raise KeyboardInterrupt
 
 
+def raise_interrupts() -> None:
+    """Let interrupts, and requests to end, be raised from here on: there is something to tidy. Those that are ignored stay so."""
+    with contextlib.suppress(ValueError):  # only the main thread may
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, interrupt)
+
+
 def is_interrupt(error: BaseException) -> bool:
     """Whether an error is an interrupt, or may come of one."""
     return bool(_interrupts) or isinstance(error, KeyboardInterrupt)
@@ -170,10 +178,7 @@ def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
 def run(command: click.Command, name: str, args: Sequence[str] | None) -> NoReturn:
     """Run a command to its end with some words, by default those of the process."""
     words = list(sys.argv[1:] if args is None else args)
-    with contextlib.suppress(ValueError):  # only the main thread may
-        for number in (signal.SIGINT, signal.SIGTERM):
-            if signal.getsignal(number) is not signal.SIG_IGN:
-                signal.signal(number, interrupt)
+    raise_interrupts()
     ended(name, words, lambda: invoked(command, name, words))
 
 

@@ -70,7 +70,7 @@ def sentence(module: str) -> str:
 
 TYPE_CHECKING = False  # `typing` itself takes time
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, NoReturn
 
 _SELF = "plan-cutters"
 #: The commands of this package: the module of each, and its sentence in the help. The first is meant where none is named.
@@ -134,13 +134,20 @@ def module_of(name: str) -> "Any":
 def begin(name: str, words: Sequence[str] | None = None) -> None:
     """Run a subcommand under the name that it was called by, `plan-cutters map` or `plan-cutters-map`."""
     words = sys.argv[1:] if words is None else words
+
+    def at_once(*_: object) -> "NoReturn":
+        # Nothing is raised: an import, or a callback of one, may swallow what is raised in it, and the command would go on.
+        os.write(2, f"{name}: interrupted; no file is half-written\n".encode())
+        os._exit(130)
+
     try:
         from plan_cutters_base.workers.assignment import follow_parent, is_child
 
         follow_parent()
-        # A child has nothing to say when it is ended.
-        if not is_child() and signal.getsignal(signal.SIGTERM) is not signal.SIG_IGN:
-            signal.signal(signal.SIGTERM, signal.default_int_handler)
+        # A child has nothing to say when it is ended. Who has something to tidy sets a handler that raises, later.
+        for number in () if is_child() else (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, at_once)
         if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
@@ -149,5 +156,4 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
             begin_early(words)
         module_of(name).main(words, name)
     except KeyboardInterrupt:
-        os.write(2, f"{name}: interrupted; no file is half-written\n".encode())
-        os._exit(130)
+        at_once()
