@@ -30,10 +30,10 @@ sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 #: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
-COMPILING, BESIDE = "ahead", ("domain", "house", "library", "machines")
+COMPILING, BESIDE = "ahead", ("house", "library", "machines", "plan_file")
 FIRST = ("cli", "feel", "files", "lifetime", "setup_ranking", "batch_command")
 #: Folders of short files, with which all processes end together.
-LAST = ("document", "files", "plan_file")
+LAST = ("document", "files")
 
 
 def _rank(path):

@@ -14,6 +14,25 @@ from tests.support.forked import ENV
 from tests.support.places import ROOT
 
 
+@pytest.fixture(scope="module")
+def made_ahead():
+    return subprocess.run(
+        [sys.executable, "-m", "plan_cutters.command.background_compile", "maps"],
+        env={**os.environ, **ENV},
+        cwd=ROOT,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_what_is_made_ahead_is_a_plan(made_ahead):
+    """What it compiles it runs: nothing of it fails, and the area between samples is among it.
+
+    It is the first test of all: what it makes on a fresh machine, all others load (`tests/conftest.py`).
+    """
+    assert made_ahead.returncode == 0
+
+
 def test_nothing_is_made_where_it_is_at_hand(monkeypatch):
     monkeypatch.setattr(subprocess, "Popen", lambda *words, **more: pytest.fail("a process was started"))
     for found in (True, None):
@@ -79,23 +98,6 @@ def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     assert run(look).split() == ["False", "False"]
     run(make)
     assert run(look).split() == ["False", "True"]
-
-
-@pytest.fixture(scope="module")
-def made_ahead():
-    return subprocess.run(
-        [sys.executable, "-m", "plan_cutters.command.background_compile", "maps"],
-        env={**os.environ, **ENV},
-        cwd=ROOT,
-        timeout=300,
-        check=False,
-    )
-
-
-@pytest.mark.slow("starts commands and ends them on the way")
-def test_what_is_made_ahead_is_a_plan(made_ahead):
-    """What it compiles it runs: nothing of it fails, and the area between samples is among it."""
-    assert made_ahead.returncode == 0
 
 
 #: Tells which entries a process has loaded or compiled after each of three plans.
