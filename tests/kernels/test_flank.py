@@ -43,14 +43,15 @@ def upright(cutter):
     return Contacts(np.zeros((1, 3)), normal, np.array([[0.0, 1.0, 0.0]]), np.zeros((1, 2))), flank
 
 
-def solved(corner, cutter, away=(0.0,)):
+def solved(corner, cutter, away=(0.0,), hint=-1):
     contact, flank = upright(cutter)
     tool = tool_of(assembly(cutter, 0.0, 0.0))
     solids = Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.0, ())).solids
     state, shift, reason = np.zeros(1, np.int8), np.zeros((1, 3)), np.zeros(1, np.uint8)
     along_flank(
-        np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.array(away), tool, solids, 0.5, state, shift, reason
-    )
+        np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.array(away), tool, solids, 0.5, state, shift, reason,
+        np.array([hint]),
+    )  # fmt: skip
     return int(state[0]), shift[0], contact, flank, tool, solids
 
 
@@ -83,6 +84,16 @@ def test_a_place_is_found_just_where_there_is_one(name):
     assert min(counts.values()) > 15
 
 
+@pytest.mark.parametrize("name", CUTTERS)
+def test_a_hint_changes_no_answer(name):
+    for k, corner in enumerate(scenes(60, 13)):
+        state, shift, *_ = solved(corner, CUTTERS[name], (0.0, 0.05))
+        for hint in range(0, len(corner), 1 + k % 3):
+            hinted = solved(corner, CUTTERS[name], (0.0, 0.05), hint)
+            assert hinted[0] == state
+            assert (hinted[1] == shift).all()
+
+
 def test_what_keeps_off_the_surface_may_serve():
     """What stands out of the wall by 0.05 is passed at 0.1, not at 0."""
     corner = np.array([[[0.05, -40.0, -99.0], [0.05, 40.0, -99.0], [0.05, 0.0, 99.0]]])
@@ -101,5 +112,5 @@ def test_what_is_no_number_is_in_the_way():
     state = np.zeros(1, np.int8)
     tool, solids = tool_of(assembly(CUTTERS["slot"], 0.0, 0.0)), solids._replace(tree=solids.tree._replace(vertex=broken))
     along_flank(np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.zeros(1), tool, solids, 0.5, state,
-                np.zeros((1, 3)), np.zeros(1, np.uint8))  # fmt: skip
+                np.zeros((1, 3)), np.zeros(1, np.uint8), np.full(1, -1))  # fmt: skip
     assert state[0] in (NONE, UNKNOWN)

@@ -8,7 +8,7 @@ with the axis as it is given.
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,39 +138,67 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
     conditions = context.conditions
     rows = rows[verdicts.reason[rows] != INSIDE]
     low, high = conditions.postures.tilt
+    hints = _Hints.of(len(contacts.normal))
     for flank in context.outer_tool.flanks:
         if not low - _WHOLE <= flank.tilt <= high + _WHOLE:
             continue
         for at, axis, whole in _axes(contacts, face, rows, flank, conditions):
             mine = verdicts.not_reached[at]
-            _on_flank(contacts, at[mine], axis[mine], flank, whole, context, verdicts)
+            _on_flank(contacts, at[mine], axis[mine], flank, whole, context, verdicts, hints)
         rows = rows[verdicts.not_reached[rows]]
 
 
+class _Hints(NamedTuple):
+    """Triangles that were in the way of samples (n,) at the axis before, or -1: of what surely is, and of what may be."""
+
+    certain: NDArray[np.int64]
+    possible: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, n: int) -> "_Hints":
+        """None yet."""
+        return cls(np.full(n, -1), np.full(n, -1))
+
+
 def _on_flank(
-    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer
+    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer, hints: _Hints
 ) -> None:
     """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
     from plan_cutters.kernels.search.flank import FREE, NONE, along_flank
 
     conditions = context.conditions
-    state, reason = np.zeros(len(rows), np.int8), np.full(len(rows), NO_REASON, np.uint8)
+    reason = np.full(len(rows), NO_REASON, np.uint8)
     shift = np.zeros((len(rows), 3))
     away = np.array([0.0, _AWAY * conditions.obstacles.triangles.chord_error, conditions.tolerance])[: 3 if whole else 2]
 
-    def tried(tool: Tool, solids: Any, within: float, some: Rows) -> None:
+    def tried(tool: Tool, solids: Any, within: float, some: Rows, hint: NDArray[np.int64]) -> NDArray[np.int8]:
+        """How each of some of the rows stands."""
+        state = np.full(len(rows), NONE, np.int8)
+
         def piece(which: Rows) -> int:
             at, result, moved, why = rows[which], np.zeros(len(which), np.int8), np.zeros((len(which), 3)), reason[which]
+            known = hint[at]
             looked = along_flank(
-                at, axis[which], contacts, flank.mode, flank.length, away, tool, solids, within, result, moved, why
+                at, axis[which], contacts, flank.mode, flank.length, away, tool, solids, within, result, moved, why, known
             )
-            state[which], shift[which], reason[which] = result, moved, why
+            state[which], shift[which], reason[which], hint[at] = result, moved, why, known
             return int(looked)
 
         in_chunks(piece, some, conditions.jobs)
+        return state
 
-    tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, np.arange(len(rows)))
+    def surely(some: Rows) -> NDArray[np.int8]:
+        return tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, some, hints.certain)
+
+    # What is surely in the way of the smaller tool leaves nothing to look for. Why the larger one does not stand is looked at
+    # where only the axis limit seemed to lose the contact.
+    inaccessible, unknown = verdicts.verdict[rows] == INACCESSIBLE, verdicts.reason[rows] == AXIS_LIMIT
+    proved = np.flatnonzero(inaccessible & ~unknown)
+    sure = surely(proved)
+    open_ = np.setdiff1d(np.arange(len(rows)), proved[sure[proved] == NONE])
+    hints.possible[rows[unknown]] = -1
+    state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints.possible)
     free = state == FREE
     at = rows[free]
     f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])
@@ -180,12 +208,11 @@ def _on_flank(
     offset, rise, _, _, height = (tool.mode[flank.mode] - tool.mode[tool.at(verdicts.tilt[at])]).T[:, :, None]
     across = np.cos(tilt) * f - np.sin(tilt) * normal
     verdicts.shift[at] = shift[free] + rise * normal - offset * across - height * axis[free]
-    rest = np.flatnonzero(~free)
-    blocked = rest[verdicts.reason[rows[rest]] == AXIS_LIMIT]
+    blocked = np.flatnonzero(unknown & ~free)
     verdicts.reason[rows[blocked]] = reason[blocked]
-    rest = rest[verdicts.verdict[rows[rest]] == INACCESSIBLE]
-    tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, rest)
-    verdicts.verdict[rows[rest[state[rest] != NONE]]] = UNDECIDED
+    rest = blocked[inaccessible[blocked]]
+    sure[rest] = surely(rest)[rest]
+    verdicts.verdict[rows[inaccessible & ~free & (sure != NONE)]] = UNDECIDED
 
 
 def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Context, verdicts: VerdictBuffer) -> None:

@@ -32,7 +32,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, next_tilt
 from plan_cutters.kernels.tool.apart import BODY, P
-from plan_cutters.kernels.tool.hit import deep_hit, scratch, stand
+from plan_cutters.kernels.tool.hit import deep_hit, everything, scratch, stand, triangle_hit
 
 #: Places of a slide that are nearer together are one, mm: no machine holds them apart.
 _NO_PLACE = 1e-3
@@ -74,12 +74,15 @@ def _end(piece, k, point, step, length):
 
 
 @kernel
-def _slid(frame, turn, length, tool, mode, solids, within, body, intervals, scratch):
-    """Look for a place along a flank: (FREE, NONE or UNKNOWN, how far the tool has slid, why the first one is none)."""
+def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals, scratch):
+    """Look for a place along a flank: (FREE, NONE or UNKNOWN, how far the tool has slid, why the first one is none, and the
+    triangle that took away most of the slide, or -1). A triangle that is a hint is tried before all others.
+    """
     cosine, sine = turn
     offset, rise, piece = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE], tool.piece[mode]
     intervals[0, 0], intervals[0, 1] = 0.0, length
     count, wish, reason, sure = 1, 0.0, NO_REASON, True
+    widest, most = -1.0, -1
     for _ in range(_PROBES):
         if count == 0:
             break
@@ -87,33 +90,40 @@ def _slid(frame, turn, length, tool, mode, solids, within, body, intervals, scra
         stand(body, frame, cosine, sine, offset, rise)
         for k in range(3):
             body[P + k] -= slide * frame.f[k]
-        triangle, which, height, x, y = deep_hit(solids.tree, body, piece, scratch)
+        triangle, which, height, x, y = hint, -1, 0.0, 0.0, 0.0
+        if hint >= 0:
+            which, height, x, y = triangle_hit(solids.tree.vertex, hint, body, piece, everything(piece), 0.0, scratch)
+        if which < 0:
+            hint = -1
+            triangle, which, height, x, y = deep_hit(solids.tree, body, piece, scratch)
         if triangle < 0:
             if not inside(body, tool, mode, solids, within, scratch):
-                return FREE, slide, NO_REASON
+                return FREE, slide, NO_REASON, most
             # It touches no skin, and lies in a body: how far it may slide there is not looked for.
             reason, sure = INSIDE if reason == NO_REASON else reason, False
             count = remove(intervals, count, slide - _IN_BODY * length, slide + _IN_BODY * length, _NO_PLACE)
             if length <= 0.0:
-                return NONE, 0.0, reason
+                return NONE, 0.0, reason, most
             continue
         if reason == NO_REASON:
             part = int(piece[which, PART])
             near = (height * cosine + rise) ** 2 + (x - offset) ** 2 + y * y <= tool.reach * tool.reach
             reason = BY_NECK + part - NECK if part != FLUTES else REAR_GOUGE if near else COLLISION
         if length <= 0.0:
-            return NONE, 0.0, reason
+            return NONE, 0.0, reason, triangle
         # The tool slides against the tilt direction: in its frame a point goes with it.
         point = (height, x, y)
         first = slide - _end(piece, which, point, (-sine, -cosine), slide)
         last = slide + _end(piece, which, point, (sine, cosine), length - slide)
         count = remove(intervals, count, min(first, slide - 0.5 * _NO_PLACE), max(last, slide + 0.5 * _NO_PLACE), _NO_PLACE)
+        if last - first > widest:
+            widest, most = last - first, triangle
         wish = length if wish == 0.0 else -1.0
-    return NONE if sure and count == 0 else UNKNOWN, 0.0, reason
+    return NONE if sure and count == 0 else UNKNOWN, 0.0, reason, most
 
 
 @entry
-def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, state, shift, reason):
+def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, state, shift, reason, hint):
     """Lay the flank of a tool along surfaces, with its axis as it is given.
 
     Parameters
@@ -138,7 +148,10 @@ def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, 
     shift : (m, 3) float64, written
         Where it is free: from the contact to the point at which the lower end of the flank is put down, mm.
     reason : (m,) uint8, written
-        Where it is not: what is in the way of the first place.
+        Where it is not: what is in the way of the first place; with a hint, of the first that was looked at.
+    hint : (m,) int64, read and written
+        A triangle that may well be in the way, or -1: where another axis was tried, that which took away most of the slide. A
+        place is none for the same proof with one, and one that is free is looked for without it.
 
     Returns
     -------
@@ -160,9 +173,11 @@ def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, 
             for k in range(3):
                 # Across the axis, out of the material.
                 point[k] = p[k] + away[j] * (sine * n[k] - cosine * f[k])
-            here, slide, why = _slid(
-                Frame(point, n, f, t), (cosine, sine), length, tool, mode, solids, within, body, intervals, workspace
-            )
+            frame, turn = Frame(point, n, f, t), (cosine, sine)
+            here, slide, why, most = _slid(frame, turn, length, tool, mode, solids, within, hint[i], body, intervals, workspace)
+            if here != NONE and hint[i] >= 0:
+                here, slide, why, most = _slid(frame, turn, length, tool, mode, solids, within, -1, body, intervals, workspace)
+            hint[i] = most
             if j == 0:
                 reason[i] = why
             if here == UNKNOWN:
