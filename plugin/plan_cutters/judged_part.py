@@ -32,6 +32,7 @@ from plan_cutters.judging.setups import within_limits
 from plan_cutters.judging.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.travel import travels
 from plan_cutters.judging.witness import witnesses
+from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
@@ -210,6 +211,7 @@ class JudgedPart:
                 triangles = len(ready.conditions.obstacles.tree.vertex)
                 made = _TRIANGLE * triangles + _SAMPLE * len(ready.samples)
                 most = _WORK_LEAST / max(1.0, triangles / _FEW) + _WORK_SHARE * (self.searched.looked + made)
+                most *= EFFORT[ready.options.effort]
             budget = ready.options.contacts_between(len(ready.samples))
             judged = self.cutters[cutter]
             return {cutter.id: ready.cache.cached(

@@ -44,6 +44,7 @@ OF_CALLS = ("part", "progress", "cache")
 Operations = Literal["fewest", "fastest", "both"]
 Answer = Literal["stick-out", "radius", "mend", "all"]
 SharpEdges = Literal["asked", "left"]
+Effort = Literal["quick", "normal", "thorough"]
 
 
 class PointOptions(TypedDict, total=False):
@@ -100,6 +101,7 @@ class PlanOptions(SceneOptions, total=False):
     overlap: float
     most_operations: int | None
     sharp_edges: SharpEdges
+    effort: Effort
     max_orientations: int
     process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
     patterns: bool
@@ -114,6 +116,8 @@ class PlanOptions(SceneOptions, total=False):
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 #: Whether strips at sharp inside edges that no cutter enters are required.
 SHARP_EDGES = ("asked", "left")
+#: How much work each stage after the verdicts may take, in what it may take by itself.
+EFFORT: Mapping[str, float] = {"quick": 0.2, "normal": 1.0, "thorough": 5.0}
 #: Accuracy of rotary axes that state none, rad.
 _ACCURACY = math.radians(0.05)
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
@@ -237,6 +241,9 @@ class Options:
         Fixed orientations at most: the rest is left to simultaneous motion.
     sharp_edges : str
         `left`: strips at sharp inside edges that no cutter enters are not required; else `asked`.
+    effort : str
+        `quick`, `normal` or `thorough`: how much work advice and proofs after the verdicts may take (`EFFORT`). Verdicts and the
+        test of each step of a plan are the same with any.
     max_orientations : int
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
@@ -309,6 +316,7 @@ class Options:
     overlap: float = 2.0
     most_operations: int | None = None
     sharp_edges: SharpEdges = "asked"
+    effort: Effort = "normal"
     max_orientations: int = 8
     process: OwnProcess | None = None
     patterns: bool = True
@@ -377,6 +385,8 @@ class Options:
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
+        if self.effort not in tuple(EFFORT):
+            raise OptionError(f"effort: {shown(self.effort)} is none of {', '.join(EFFORT)}")
         if self.units not in (None, "mm", "in"):
             raise OptionError(f"units: {shown(self.units)} is none of mm, in")
         take(process=process_requested(self.process))

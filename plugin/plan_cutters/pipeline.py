@@ -202,7 +202,10 @@ class Run:
             lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both
         ) as side:
             try:
-                ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=interim.answered)
+                ask(
+                    part.ready, part.here, clock.stage, part.other_setups, searched=part.searched.looked, least=least,
+                    answered=interim.answered,
+                )  # fmt: skip
             except KeyboardInterrupt:
                 if (planned_by_now := side.ended()) is not None:
                     interim.planned(planned_by_now[0])

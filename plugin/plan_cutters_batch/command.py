@@ -61,8 +61,8 @@ class BatchRequest(PlanningRequest, Reported):
 @click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
 @options(
     "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "list_cutters", "machine", "setup", "fixture", "faces",
-    "ignore", "flip", "sharp_edges", "unit", "spacing", "grid", "area_budget", "tolerance", "allowance", "holder_clearance",
-    "tilt", "rotation", "rotation_step", "posture_maps", "map_budget",
+    "ignore", "flip", "sharp_edges", "unit", "spacing", "grid", "area_budget", "effort", "tolerance", "allowance",
+    "holder_clearance", "tilt", "rotation", "rotation_step", "posture_maps", "map_budget",
 )  # fmt: skip
 @options(
     "step_schema",

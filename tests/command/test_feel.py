@@ -234,6 +234,7 @@ def everywhere(value, text):
             "carries",
             "sampled_by",
             "sharp_edges",
+            "effort",
             "units",
             "group",
             "mode",

@@ -16,7 +16,7 @@ from plan_cutters_ci.diff import DiffRequest
 COMMANDS = {
     "plan": (request.PlanRequest, ["p.step"], ["--cutter", "R6L80", "--cutters", "a.toml", "--holder", "er32",
              "--assume-stickout", "30", "--skip-bad", "--setup", "+z", "--setup", "auto", "--fixture", "table", "--ignore", "F3",
-             "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--map-budget", "9",
+             "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--effort", "quick", "--map-budget", "9",
              "-o", "out", "--formats", "json", "--json", "-", "--operations", "both", "--feed", "900", "--index-step", "15",
              "--axis-accuracy", "0.1",
              "--index-time", "3", "--most-operations", "2", "--max-orientations", "5", "--no-patterns",

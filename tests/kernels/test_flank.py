@@ -49,7 +49,7 @@ def solved(corner, cutter, away=(0.0,), hint=-1):
     solids = Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.0, ())).solids
     state, shift, reason = np.zeros(1, np.int8), np.zeros((1, 3)), np.zeros(1, np.uint8)
     along_flank(
-        np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.array(away), tool, solids, 0.5, state, shift, reason,
+        np.zeros(1, np.int64), UP, contact, (flank.mode, flank.length), np.array(away), tool, solids, 0.5, state, shift, reason,
         np.array([hint]),
     )  # fmt: skip
     return int(state[0]), shift[0], contact, flank, tool, solids
@@ -111,6 +111,6 @@ def test_what_is_no_number_is_in_the_way():
     broken[0, 1] = np.nan
     state = np.zeros(1, np.int8)
     tool, solids = tool_of(assembly(CUTTERS["slot"], 0.0, 0.0)), solids._replace(tree=solids.tree._replace(vertex=broken))
-    along_flank(np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.zeros(1), tool, solids, 0.5, state,
+    along_flank(np.zeros(1, np.int64), UP, contact, (flank.mode, flank.length), np.zeros(1), tool, solids, 0.5, state,
                 np.zeros((1, 3)), np.zeros(1, np.uint8), np.full(1, -1))  # fmt: skip
     assert state[0] in (NONE, UNKNOWN)

@@ -142,7 +142,7 @@ def test_places_under_flats_and_along_flanks_say_what_is_kept(keeps, kind):
             wall = Contacts(np.zeros((1, 3)), normal, np.array([[0.0, 1.0, 0.0]]), np.zeros((1, 2)))
             state, shift, reason = np.zeros(1, np.int8), np.zeros((1, 3)), np.zeros(1, np.uint8)
             along_flank(
-                np.zeros(1, np.int64), up, wall, flank.mode, flank.length, np.array([0.0, 0.04]), tool, solids, 0.5,
+                np.zeros(1, np.int64), up, wall, (flank.mode, flank.length), np.array([0.0, 0.04]), tool, solids, 0.5,
                 state, shift, reason, np.full(1, -1),
             )  # fmt: skip
             found.append([int(state[0]), int(reason[0]), *shift[0].tolist()])

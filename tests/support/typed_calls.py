@@ -97,7 +97,7 @@ def kept(part: Scene, known: Options) -> None:
         index_time=known.index_time,
         change_time=known.change_time, setup_time=known.setup_time, overlap=known.overlap,
         most_operations=known.most_operations, max_orientations=known.max_orientations, patterns=known.patterns,
-        sharp_edges=known.sharp_edges,
+        sharp_edges=known.sharp_edges, effort=known.effort,
         units=known.units, process=known.process,
     )  # fmt: skip
 

@@ -18,9 +18,11 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
+from plan_cutters.scene.work import Budget
 
 Axis = tuple[float, float, float]
 OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
@@ -28,6 +30,8 @@ OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 #: Cutters that are mended: those that come nearest.
 NEAREST = 3
+#: The work of advice: so many boxes in any case, and this share of those that the searches for verdicts took.
+_WORK_LEAST, _WORK_SHARE = 3e7, 0.25
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -37,6 +41,7 @@ def ask(
     stage: Callable[[str], AbstractContextManager[Progress]],
     other_setups: OtherSetups = (),
     *,
+    searched: int = 0,
     least: LeastSet | None = None,
     answered: Callable[[Answers, Sequence[str]], None] = lambda answers, unanswered: None,
 ) -> Answers:
@@ -51,6 +56,8 @@ def ask(
         Opens a stage of work by its name; what it gives is told how much of how much is done.
     other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
+    searched : int
+        Boxes that the searches for verdicts looked at: the work of advice is bounded by a share of them.
     least : LeastSet, optional
         The fewest runs, as they are known already: one of the answers.
     answered : callable, optional
@@ -91,10 +98,12 @@ def ask(
         failing = nearest(ready, reaches, other_setups)
         near = failing[:NEAREST]
         with stage("mend") as tell:
+            whole = Budget(EFFORT[ready.options.effort] * (_WORK_LEAST + _WORK_SHARE * searched))
             for k, cutter in enumerate(near):
                 mends[cutter.id] = mend(
-                    ready, cutter, together[cutter][0], reaches, other_setups, progress=part_of(tell, k, len(near))
-                )
+                    ready, cutter, together[cutter][0], reaches, other_setups, progress=part_of(tell, k, len(near)),
+                    budget=Budget(whole.left / (len(near) - k)),
+                )  # fmt: skip
                 so_far()
     return so_far(*unanswered)
 

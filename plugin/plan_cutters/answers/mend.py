@@ -14,6 +14,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words.next_steps import samples
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.work import Budget
 
 
 def mend(
@@ -24,6 +25,7 @@ def mend(
     other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
     *,
     progress: Progress | None = None,
+    budget: Budget | None = None,
 ) -> Advice:
     """Find what to do next with one cutter.
 
@@ -40,6 +42,8 @@ def mend(
         Of each other setup its axis, and what each cutter reaches there by its id.
     progress : callable, optional
         Called with the number of cases judged, and the largest number there can be.
+    budget : Budget, optional
+        As for `steps`.
 
     Returns
     -------
@@ -53,7 +57,11 @@ def mend(
     if not why and len(unfinished) and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     found = Advice(cutter.id, len(unfinished) + within, within, why, share)
-    return found if why or not len(unfinished) else steps(ready, found, cutter, reaches, other_setups, progress=progress)
+    return (
+        found
+        if why or not len(unfinished)
+        else steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)
+    )
 
 
 def _why_nothing(ready: Prepared, within: int) -> str:

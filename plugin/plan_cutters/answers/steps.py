@@ -3,6 +3,7 @@
 The effect of each step is judged on all samples. What needs no purchase comes first, where it frees enough.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -22,6 +23,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words import next_steps
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.work import Budget
 
 #: A step, and the samples that it leaves.
 Judged = tuple[Candidate, Rows]
@@ -61,6 +63,7 @@ def steps(
     other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
     *,
     progress: Progress | None = None,
+    budget: Budget | None = None,
 ) -> Advice:
     """Find what to do next, and what it gains.
 
@@ -80,6 +83,8 @@ def steps(
         Of each other setup its axis, and what each cutter reaches there by its id.
     progress : callable, optional
         Called with the number of cases judged, and the largest number there can be.
+    budget : Budget, optional
+        The work that it may take; what promises most is judged in any case. None: as much as it takes.
 
     Returns
     -------
@@ -106,10 +111,17 @@ def steps(
     listed = candidates(scan)
     dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
     chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
-    made = [(each, known.left(each.state, _rows(scan, each))) for each in chosen]
+    budget = budget or Budget(math.inf)
+    made, uncompared = list[Judged](), 0
+    for each in chosen:
+        # What given cutters do is known.
+        if made and not budget.left and each.moves[0].means != "cutter":
+            uncompared += 1
+        else:
+            made.append((each, known.left(each.state, _rows(scan, each))))
     before = finished.of_rows(open_rows)
     singles = [each for each in made if worth(finished, before - finished.of_rows(each[1]))]
-    pairs = _pairs(scan, singles)
+    pairs = _pairs(scan, singles, budget) if budget.left else []
     base = (ready, cutter, state)
     result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
     result = in_order(result, ready.cutters)
@@ -119,6 +131,7 @@ def steps(
         steps=(*result, _excluded(base, finished, open_rows, areas)),
         areas=tuple(areas[:_AREAS]),
         more_areas=len(areas[_AREAS:]),
+        uncompared=uncompared,
         unsure=ready.conditions.surroundings.doubtful,
     )
 
@@ -160,7 +173,7 @@ def _rows(scan: Scan, candidate: Candidate) -> Rows:
     return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
 
 
-def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
+def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
     """Two changes, where both are worth it: a second one after each of the best, and two of which neither gains much alone."""
     finished = scan.finished
     alone = {_name(each.moves[0]): finished.of_rows(rows) for each, rows in singles}
@@ -171,9 +184,9 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
     tried: set[tuple[Named, ...]] = set()
 
     def judge(each: Candidate, rows: Rows) -> bool:
-        """Keep it if it is worth it; False if it was tried before."""
+        """Keep it if it is worth it; False if it was tried before, or the work is spent."""
         name = tuple(sorted(_name(move) for move in each.moves))
-        if name in tried:
+        if name in tried or not budget.left:
             return False
         tried.add(name)
         still = scan.known.left(each.state, rows if each.nested else np.flatnonzero(finished.wanted))

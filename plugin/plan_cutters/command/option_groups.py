@@ -289,6 +289,13 @@ _OPTIONS = (
         help="`left`: the strips along sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
         "required.  [default: all are required]",
     ),
+    _samples(
+        "--effort",
+        type=click.Choice(["quick", "normal", "thorough"]),
+        default="normal",
+        help="Work that advice and proofs after the verdicts may take: a fifth of the usual, or five times as much.  "
+        "[default: normal]",
+    ),
     _faces(
         "--unit",
         type=click.Choice(list(UNITS)),

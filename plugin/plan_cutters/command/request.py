@@ -79,6 +79,7 @@ class PlanningRequest(JudgingRequest):
 
     sharp_edges: str
     units: Literal["mm", "in"] | None
+    effort: str
     area_budget: int | None
     posture_maps: bool
     map_budget: int | None
@@ -185,6 +186,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "process": request.process if isinstance(request, PlanRequest) else None,
         "sharp_edges": request.sharp_edges,
         "units": request.units,
+        "effort": request.effort,
         "area_budget": request.area_budget,
         "posture_maps": request.posture_maps,
         "map_budget": request.map_budget,

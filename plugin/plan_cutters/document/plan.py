@@ -121,6 +121,7 @@ def effective(ready: Prepared) -> Effective:
         "chord_error_mm": surroundings.certain.triangles.chord_error,
         "chord_measured_share": surroundings.certain.triangles.measured_share,
         "obstacle_triangles": len(surroundings.possible.triangles),
+        "effort": options.effort,
         "area_budget": options.contacts_between(len(ready.samples)),
         "process": _process(ready),
         "axis_accuracy_deg": float(np.degrees(options.accuracy)),

@@ -88,6 +88,8 @@ class Advice:
         The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
     areas : tuple of Patch
         Connected areas that are not reached now, the largest first, and how many more there are.
+    uncompared : int
+        Changes that promised less than those judged and were not judged, since the work for advice was spent.
     unsure : bool
         Faces are missing from what is in the way, so that no gain is sure.
     """
@@ -100,4 +102,5 @@ class Advice:
     steps: tuple[Step, ...] = ()
     areas: tuple[Patch, ...] = ()
     more_areas: int = 0
+    uncompared: int = 0
     unsure: bool = False

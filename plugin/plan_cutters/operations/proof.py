@@ -14,6 +14,7 @@ from plan_cutters.judging.face_cells import Fixed
 from plan_cutters.judging.margin import margin
 from plan_cutters.judging.nodes import tensors
 from plan_cutters.operations.moving_proof import counted_pieces, proved_moving, proved_share
+from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
@@ -55,7 +56,7 @@ def proved(
         return plan
     most = np.inf
     if options.area_budget is None:
-        budget, most = max(budget, _CONTACTS * n), _WORK_LEAST + _WORK_SAMPLE * n
+        budget, most = max(budget, _CONTACTS * n), EFFORT[options.effort] * (_WORK_LEAST + _WORK_SAMPLE * n)
     operations, alike = list(plan.operations), dict[tuple[str, int], list[int]]()
     for k, each in enumerate(operations):
         if each.mode == "fixed":

@@ -63,6 +63,9 @@ class Effective(Frozen):
     sharp_edges: Literal["asked", "left"] = Field(
         default="asked", description="left: strips at sharp inside edges that no cutter enters are not required"
     )
+    effort: Literal["quick", "normal", "thorough"] = Field(
+        default="normal", description="how much work advice and proofs after the verdicts may take"
+    )
     units: Literal["mm", "in"] | None = Field(
         default=None, description="of lengths in words: mm or in; null: mm, and tools as they were given; numbers here are mm"
     )

@@ -161,7 +161,14 @@ class _Hints(NamedTuple):
 
 
 def _on_flank(
-    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer, hints: _Hints
+    contacts: Contacts,
+    rows: Rows,
+    axis: Floats,
+    flank: Flank,
+    whole: bool,
+    context: Context,
+    verdicts: VerdictBuffer,
+    hints: _Hints,
 ) -> None:
     """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
@@ -180,7 +187,7 @@ def _on_flank(
             at, result, moved, why = rows[which], np.zeros(len(which), np.int8), np.zeros((len(which), 3)), reason[which]
             known = hint[at]
             looked = along_flank(
-                at, axis[which], contacts, flank.mode, flank.length, away, tool, solids, within, result, moved, why, known
+                at, axis[which], contacts, (flank.mode, flank.length), away, tool, solids, within, result, moved, why, known
             )
             state[which], shift[which], reason[which], hint[at] = result, moved, why, known
             return int(looked)

@@ -40,3 +40,21 @@ class Meter:
 
 #: That of this process.
 METER = Meter()
+
+
+class Budget:
+    """So much work from now on, of this process.
+
+    Parameters
+    ----------
+    most : float
+        Boxes.
+    """
+
+    def __init__(self, most: float) -> None:
+        self._most, self._begun = most, METER.boxes
+
+    @property
+    def left(self) -> float:
+        """Boxes that may still be looked at, 0 where it is spent."""
+        return max(0.0, self._most - (METER.boxes - self._begun))

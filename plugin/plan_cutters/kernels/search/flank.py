@@ -123,7 +123,7 @@ def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals
 
 
 @entry
-def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, state, shift, reason, hint):
+def along_flank(rows, axis, contacts, flank, away, tool, solids, within, state, shift, reason, hint):
     """Lay the flank of a tool along surfaces, with its axis as it is given.
 
     Parameters
@@ -133,10 +133,9 @@ def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, 
     axis : (m, 3) float64
         Unit tool axis at each, nowhere along the normal.
     contacts : Contacts
-    mode : int
-        In which the lower end of the flank touches.
-    length : float
-        By which the tool may slide with the contact still on its flank, mm.
+    flank : (int, float)
+        The mode in which the lower end of the flank touches, and by how much the tool may slide with the contact still on its
+        flank, mm.
     away : (k,) float64
         Distances from the contact, mm, that are tried one after the other, across the axis.
     tool : Tool
@@ -158,6 +157,7 @@ def along_flank(rows, axis, contacts, mode, length, away, tool, solids, within, 
     int
         How many boxes were looked at.
     """
+    mode, length = flank
     body, f, t, point, intervals, workspace = np.empty(BODY), np.empty(3), np.empty(3), np.empty(3), np.empty((64, 2)), scratch()
     for i in range(len(rows)):
         p, n, a = contacts.point[rows[i]], contacts.normal[rows[i]], axis[i]

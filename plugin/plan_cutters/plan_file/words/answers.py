@@ -109,6 +109,9 @@ def _next(c: CutterEntry, advice: MendEntry) -> Iterator[Line]:
         yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
     if not steps:
         yield Line("  No step was found that frees any of it.")
+    if advice.uncompared:
+        of = len(steps) + advice.uncompared
+        yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
     if rest := remaining(advice):
         yield Line(f"  After step 1 stays: {rest}.")
     for step in advice.steps:
