@@ -49,7 +49,7 @@ from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
 from plan_cutters_base.copies import SideProcess
 from plan_cutters_base.forks import Gauge
-from plan_cutters_base.stage_cache import NO_CACHE, StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache, RunCache, StageCache
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
@@ -116,8 +116,9 @@ def run(
     file. `remark` adds to each plan what its options do not say.
     """
     judged: Judge = judge if cache is None else CachedJudge()
+    made = RunCache(cache or NO_CACHE)
     stages = Run(
-        clock, interim or Interim(clock), remark or _as_it_is, folder, compiling, judged, read_timeout, at, excluded, cache
+        clock, interim or Interim(clock), remark or _as_it_is, folder, compiling, judged, read_timeout, at, excluded, made
     )
     return stages.plan(part, options)
 
@@ -139,7 +140,7 @@ class Run:
     read_timeout: float
     at: At
     excluded: Mapping[int, str] | None
-    cache: StageCache | None
+    cache: Cache
 
     def plan(self, part: Any, options: Options) -> Result:
         """Prepare the part, judge all cutters, and do what follows the verdicts; without a setup, propose some first."""
@@ -272,7 +273,7 @@ def prepare(
     at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None,
     excluded: Mapping[int, str] | None = None,
-    cache: StageCache | None = None,
+    cache: Cache | None = None,
 ) -> Prepared:
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     if options.propose:

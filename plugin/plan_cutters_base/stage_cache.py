@@ -162,6 +162,36 @@ class NoStageCache:
 NO_CACHE = NoStageCache()
 
 
+class RunCache:
+    """What stages made in this run: a part that is prepared twice, in setups that are proposed and before, is sampled once.
+
+    Parameters
+    ----------
+    lasting : StageCache or NoStageCache
+        What is asked of what was not made in this run.
+    """
+
+    def __init__(self, lasting: StageCache | NoStageCache) -> None:
+        self._lasting, self._made = lasting, dict[bytes, Any]()
+
+    def holds(self, stage: str, follows_from: object) -> bool:
+        """As of a `StageCache`."""
+        return digest([stage, follows_from]) in self._made or self._lasting.holds(stage, follows_from)
+
+    def cached(
+        self, stage: str, follows_from: object, make: Callable[[], Made], keep: Callable[[Made], bool] | None = None
+    ) -> Made:
+        """As of a `StageCache`; what was made in this run is the same object."""
+        name = digest([stage, follows_from])
+        if name not in self._made:
+            self._made[name] = self._lasting.cached(stage, follows_from, make, keep)
+        return cast(Made, self._made[name])
+
+
+#: Of these a stage does not know which it has.
+Cache = StageCache | NoStageCache | RunCache
+
+
 @functools.cache
 def _writer() -> ThreadPoolExecutor:
     """Writes beside the work, one entry at a time; it is done before the process ends."""

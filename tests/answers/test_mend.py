@@ -16,6 +16,7 @@ from plan_cutters.answers.trial import Case
 from plan_cutters.domain.standard_tools import METRIC, USUAL, smaller
 from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.work import Budget
 from tests.support import shapes
 from tests.support.advice import strip, wall
 from tests.support.bodies import lidded, stacked
@@ -182,6 +183,25 @@ def test_where_no_step_helps_the_area_is_left():
     found, steps, _ = asked(part, Cutter.flat(radius=3, length=40), faces=[bottom])
     assert found.lost == 15 or "too little for advice" in found.why
     assert set(steps) <= {"area"}
+
+
+def test_a_budget_that_is_spent_leaves_what_promises_most():
+    part = shapes.shell(strip(0, 10), wall(-8, 40, 1))
+    cutter = Cutter.flat(radius=3, length=25, flutes=10.0, shank_radius=3.0, holder="R15L200")
+    ready = prepare(part, Options(cutters=(cutter,), grid=5, area_budget=0, faces="F1", **UPRIGHT))
+    (cutter,) = ready.cutters
+    reach = judge(ready, cutter)
+    every, none, some = (mend(ready, cutter, reach, {cutter: reach}, budget=each) for each in (None, Budget(0.0), Budget(1e12)))
+    changes = [step for step in every.steps if len(step.moves) == 1 and step.moves[0].means != "area"]
+    assert len(changes) > 1
+    assert (every.uncompared, some.uncompared) == (0, 0)
+    assert [step.moves for step in some.steps] == [step.moves for step in every.steps]
+    (kept, area) = none.steps
+    assert area.moves[0].means == "area"
+    # Every sample was judged of what is told, and what was not compared is counted.
+    assert (kept.moves, kept.after) in [(step.moves, step.after) for step in changes]
+    assert none.uncompared >= len(changes) - 1
+    assert none.areas == every.areas
 
 
 def test_it_tells_how_far_it_is_and_can_be_interrupted():

@@ -35,6 +35,8 @@ _NEAR, _FACING = 2.0, 0.7
 _WIDER = 1.5
 #: Share of the samples of a strip from which on a cutter enters the edge.
 _ENTERS = 0.5
+#: Samples in a corner are looked for so many times as far as they lie at most.
+_BEYOND = 1.5
 #: Cosine from which on a face is square to an edge that stands on it, and how far a sample may be off its level, in radii.
 _SQUARE, _LEVEL = 0.9995, 0.02
 
@@ -83,10 +85,14 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
             result[rows[served[at]]] = place
     if cutter.shape == "end" and not cutter.taper and not cutter.corner_radius:
         near = {number: _NEAR * gaps.get(number, 0.0) for number in rows_of}
+        lost = np.flatnonzero(losses & (result < 0))
+        around = cKDTree(samples.point[lost])
         for place, edge in enumerate(edges):
             for end in (0, -1):
-                rows = np.flatnonzero(losses & (result < 0))
-                result[_corner(samples, rows, edge, end, radius, reached, tree, near)] = place
+                # Between both faces the disk that touches them is no farther from the corner than this.
+                far = _BEYOND * radius / float(np.sin(0.5 * edge.angle[end]))
+                rows = lost[around.query_ball_point(edge.point[end], far, return_sorted=True)] if np.isfinite(far) else lost[:0]
+                result[_corner(samples, rows[result[rows] < 0], edge, end, radius, reached, tree, near)] = place
     return result
 
 
@@ -177,12 +183,11 @@ def _served(
     """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
     ball touches both faces.
     """
-    served = np.zeros(len(wide), bool)
-    for k in np.flatnonzero(edge.sharp).tolist():
-        rise = 0.5 * edge.curvature[side, k] * wide[k] ** 2
-        place = edge.point[k] + wide[k] * edge.inward[side, k] + rise * edge.normal[side, k]
-        rows = reached[tree.query_ball_point(place, near)]
-        served[k] = bool((samples.normal[rows] @ edge.normal[side, k] > _FACING).any())
+    served, sharp = np.zeros(len(wide), bool), np.flatnonzero(edge.sharp)
+    rise = 0.5 * edge.curvature[side, sharp] * wide[sharp] ** 2
+    place = edge.point[sharp] + wide[sharp, None] * edge.inward[side, sharp] + rise[:, None] * edge.normal[side, sharp]
+    for k, rows in zip(sharp.tolist(), tree.query_ball_point(place, near), strict=True):
+        served[k] = bool(rows) and bool((samples.normal[reached[rows]] @ edge.normal[side, k] > _FACING).any())
     if not served.any():
         return served
     # Where edges meet, strips cross: there the place lies in the strip of another edge.

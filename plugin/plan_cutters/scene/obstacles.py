@@ -16,7 +16,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
-from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.linear.lanes import WideTree
@@ -99,7 +99,7 @@ class Obstacles(Record):
 
         return self._filled(self._cells(), self._end) if self.weight.any() else sheet(self.tree)
 
-    def build(self, cache: StageCache | NoStageCache = NO_CACHE) -> None:
+    def build(self, cache: Cache = NO_CACHE) -> None:
         """Make the tree and `solids`, or take them from a cache: those of the same triangles are the same."""
         if "solids" in self.__dict__:
             return

@@ -16,7 +16,7 @@ from plan_cutters.scene.copies import Copies
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
-from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: A unit direction of the part.
 Axis = tuple[float, float, float]
@@ -76,7 +76,7 @@ class Prepared(Record):
         Equal faces of the part, and motions that carry it onto itself.
     copies : Copies, optional
         Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
-    cache : StageCache or NoStageCache
+    cache : Cache
         What stages make of this part is kept there.
     """
 
@@ -97,7 +97,7 @@ class Prepared(Record):
     exempt: NDArray[np.bool_] | None = None
     patterns: tuple[Pattern, ...] = ()
     copies: Copies | None = None
-    cache: StageCache | NoStageCache = field(default=NO_CACHE, compare=False)
+    cache: Cache = field(default=NO_CACHE, compare=False)
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:

@@ -29,7 +29,7 @@ from plan_cutters.setups.clamping import Workpiece, held
 from plan_cutters.setups.gripped import material_bodies
 from plan_cutters.setups.holds import Hold
 from plan_cutters.setups.solids import entered
-from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
 _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
@@ -213,9 +213,7 @@ class Scene(Record):
         for each in self.fixtures:
             read(each, self._memory.sources, timeout=timeout)
 
-    def surround(
-        self, at: At = lambda whose, face: None, *, jobs: int = 1, cache: StageCache | NoStageCache = NO_CACHE
-    ) -> Surroundings:
+    def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1, cache: Cache = NO_CACHE) -> Surroundings:
         """Gather the possible and the certain obstacles, unless that was done before.
 
         While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time. `cache`

@@ -22,7 +22,7 @@ from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
 from plan_cutters.setups.holds import Hold
-from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
@@ -147,7 +147,7 @@ class Surroundings(Record):
         """Obstacles that are surely in the way and enclose nothing."""
         return cls(obstacles, obstacles, (), ())
 
-    def build(self, jobs: int, cache: StageCache | NoStageCache = NO_CACHE) -> None:
+    def build(self, jobs: int, cache: Cache = NO_CACHE) -> None:
         """Build the trees of what may be and of what surely is in the way, where they are not one, side by side."""
         with ThreadPoolExecutor(min(jobs, 2)) as pool:
             for _ in pool.map(lambda each: each.build(cache), {id(o): o for o in (self.possible, self.certain)}.values()):
