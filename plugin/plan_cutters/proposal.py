@@ -185,17 +185,17 @@ def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder
 
     Each setup knows the file in which it will be: advice names that.
     """
-    stands_on = touching(ranking.ready, ranking.candidates.axis)
+    touched = touching(ranking.ready, ranking.candidates.axis[list(chosen)])
     first, *others = (
         Placement(
             _axis(ranking, k),
             clamped=_rests_on(ranking, k),
             fixtures=(_held(ranking, k).fixture,),
-            stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or stands_on[k])}),
+            stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or below)}),
             file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
             proposed=True,
         )
-        for number, k in enumerate(chosen, 1)
+        for number, (k, below) in enumerate(zip(chosen, touched, strict=True), 1)
     )
     return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
                    other_placements=tuple(others), unit=None)  # fmt: skip

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, Triangles
+from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.scene.preparation import Prepared
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
+#: Triangles of a face whose heights are reckoned at once.
+_AT_ONCE = 10_000
 #: Directions nearer than this are one: cosine of 0.1 deg.
 _ONE = float(np.cos(np.radians(0.1)))
 
@@ -41,7 +43,57 @@ class Candidates(Record):
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
         triangles, planar = _of_part(ready)
         axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
-        return cls(axis, *planes_below(ready, axis), np.ptp(triangles.vertex.reshape(-1, 3) @ axis.T, axis=0))
+        reach = _Reach.of(triangles, axis)
+        return cls(axis, reach.stood_on(ready, planar), reach.lowest, reach.high.max(axis=0) - reach.lowest)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reach:
+    """How far faces reach along axes.
+
+    face : (f,) int
+        Their numbers.
+    low, high : (f, m) float
+        Heights of their lowest and highest corners along each axis, mm.
+    near : float
+        Heights that differ by less are one.
+    """
+
+    face: NDArray[np.int64]
+    low: Floats
+    high: Floats
+    near: float
+
+    @classmethod
+    def of(cls, triangles: Triangles, axis: Floats) -> "_Reach":
+        """Of all faces that have triangles, face by face: all heights at once would take gigabytes."""
+        faces = rows_by_face(triangles.face)
+        low, high = np.full((len(faces), len(axis)), np.inf), np.full((len(faces), len(axis)), -np.inf)
+        for k, rows in enumerate(faces.values()):
+            for part in np.array_split(rows, 1 + len(rows) // _AT_ONCE):
+                height = triangles.vertex[part].reshape(-1, 3) @ axis.T
+                low[k], high[k] = np.minimum(low[k], height.min(axis=0)), np.maximum(high[k], height.max(axis=0))
+        return cls(np.array(list(faces), np.int64), low, high, triangles.chord_error)
+
+    @property
+    def lowest(self) -> Floats:
+        """Of all, along each axis (m,)."""
+        return np.asarray(self.low.min(axis=0))
+
+    def stood_on(self, ready: Prepared, planar: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+        """Of each axis the planes that lie at the bottom."""
+        stands = np.isin(self.face, planar)[:, None] & (self.high <= self.lowest + self._flat(ready))
+        return self._named(stands)
+
+    def touching(self, ready: Prepared) -> tuple[tuple[int, ...], ...]:
+        """Of each axis the faces of the part that come down to the bottom."""
+        return self._named((self.face > 0)[:, None] & (self.low <= self.lowest + self._flat(ready)))
+
+    def _flat(self, ready: Prepared) -> float:
+        return self.near + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
+
+    def _named(self, which: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+        return tuple(tuple(sorted(self.face[mine].tolist())) for mine in which.T)
 
 
 def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
@@ -51,24 +103,15 @@ def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
     return (surroundings.alone or surroundings).certain.triangles, planar
 
 
-def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], ...], Floats]:
-    """On which planes a part stands, by their numbers, and the height of its lowest point (m,), along some axes (m, 3)."""
+def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
+    """On which planes a part stands along some axes (m, 3), by their numbers."""
     triangles, planar = _of_part(ready)
-    height = triangles.vertex.reshape(-1, 3) @ axis.T
-    lowest, flat = height.min(axis=0), triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
-    face = np.repeat(triangles.face, 3)
-    tops = {number: height[face == number].max(axis=0) for number in planar if (face == number).any()}
-    stands = [tuple(number for number, top in tops.items() if top[k] <= lowest[k] + flat) for k in range(len(axis))]
-    return tuple(stands), lowest
+    return _Reach.of(triangles, axis).stood_on(ready, planar)
 
 
 def touching(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
     """Faces with which a part touches the plane below it, by their numbers, along some axes (m, 3)."""
-    triangles, _ = _of_part(ready)
-    height = triangles.vertex.reshape(-1, 3) @ axis.T
-    reach = triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
-    low, face = height <= height.min(axis=0) + reach, np.repeat(triangles.face, 3)
-    return tuple(tuple(int(n) for n in np.unique(face[low[:, k]]) if n > 0) for k in range(len(axis)))
+    return _Reach.of(_of_part(ready)[0], axis).touching(ready)
 
 
 def cube() -> Floats:

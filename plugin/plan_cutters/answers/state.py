@@ -101,7 +101,7 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
         ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs,
         ready.inside,
     )  # fmt: skip
-    held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0][0])
+    held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0])
     return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
 
 

@@ -15,14 +15,13 @@ from plan_cutters.domain.verdicts import (
     TOLERANCE,
     UNDECIDED,
     UNJUDGED,
-    VerdictBuffer,
     Verdicts,
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.conditions import Context, contacts_of, standing
 from plan_cutters.scene.flats_and_flanks import search
-from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.threads import Progress, in_chunks, part_of
 from plan_cutters.scene.work import Work
 
 #: A face that triangles follow only within so many tolerances is not searched: all of it is undecided.
@@ -85,23 +84,29 @@ def access(
         verdicts.take(follows, known)
         _first_reasons(contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), context, verdicts.reason)
         wanted &= ~follows
-    search(contacts, samples.face, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
-    if conditions.surroundings.alone is not None:
-        searched = wanted | (inside >= len(conditions.surroundings.bodies) if inside is not None else False)
-        handed = judged & (verdicts.reason == FIXTURE)
-        bare = context.under(replace(conditions, surroundings=conditions.surroundings.alone))
-        _for_fixtures(samples, np.flatnonzero((searched & verdicts.not_reached) | handed), bare, verdicts)
-    return verdicts.freeze()
-
-
-def _for_fixtures(samples: SurfaceSamples, rows: NDArray[np.int64], bare: Context, verdicts: VerdictBuffer) -> None:
-    """Of samples not reached, tell those that fixtures keep off from those that would not be reached without them, either."""
+    alone, faces = conditions.surroundings.alone, samples.face
+    if alone is None:
+        search(contacts, faces, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
+        return verdicts.freeze()
+    # What the part itself keeps off is not searched again among what holds it.
+    within_fixtures = np.zeros(n, bool) if inside is None else judged & (inside >= len(conditions.surroundings.bodies))
+    handed = judged & (verdicts.reason == FIXTURE)
+    told = (None, None) if progress is None else (part_of(progress, 0, 2), part_of(progress, 1, 2))
+    bare, result = context.under(replace(conditions, surroundings=alone)), blank(n)
+    search(contacts, faces, np.flatnonzero(wanted | within_fixtures | handed), bare, result, told[0], fixed=True, work=work)
+    lost = wanted & (result.verdict == INACCESSIBLE)
+    verdicts.verdict[lost], verdicts.reason[lost] = INACCESSIBLE, result.reason[lost]
+    # Where the tool stands beside them as without them, no other posture is sought; not where it has slid along a flank.
+    kept = np.flatnonzero(wanted & result.reached & ~result.shift.any(axis=1))
+    kept = kept[standing(contacts, kept, result.axis, result.tilt_direction, context, work)[kept]]
+    verdicts.take(kept, result)
+    open_ = np.setdiff1d(np.flatnonzero(wanted & ~lost), kept, assume_unique=True)
+    search(contacts, faces, open_, context, verdicts, told[1], fixed=True, work=work)
+    # Of samples not reached, those that fixtures keep off are told from those that would not be reached without them, either.
+    rows = np.flatnonzero(((wanted & ~lost) | within_fixtures) & verdicts.not_reached | handed)
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
-    if not len(rows):
-        return
-    result = blank(len(verdicts.verdict))
-    search(contacts_of(samples), samples.face, rows, bare, result, fixed=True)
     verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
+    return verdicts.freeze()
 
 
 def _first_reasons(contacts: Contacts, rows: NDArray[np.int64], context: Context, reason: NDArray[np.uint8]) -> None:

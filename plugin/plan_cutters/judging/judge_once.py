@@ -14,12 +14,12 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Verdicts, blank
 from plan_cutters.judging.judge import Judge, judge
-from plan_cutters.scene.conditions import Context, rotations_of
+from plan_cutters.scene.conditions import Context, contacts_of, rotations_of, standing
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.copies import Copies
 from plan_cutters.scene.ground import made_of, same
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import in_chunks, part_of
+from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
 
 Rows = NDArray[np.int64]
@@ -84,8 +84,6 @@ class JudgeOnce:
         work: Work | None,
     ) -> None:  # fmt: skip
         """Take the postures of masters, moved, where the cutter stands free in them."""
-        from plan_cutters.kernels.search.postures import free
-
         samples, conditions = ready.samples, ready.conditions
         context = Context.of(cutter, conditions)
         rows = rest[(follows.verdict[rest] == UNJUDGED) & (result.verdict[copies.master[rest]] == ACCESSIBLE)]
@@ -98,16 +96,7 @@ class JudgeOnce:
         rotation, direction[rows], axis[rows] = _posture(
             ready, rows, copies.moved(rows, result.tilt_direction[master]), result.tilt[master]
         )
-        stands = np.zeros(len(samples), bool)
-        looked = in_chunks(
-            lambda piece: int(
-                free(piece, samples.point, samples.normal, axis, direction, context.outer, conditions.obstacles.solids, stands)
-            ),
-            rows[conditions.allows(axis[rows])], conditions.jobs,
-        )  # fmt: skip
-        if work is not None:
-            work.add(looked)
-        good = stands[rows]
+        good = standing(contacts_of(samples), rows[conditions.allows(axis[rows])], axis, direction, context, work)[rows]
         taken, own = rows[good], master[good]
         follows.verdict[taken], follows.axis[taken], follows.tilt_direction[taken] = ACCESSIBLE, axis[taken], direction[taken]
         follows.tilt[taken], follows.rotation[taken] = result.tilt[own], rotation[good]

@@ -272,6 +272,35 @@ def search_postures(
         work.add(looked)
 
 
+def standing(
+    contacts: Contacts, rows: NDArray[np.int64], axis: Floats, tilt_direction: Floats, context: Context, work: Work | None = None
+) -> NDArray[np.bool_]:
+    """Contacts (n,) of some rows (m,) at which the tool stands free in a posture that is known from elsewhere.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    rows : (m,) int64
+        Contacts with a posture: its axis is one that the machine holds.
+    axis, tilt_direction : (n, 3) float
+    context : Context
+    work : Work, optional
+        Where what is looked at is counted.
+    """
+    from plan_cutters.kernels.search.postures import free
+
+    conditions, stands = context.conditions, np.zeros(len(axis), bool)
+    point, normal, solids = contacts.point, contacts.normal, conditions.obstacles.solids
+
+    def tested(piece: NDArray[np.int64]) -> int:
+        return int(free(piece, point, normal, axis, tilt_direction, context.outer, solids, stands))
+
+    looked = in_chunks(tested, rows, conditions.jobs)
+    if work is not None:
+        work.add(looked)
+    return stands
+
+
 def warm(contacts: Contacts, context: Context) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels.search import search, upright
