@@ -16,6 +16,7 @@ from plan_cutters.domain.change import Move
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED
+from plan_cutters.judging.setups import within_limits
 from plan_cutters.options import LEAST_TOLERANCE
 from plan_cutters.plan_file.words import next_steps
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
@@ -32,6 +33,8 @@ _MOST = 120.0
 _UNSURE = 0.1
 #: Share of the tolerance that is tried: the triangles grow in number as it falls.
 _FINER = 0.5
+#: Directions that are compared, at most.
+_COMPARED = 6
 #: Directions closer to each other than this are one, deg.
 _ALIKE = 0.5
 
@@ -43,6 +46,9 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
         return
     now = ready.scene.asked
+    if ready.conditions.tolerance > now * (1.0 + 1e-9):
+        # The triangles are as many as there may be: they would follow the surface no closer.
+        return
     tried = float(f"{now * _FINER:.6g}")
     if tried < LEAST_TOLERANCE:
         return
@@ -106,6 +112,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     now = state.axes[0]
     if plain:
         axes = [axis for axis in axes if _own(axis)]
+    axes = _promising(ready, state, axes, gained)
     facing = towards(ready.samples.normal[gained].mean(axis=0), now)
     second = []
     for axis in axes:
@@ -133,6 +140,18 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
         if estimate < scan.finished.of_rows(scan.left):
             move = Move("setup", now, axis, f"{next_steps.clamped(axis, _angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
+
+
+def _promising(ready: Prepared, state: State, axes: list[Axis], gained: Rows) -> list[Axis]:
+    """Those of some directions in which the machine holds axes at most samples, in the order in which they came: what stands
+    around the part is made anew for each that is compared."""
+
+    def bound(axis: Axis) -> int:
+        return int(within_limits(ready.samples, state.cutters, ready.conditions, axis, gained).sum())
+
+    held = sorted(((bound(axis), axis) for axis in axes), key=lambda each: (-each[0], not _own(each[1])))[:_COMPARED]
+    best = {axis for many, axis in held if many}
+    return [axis for axis in axes if axis in best]
 
 
 def _plain(second: list[tuple[float, float, Axis, State, Rows]], whole: float) -> tuple[float, float, Axis, State, Rows] | None:

@@ -18,6 +18,8 @@ from plan_cutters.setups.requested import without
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]
+#: Setups that are not planned yet of which what stands around the part is kept, at most.
+_TABLES = 3
 
 
 class SetupOf(NamedTuple):
@@ -43,7 +45,7 @@ class State:
         The one that is mended, or what became of it, first.
     setups : tuple of SetupOf
     tables : dict
-        What setups that are not planned yet see, made once, by axis and tolerance.
+        What setups that are not planned yet see, by axis and tolerance, those that were looked at last.
     """
 
     ready: Prepared
@@ -74,9 +76,11 @@ class State:
         if setup.number is not None:
             return ready.alone(setup.number)
         at = setup.axis, ready.scene.asked
-        if at not in self.tables:
-            self.tables[at] = on_table(ready, setup.axis)
-        table, conditions = self.tables[at], ready.conditions
+        table, conditions = self.tables.pop(at, None) or on_table(ready, setup.axis), ready.conditions
+        # Those that were used last stay: a part has as many triangles around it each time.
+        self.tables[at] = table
+        for old in list(self.tables)[:-_TABLES]:
+            del self.tables[old]
         placed = replace(conditions, setup=table.conditions.setup, x=None, surroundings=table.conditions.surroundings)
         return replace(ready, conditions=placed, inside=table.inside, held=table.held, others=())
 
