@@ -246,7 +246,9 @@ def _operations(
         return None, {}, {}
     from plan_cutters.operations.planning import plan_operations
 
-    operations = plan_operations(part.ready, part.everywhere(), least, clock.stage, part.over_setups().reaches)
+    operations = plan_operations(
+        part.ready, part.everywhere(), least, clock.stage, part.over_setups().reaches, part.searched.looked
+    )
     return operations, clock.seconds, clock.boxes
 
 

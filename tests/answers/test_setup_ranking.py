@@ -8,13 +8,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plan_cutters import Options, plan
+from plan_cutters import Cutter, Options, plan
 from plan_cutters.answers.candidates import Candidates, cube, distinct, fibonacci
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.setup_ranking import holdable, ranked
 from plan_cutters.document.clock import Clock
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.words.text import story_of
@@ -164,6 +166,7 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
         made = ranked(one, *how)
         first = made.choose(1)[0]
         made.held[first] = replace(made.held[first], served=np.ones(len(made.rows), bool))
+        made.settled.add(first)
         return made
 
     monkeypatch.setattr(proposal, "ranked", boastful)
@@ -175,6 +178,7 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     def all_boastful(one, *how):
         made = ranked(one, *how)
         made.held = {k: each and replace(each, served=np.ones(len(made.rows), bool)) for k, each in made.held.items()}
+        made.settled |= set(made.held)
         return made
 
     monkeypatch.setattr(proposal, "ranked", all_boastful)
@@ -184,6 +188,31 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     assert not said.held
     assert "holds only" in said.why
     assert said.found < said.promised
+
+
+@pytest.mark.parametrize("word", ["R3L40", "R3L40rc3F20S3HR21L60", "R5L50rc1F22S4HR21L60", "R2L30rc2F8N1.5x8S2"])
+def test_no_point_of_a_tool_lies_below_its_lowest(word):
+    """Points that lie in the tool are above; along the normal a flat end at any tilt comes down to the contact, no lower."""
+    rng, tool = np.random.default_rng(3), assembly(Cutter.parse(word), 0.0, 0.0)
+    for tilt in rng.uniform(0.01, 1.5, 40):
+        normal, lean, down = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        postures = blank(1)
+        postures.axis[0] = np.cos(tilt) * normal + np.sin(tilt) * lean
+        postures.tilt_direction[0], postures.tilt[0] = lean, tilt
+        point = rng.uniform(-50, 50, 3)
+        for direction in (down, normal, lean, -normal):
+            (low,) = tool.lowest(point[None], normal[None], postures, direction)
+            around = (
+                point
+                + rng.uniform(-1, 1, (4000, 3)) * rng.choice([4.0, 30.0], (4000, 1))
+                + np.outer(rng.uniform(0, 100, 4000), postures.axis[0])
+            )
+            within = around[tool.depth(around, point, normal, lean, float(tilt)) > 0.0]
+            assert len(within)
+            assert (within @ direction >= low - 1e-9).all()
+            assert low > (within @ direction).min() - 25.0
+        if word == "R3L40":
+            assert tool.lowest(point[None], normal[None], postures, normal)[0] == pytest.approx(point @ normal)
 
 
 def test_where_nothing_is_within_the_limits_it_is_one_line():

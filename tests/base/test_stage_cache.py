@@ -16,7 +16,7 @@ import plan_cutters
 from plan_cutters_base import stage_cache
 from plan_cutters_base.digest import sources
 from plan_cutters_base.errors import CacheWarning
-from plan_cutters_base.stage_cache import NO_CACHE, StageCache, settle
+from plan_cutters_base.stage_cache import NO_CACHE, RunCache, StageCache, settle
 
 
 @pytest.fixture(autouse=True)
@@ -215,3 +215,19 @@ def test_the_environment_says_where_and_how_much(tmp_path, monkeypatch, folder, 
 def test_without_a_cache_all_is_made():
     assert not NO_CACHE.holds("stage", 1)
     assert made(NO_CACHE, 1)[1] == made(NO_CACHE, 1)[1] == 1
+
+
+def test_a_run_makes_nothing_twice_and_keeps_what_lasts(cache):
+    for lasting in (NO_CACHE, cache):
+        run = RunCache(lasting)
+        assert not run.holds("stage", [1])
+        first, times = made(run, [1])
+        again, more = made(run, [1], value=2.0)
+        assert (times, more) == (1, 0)
+        assert again is first
+        assert run.holds("stage", [1])
+        assert not run.holds("another", [1])
+        assert made(run, [2], value=3.0)[1] == 1
+    # Another run finds what the cache behind it has, and nothing where none is.
+    assert made(RunCache(cache), [1])[1] == 0
+    assert made(RunCache(NO_CACHE), [1])[1] == 1

@@ -85,7 +85,7 @@ def judged(name):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(planning, "plan_operations", lambda *given: seen.append(given))
         plan(shape(), **{**ALL, **options}, operations="fewest")
-    ((ready, everywhere, least, _, over),) = seen
+    ((ready, everywhere, least, _, over, _),) = seen
     return ready, everywhere, least, over
 
 
@@ -110,7 +110,7 @@ def planned(name, some=2500, **options):
         patch.setattr(choices, "_FINER", (math.radians(11.0),))
         patch.setattr(planning._first, "__defaults__", (math.radians(19.0),))
         patch.setattr(planning, "thinned", lambda task: thinned(task, some))
-        result = planning.plan_operations(ready, everywhere, least, untold, over)
+        result = planning.plan_operations(ready, everywhere, least, untold, over, 0)
     # of orientations as far from a written one any comes first
     until = None if ready.options.process is None else -1
     if result.entry.fastest is not None:

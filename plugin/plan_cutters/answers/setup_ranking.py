@@ -2,8 +2,8 @@
 
 First a bound that is cheap and sees no obstacle but the table: at which samples does the machine hold any tool axis at which a
 cutter touches, whose upper end is above the plane that the part stands on? Then, for the few best, a search on some samples among
-the real obstacles with the real table. In those that are chosen, vise and chuck are tried as well. It promises; the plan of that
-setup decides.
+the part alone, with tools that are nowhere below that plane. In those that are chosen, the real table is tried, and a vise and a
+chuck as well. It promises; the plan of that setup decides.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from plan_cutters.answers.candidates import Candidates
 from plan_cutters.answers.holding import Held, best_hold, held_by
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fixture import TABLE
+from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
@@ -37,6 +37,8 @@ COMPARED, _FIRST, _MORE = 400, 10, 6
 _HEIGHTS, _EVEN = 12, 0.002
 #: Directions in which the part lies lowest are searched, too, at most so many; heights nearer than this share are equal.
 _LOW, _EVEN_HEIGHT = 2, 1e-3
+#: Where a tool is found below the table, postures that lean so far from the setup axis at most are tried, rad.
+_UPRIGHT = float(np.radians(60.0))
 #: A setup that stands on no plane counts so much: it needs more to hold it than a table.
 _ON_NO_PLANE = 0.75
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
@@ -108,7 +110,7 @@ class Ranking:
     held : mapping
         By candidate that was searched, how it is held; None where it cannot be.
     settled : set
-        Candidates for which the other words were tried.
+        Candidates for which all words were tried; of the others over a table it is not known yet where that lies.
     refused : mapping
         Why nothing holds it in directions that were searched, the first cause first.
     usual : (r,) bool
@@ -192,7 +194,8 @@ class Ranking:
         """Where any cutter has a posture in a direction, of the rows (r,); nowhere if nothing can hold the part."""
         if k not in self.held:
             try:
-                self.held[k] = self._held_by(k, self.words[0], self.bound[:, k])
+                over_table = self.words[0] == TABLE
+                self.held[k] = self._over_table(k) if over_table else self._held_by(k, self.words[0], self.bound[:, k])
             except NothingToGripError as error:
                 self.held[k] = None
                 self.refused[error.cause] = None
@@ -204,16 +207,30 @@ class Ranking:
         return np.zeros(len(self.rows), bool) if held is None else held.served
 
     def settle(self, chosen: Sequence[int]) -> None:
-        """Try in directions that were chosen whatever else may hold the part, and take what holds it best."""
-        for k in [k for k in chosen if k not in self.settled and len(self.words) > 1]:
+        """Try in directions that were chosen whatever may hold the part, and take what holds it best."""
+        over_table = self.words[0] == TABLE
+        for k in [k for k in chosen if k not in self.settled and (over_table or len(self.words) > 1)]:
             self.settled.add(k)
-            tried, refused = [held for held in [self.held[k]] if held is not None], {}
-            for word in self.words[1:]:
+            tried, refused = [held for held in [self.held[k]] if held is not None and not over_table], {}
+            for word in self.words[not over_table :]:
                 try:
                     tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
                 except NothingToGripError as error:
                     refused[word] = error.why
             self.held[k] = best_hold(tried, refused, self.area)
+
+    def _over_table(self, k: int) -> Held:
+        """The part over a table that is only a plane: none of the obstacles is made anew."""
+        few = self.ready.conditions
+        part = replace(few, setup=self.candidates.axis[k], x=None, surroundings=few.surroundings.alone or few.surroundings)
+        limit = _UPRIGHT if part.machine.tilt_limit is None else min(_UPRIGHT, part.machine.tilt_limit)
+        reached = np.zeros(len(self.ready.samples), bool)
+        for conditions in (part, replace(part, machine=replace(part.machine, tilt_limit=limit))):
+            for usual in (True, False):
+                rows = self.rows[self.bound[:, k] & (self.usual == usual)]
+                above = float(self.candidates.lowest[k])
+                reached |= _reached(self.ready, rows[~reached[rows]], conditions, usual=usual, above=above)
+        return Held(Fixture.each_of(TABLE)[0], reached[self.rows])
 
     def _held_by(self, k: int, word: str, bound: NDArray[np.bool_]) -> Held:
         x, y, z = self.candidates.axis[k].tolist()
@@ -299,8 +316,11 @@ def _usual(cutters: Sequence[Cutter]) -> list[Cutter]:
     return [each for each in cutters if group_of(each) != "last"] or list(cutters)
 
 
-def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool) -> NDArray[np.bool_]:
-    """The samples (n,) of some rows at which any of the cutters, or of the usual ones, has a posture under some conditions."""
+def _reached(
+    ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool, above: float | None = None
+) -> NDArray[np.bool_]:
+    """The samples (n,) of some rows at which any of the cutters, or of the usual ones, has a posture under some conditions, and
+    nothing of it is below a height along the setup axis, mm."""
     reached, open_rows = np.zeros(len(ready.samples), bool), rows
     # The smallest reaches most.
     for cutter in sorted(_usual(ready.cutters) if usual else ready.cutters, key=lambda each: each.radius):
@@ -308,8 +328,12 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool
             verdicts = blank(len(reached))
             context = Context.of(cutter, conditions)
             search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
-            reached |= verdicts.reached
-            open_rows = open_rows[~verdicts.reached[open_rows]]
+            found = verdicts.reached
+            if above is not None:
+                lowest = context.outer_tool.lowest(ready.samples.point, ready.samples.normal, verdicts, conditions.setup)
+                found &= lowest >= above - conditions.tolerance
+            reached |= found
+            open_rows = open_rows[~found[open_rows]]
     return reached
 
 

@@ -136,6 +136,21 @@ class Assembly(Record):
         along = (self.inner - height) * (cosine * normal + sine * tilt_direction)
         return np.asarray(contact + rise * normal + along - offset * (cosine * tilt_direction - sine * normal))
 
+    def lowest(self, point: Floats, normal: Floats, postures: Verdicts | VerdictBuffer, direction: Floats) -> Floats:
+        """Heights (n,) along a unit direction below which nothing of it is, at the postures that touch points (n, 3) with unit
+        normals (n, 3), mm; nan where there is none.
+
+        Each piece is taken for the cylinder around it.
+        """
+        offset, rise, *_ = self.mode[(mode := self.at(postures.tilt))].T
+        cosine, sine = np.cos(postures.tilt)[:, None], np.sin(postures.tilt)[:, None]
+        across = cosine * postures.tilt_direction - sine * normal
+        centre = postures.contact(point) + rise[:, None] * normal - offset[:, None] * across
+        along, (low, high, wide) = postures.axis @ direction, np.moveaxis(self.piece[:, :, [BOTTOM, TOP, WIDE]], 2, 0)
+        ends = np.minimum(low[mode] * along[:, None], high[mode] * along[:, None])
+        beside = wide[mode] * np.sqrt(np.maximum(0.0, 1.0 - along * along))[:, None]
+        return np.asarray(centre @ direction + (ends - beside).min(axis=1))
+
     def from_axis(self, point: Floats, normal: Floats, postures: Verdicts | VerdictBuffer) -> Floats:
         """Shortest ways (n, 3) from its axis to points (n, 3) with unit normals (n, 3), at the postures that touch them, mm."""
         on_axis = self.on_axis(postures.contact(point), normal, postures.tilt_direction, postures.tilt)

@@ -63,6 +63,7 @@ def plan_operations(
     least: LeastSet | None,
     stage: Callable[[str], AbstractContextManager[Progress]],
     over: Mapping[str, Verdicts],
+    searched: int,
 ) -> Operations:
     """Plan the operations that finish together all that the cutters reach.
 
@@ -77,11 +78,13 @@ def plan_operations(
         Opens a stage of work by its name; what it gives is told how much of how much is done.
     over : mapping
         Of each cutter by its id the verdicts over all setups, with the reasons.
+    searched : int
+        As for `proved`.
     """
     options = ready.options
     task = _task(ready, everywhere, least)
     if options.process is not None:
-        return _own(task, options.process, stage, over)
+        return _own(task, options.process, stage, over, searched)
     fewest, alone = None, 0
     with stage("operations") as tell:
         offer = _offer(task, part_of(tell, 0, _PARTS))
@@ -98,7 +101,7 @@ def plan_operations(
             search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
             few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
             plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 2, _PARTS))
-        plans = _proved(task, plans, part_of(tell, 3, _PARTS))
+        plans = _proved(task, plans, searched, part_of(tell, 3, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else alone))
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, fewest, timed, worth)
     columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
@@ -132,14 +135,14 @@ def _offer(task: Task, tell: Progress) -> Repeated | None:
     return result
 
 
-def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[OperationPlan]:
+def _proved(task: Task, plans: Sequence[OperationPlan], searched: int, tell: Progress) -> list[OperationPlan]:
     """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same."""
     result = list[OperationPlan]()
     for k, each in enumerate(plans):
         same = next((other for other in result if each.like(other)), None)
         mine = part_of(tell, k, len(plans))
         if same is None:
-            each = proved(task.ready, task.everywhere, each, progress=mine)
+            each = proved(task.ready, task.everywhere, each, searched, progress=mine)
         result.append(each if same is None else replace(same, name=each.name))
     return result
 
@@ -172,7 +175,11 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
 
 
 def _own(
-    task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]], over: Mapping[str, Verdicts]
+    task: Task,
+    process: OwnProcess,
+    stage: Callable[[str], AbstractContextManager[Progress]],
+    over: Mapping[str, Verdicts],
+    searched: int,
 ) -> Operations:
     """The planner's own process, with the rest planned behind it as it was requested."""
     ready = task.ready
@@ -188,7 +195,7 @@ def _own(
 
     with stage("operations") as tell:
         plan, outcomes = own_plan(task, process, planned)
-        plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 3, _PARTS))
+        plan = proved(ready, task.everywhere, plan, searched, progress=part_of(tell, 3, _PARTS))
     entry = operations_entry(task, [plan], over[task.cutters[0].id].reason)
     return Operations(entry, task.cutters, (plan,), _NONE, np.zeros(0, np.int64), outcomes)
 

@@ -21,14 +21,19 @@ from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
-#: The work of a plan unless a budget was requested: boxes in any case, and for each sample.
-_WORK_LEAST, _WORK_SAMPLE = 2e7, 2500.0
+#: The work of a plan unless a budget was requested: boxes in any case, and this share of those of the searches for verdicts.
+_WORK_LEAST, _WORK_SHARE = 2e7, 0.2
 #: Contacts for each sample, where that is more than a plan may add between samples.
 _CONTACTS = 4
 
 
 def proved(
-    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], plan: OperationPlan, *, progress: Progress | None = None
+    ready: Prepared,
+    everywhere: Sequence[Mapping[Cutter, Verdicts]],
+    plan: OperationPlan,
+    searched: int,
+    *,
+    progress: Progress | None = None,
 ) -> OperationPlan:
     """Write into operations which share of their area is proved, and in how many pieces.
 
@@ -43,6 +48,8 @@ def proved(
     everywhere : sequence of mapping
         Of each setup the verdicts by cutter.
     plan : OperationPlan
+    searched : int
+        Boxes that the searches for verdicts looked at: unless a budget was requested, the proof takes a share of them.
     progress : callable, optional
         Called with how much is done of the most that may be.
 
@@ -56,7 +63,7 @@ def proved(
         return plan
     most = np.inf
     if options.area_budget is None:
-        budget, most = max(budget, _CONTACTS * n), EFFORT[options.effort] * (_WORK_LEAST + _WORK_SAMPLE * n)
+        budget, most = max(budget, _CONTACTS * n), EFFORT[options.effort] * (_WORK_LEAST + _WORK_SHARE * searched)
     operations, alike = list(plan.operations), dict[tuple[str, int], list[int]]()
     for k, each in enumerate(operations):
         if each.mode == "fixed":
