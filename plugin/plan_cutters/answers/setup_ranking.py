@@ -22,7 +22,7 @@ from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.setups import within_limits
-from plan_cutters.scene.conditions import Conditions, Context, contacts_of
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
@@ -217,7 +217,7 @@ class Ranking:
                     tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
                 except NothingToGripError as error:
                     refused[word] = error.why
-            self.held[k] = best_hold(tried, refused, self.area)
+            self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _over_table(self, k: int) -> Held:
         """The part over a table that is only a plane: none of the obstacles is made anew."""
@@ -330,8 +330,7 @@ def _reached(
             search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
             found = verdicts.reached
             if above is not None:
-                lowest = context.outer_tool.lowest(ready.samples.point, ready.samples.normal, verdicts, conditions.setup)
-                found &= lowest >= above - conditions.tolerance
+                found &= over_plane(context, contacts_of(ready.samples), verdicts, above)
             reached |= found
             open_rows = open_rows[~found[open_rows]]
     return reached

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from plan_cutters.answers.candidates import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.preparation import Prepared
@@ -18,6 +19,8 @@ from plan_cutters.setups.requested import without
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]
+#: What looks down at the table so squarely lies on it.
+_SQUARE = 1e-6
 #: Setups that are not planned yet of which what stands around the part is kept, at most.
 _TABLES = 3
 
@@ -63,12 +66,12 @@ class State:
         """The setup axes."""
         return tuple(each.axis for each in self.setups)
 
-    def cases(self) -> Iterator[tuple[Any, Case]]:
-        """Each cutter in each setup, and a key by which it is known."""
+    def cases(self, *, brief: bool = False) -> Iterator[tuple[Any, Case]]:
+        """Each cutter in each setup, and a key by which it is known; for a `brief` look a table may be a plane."""
         for setup in self.setups:
-            there = self._in(setup)
+            there, above = (brief and setup.number is None and on_plane(self.ready, setup.axis)) or (self._in(setup), None)
             for cutter in self.cutters:
-                yield key(there, cutter, setup), Case(there, cutter)
+                yield key(there, cutter, setup), Case(there, cutter, above)
 
     def _in(self, setup: SetupOf) -> Prepared:
         """The part in one setup alone."""
@@ -107,6 +110,25 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
     )  # fmt: skip
     held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0])
     return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
+
+
+def on_plane(ready: Prepared, axis: Axis) -> tuple[Prepared, float] | None:
+    """A part over a table that is a plane, and its height along an axis, mm: none of the obstacles is made anew.
+
+    None where something else holds it, or it stands on no table.
+    """
+    place, conditions, bodies = ready.options.placement, ready.conditions, ready.conditions.surroundings.bodies
+    alone = conditions.surroundings.alone
+    if place is None or alone is None or [each.fixture.kind for each in conditions.surroundings.fixtures] != [TABLE]:
+        return None
+    (table,) = conditions.surroundings.fixtures
+    if not table.fixture.follows_setup and not (table.requested and table.requested.follows_setup):
+        return None
+    samples, above = ready.samples, float((alone.certain.triangles.vertex @ np.array(axis)).min())
+    placed = replace(conditions, setup=np.array(axis), x=None, surroundings=alone)
+    held = (samples.normal @ axis < -1.0 + _SQUARE) & (samples.point @ axis <= above + conditions.tolerance)
+    inside = np.where(ready.inside < len(bodies), ready.inside, -1).astype(np.int32)
+    return replace(ready, conditions=placed, inside=inside, held=held, others=()), above
 
 
 def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
@@ -161,7 +183,7 @@ class Judgements:
 
     def glance(self, state: State, rows: Rows) -> Rows:
         """The same, found by a quick search of these alone where they were not judged."""
-        for name, case in state.cases():
+        for name, case in state.cases(brief=True):
             if not len(rows):
                 break
             looked = self.looked.get(name)

@@ -15,7 +15,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
 from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.conditions import Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Prepared
 
@@ -28,6 +28,8 @@ class Case:
 
     ready: Prepared
     cutter: Cutter
+    #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
+    above: float | None = None
 
     @property
     def setups(self) -> Iterator[Prepared]:
@@ -42,7 +44,7 @@ class Case:
         """
         each, open_rows = list[Verdicts](), np.arange(len(rows))
         for one in self.setups:
-            part = _look(one, self.cutter, rows[open_rows], brief=brief)
+            part = _look(one, self.cutter, rows[open_rows], brief=brief, above=self.above)
             whole = blank(len(rows))
             whole.take(open_rows, part, at=slice(None))
             each.append(whole.freeze())
@@ -62,7 +64,7 @@ class Case:
         return wanted
 
 
-def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool) -> Verdicts:
+def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: float | None) -> Verdicts:
     """Judge some samples again in one setup."""
     from plan_cutters.kernels.search.search import dummy_clear
 
@@ -80,5 +82,8 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool) -> Verdic
     # Of the finished surface these lie within a fixture, or are held.
     within, held = ready.shut[rows] >= 0, ready.clamped[rows]
     search(contacts, ready.samples.face[rows], np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
+    if above is not None:
+        below = verdicts.reached & ~over_plane(context, contacts, verdicts, above)
+        verdicts.verdict[below], verdicts.reason[below] = INACCESSIBLE, FIXTURE
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
     return verdicts.freeze()

@@ -15,7 +15,7 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.tolerance import depths
-from plan_cutters.domain.verdicts import VerdictBuffer, blank
+from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.codes import BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
@@ -299,6 +299,13 @@ def standing(
     if work is not None:
         work.add(looked)
     return stands
+
+
+def over_plane(context: Context, contacts: Contacts, postures: Verdicts | VerdictBuffer, above: float) -> NDArray[np.bool_]:
+    """Contacts (n,) with a posture at which nothing of the tool is below a height along the setup axis, mm."""
+    conditions = context.conditions
+    lowest = context.outer_tool.lowest(contacts.point, contacts.normal, postures, conditions.setup)
+    return np.asarray(lowest >= above - conditions.tolerance)
 
 
 def warm(contacts: Contacts, context: Context) -> None:
