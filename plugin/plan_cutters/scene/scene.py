@@ -33,6 +33,8 @@ from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
 _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
+#: Points of a part that are looked at at once for what is in the way of jaws.
+_AT_ONCE = 100_000
 
 
 @dataclass(slots=True)
@@ -322,10 +324,12 @@ class Scene(Record):
             # What the full search would find as well, for most places where the part is in the way, at once.
             corner, edge = triangles.vertex[own], np.roll(triangles.vertex[own], -1, axis=1)
             points = np.concatenate([corner.reshape(-1, 3), 0.5 * (corner + edge).reshape(-1, 3), corner.mean(axis=1)])
-            deep = tolerance + triangles.chord_error
+            # Every so-manieth first, for a few of those that are in the way are enough, then the next ones.
+            deep, step = tolerance + triangles.chord_error, 1 + len(points) // _AT_ONCE
+            spread = [points[k::step] for k in range(step)]
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
-                return entered(clamping, (points - placed.shift) @ placed.rotation, deep)
+                return any(entered(clamping, (some - placed.shift) @ placed.rotation, deep) for some in spread)
 
             def searched(placed: Fixture, clamping: Clamping) -> bool:
                 return overlaps(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance)
