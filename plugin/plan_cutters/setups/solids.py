@@ -53,13 +53,13 @@ def entered(clamping: Clamping, points: Floats, deep: float) -> bool:
     """
     for solid in clamping.solids(deep):
         height = points[:, 2]
-        within = (height > solid.low + deep) & (height < solid.high - deep)
+        x, y = points[(height > solid.low + deep) & (height < solid.high - deep), :2].T
         if isinstance(solid, Disc):
-            within &= np.hypot(points[:, 0], points[:, 1]) < solid.radius - deep
+            within = np.hypot(x, y) < solid.radius - deep
         elif len(solid.inner) == 2:
             corners = np.array([*solid.inner, *solid.outer])
             low, high = corners.min(axis=0) + deep, corners.max(axis=0) - deep
-            within &= ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
+            within = (x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1])
         else:
             continue
         if within.any():
