@@ -56,7 +56,7 @@ def one_part(
 
     def stands(result: "Result") -> None:
         if staging and write_unfinished(result, formats, staging, clock):
-            watch.stands()
+            watch.stands(result.plan)
 
     interrupts: list[int] = []
     try:
@@ -169,7 +169,7 @@ class ProgressListener:
     """Shows what is found as soon as it is safe on disk, and tells how far the work is."""
 
     def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:
-        self.out, self.request = out, request
+        self.out, self.request, self.first = out, request, True
         #: Called with the plan and its exit code before any model is written.
         self.judged: Callable[[Plan, int], None] = lambda plan, code: None
         self.display = None
@@ -184,10 +184,18 @@ class ProgressListener:
             summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
         report("summarised", "")
 
-    def stands(self) -> None:
-        """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that."""
+    def stands(self, plan: "Plan") -> None:
+        """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that.
+
+        Its first line is told the first time: advice and operations may take a minute more.
+        """
         if self.out is not None:
             report("safe", f"{UNREADABLE} {self.out.absolute()}")
+        asked = plan.effective.answers or plan.effective.operations
+        if self.first and asked and plan.text and not self.request.quiet:
+            self.end()
+            terminal.say(f"So far: {plan.text.headline}")
+        self.first = False
 
     def safe(self, plan: "Plan") -> None:
         code = code_of(plan, self.request.fail_under)
