@@ -326,3 +326,12 @@ def test_readers_take_a_plan_that_is_unfinished(stages, tmp_path):
         written = replace(last, plan=each, maps=None).write(tmp_path / str(number), ("json", "html", "npz"))
         assert "html" in written.files
     assert json.loads((tmp_path / "0" / "plan.json").read_text())["process"]["doubts"]
+
+
+def test_the_first_line_is_told_as_soon_as_verdicts_stand(tmp_path):
+    words = (SAMPLES / "v_groove.step", "--cutter", "R6L80", "--grid", "9", "--operations", "fewest", "--formats", "json")
+    told = run(*words, cwd=tmp_path).stderr
+    assert told.count("So far: ") == 1
+    assert told.index("So far: ") < told.index("planning the operations")
+    assert "So far" not in run(*words, "--quiet", cwd=tmp_path).stderr
+    assert "So far" not in run(*words[:5], "--formats", "json", cwd=tmp_path).stderr

@@ -16,12 +16,15 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
+from plan_cutters.scene.work import METER
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.linear.lanes import WideTree
     from plan_cutters.kernels.material import Solids
 
+#: Boxes that take as long as building a tree, for each triangle.
+_BUILT = 15.0
 #: Cells along the longest side of the grid that tells what is surely outside.
 _CELLS = 64
 #: Numbers of what encloses something, each once in a process; 0 is that of nothing.
@@ -90,6 +93,8 @@ class Obstacles(Record):
     def tree(self) -> Tree:
         """The triangles in tree order, and the tree, as the kernels take it."""
         order, box, depth = self._built
+        # As much in a budget whether it was made now or kept.
+        METER.add(int(_BUILT * len(order)))
         return Tree(self.triangles.vertex.take(order, axis=0), box, depth)
 
     @cached_property
