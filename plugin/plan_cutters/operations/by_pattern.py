@@ -23,6 +23,7 @@ from plan_cutters.operations.repeated import Copied, repeated, symmetric
 from plan_cutters.operations.rest_areas import Worth, by_size, largest_first, worths
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.task import Task
+from plan_cutters.operations.thinned import thinned
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.threads import Progress, part_of
@@ -44,7 +45,7 @@ class Repeated:
     Attributes
     ----------
     task, one : Task
-        With their symmetry: of all samples, and of those of one copy.
+        With their symmetry: of all samples, and of some of those of one copy, by which choices are compared.
     choices : tuple of (Columns, float)
         Fewer and fewer columns, each with its images, and about the seconds that they take.
     copied : Copied
@@ -97,6 +98,7 @@ def repeated_orientations(
     copied = repeated(one if exact else own, candidates(task), stored, part_of(tell, 0, 2))
     if copied is None:
         return None
+    one = thinned(one)
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
     return Repeated(own, one, tuple(fewer(one, columns)), copied, exact)

@@ -16,6 +16,7 @@ from plan_cutters.operations.fewest import spread
 from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import Task
+from plan_cutters.operations.thinned import SOME
 from plan_cutters.operations.timing import costs_of, shared_area, widths
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -99,6 +100,7 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
     # One copy tells what all of them cost; where the part is no exact pattern, what is left elsewhere joins them.
     copy = wanted[symmetry.sector(samples.point[wanted] - symmetry.place)]
     copy = copy if len(copy) else wanted
+    tested = wanted[:: max(1, len(wanted) // SOME)]
     rows, every = copy[:: max(1, len(copy) // max(_LEAST, _FIRST // symmetry.order))], symmetry.images(base)
     cost = _costs(task, rows, every)
     for turn in range(_ROUNDS):
@@ -119,10 +121,10 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
         problem = _problem(task, symmetry, base, own[open_] * scale)
         chosen = base.of(cheap(problem))
         part(1, 2)
-        served = task.probes.kept(wanted, symmetry.images(chosen)).any(axis=1)
-        left = wanted[~served]
+        served = task.probes.kept(tested, symmetry.images(chosen)).any(axis=1)
+        left = tested[~served]
         more = np.setdiff1d(left, rows)
-        if area[left].sum() <= _LEAVES * area[wanted].sum() or turn == _ROUNDS - 1 or not len(more):
+        if area[left].sum() <= _LEAVES * area[tested].sum() or turn == _ROUNDS - 1 or not len(more):
             break
         more = spread(more, samples.point, _MORE)
         rows = np.concatenate([rows, more])
