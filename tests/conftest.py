@@ -30,7 +30,7 @@ sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 #: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
-COMPILING, BESIDE = "ahead", ("house", "library", "machines", "plan_file")
+COMPILING, BESIDE = "ahead", ("library", "machines", "plan_file", "house")
 FIRST = ("cli", "feel", "files", "lifetime", "setup_ranking", "batch_command")
 #: Folders of short files, with which all processes end together.
 LAST = ("document", "files")
@@ -39,7 +39,7 @@ LAST = ("document", "files")
 def _rank(path):
     """The place of a file of tests in the order in which they begin; of equals the one whose name comes first."""
     stem, folder = path.stem.removeprefix("test_"), path.parent.name
-    order = [stem == COMPILING, folder in BESIDE, *(stem == each for each in FIRST), folder not in LAST, True]
+    order = [stem == COMPILING, *(folder == each for each in BESIDE), *(stem == each for each in FIRST), folder not in LAST, True]
     return order.index(True)
 
 

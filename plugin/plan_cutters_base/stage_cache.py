@@ -163,7 +163,7 @@ NO_CACHE = NoStageCache()
 
 
 class RunCache:
-    """What stages made in this run: a part that is prepared twice, in setups that are proposed and before, is sampled once.
+    """A run keeps what its stages made: a part that is prepared twice, for setups that are proposed and in them, is sampled once.
 
     Parameters
     ----------

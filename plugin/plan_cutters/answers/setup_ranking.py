@@ -328,11 +328,11 @@ def _reached(
             verdicts = blank(len(reached))
             context = Context.of(cutter, conditions)
             search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
-            found = verdicts.reached
+            good = verdicts.reached
             if above is not None:
-                found &= over_plane(context, contacts_of(ready.samples), verdicts, above)
-            reached |= found
-            open_rows = open_rows[~found[open_rows]]
+                good &= over_plane(context, contacts_of(ready.samples), verdicts, above)
+            reached |= good
+            open_rows = open_rows[~good[open_rows]]
     return reached
 
 
