@@ -57,11 +57,9 @@ def mend(
     if not why and len(unfinished) and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     found = Advice(cutter.id, len(unfinished) + within, within, why, share)
-    return (
-        found
-        if why or not len(unfinished)
-        else steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)
-    )
+    if why or not len(unfinished):
+        return found
+    return steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)
 
 
 def _why_nothing(ready: Prepared, within: int) -> str:

@@ -191,8 +191,8 @@ class ProgressListener:
         """
         if self.out is not None:
             report("safe", f"{UNREADABLE} {self.out.absolute()}")
-        asked = plan.effective.answers or plan.effective.operations
-        if self.first and asked and plan.text and not self.request.quiet:
+        requested = plan.effective.answers or plan.effective.operations
+        if self.first and requested and plan.text and not self.request.quiet:
             self.end()
             terminal.say(f"So far: {plan.text.headline}")
         self.first = False

@@ -148,8 +148,8 @@ class Assembly(Record):
         centre = postures.contact(point) + rise[:, None] * normal - offset[:, None] * across
         along, (low, high, wide) = postures.axis @ direction, np.moveaxis(self.piece[:, :, [BOTTOM, TOP, WIDE]], 2, 0)
         ends = np.minimum(low[mode] * along[:, None], high[mode] * along[:, None])
-        beside = wide[mode] * np.sqrt(np.maximum(0.0, 1.0 - along * along))[:, None]
-        return np.asarray(centre @ direction + (ends - beside).min(axis=1))
+        sideways = wide[mode] * np.sqrt(np.maximum(0.0, 1.0 - along * along))[:, None]
+        return np.asarray(centre @ direction + (ends - sideways).min(axis=1))
 
     def from_axis(self, point: Floats, normal: Floats, postures: Verdicts | VerdictBuffer) -> Floats:
         """Shortest ways (n, 3) from its axis to points (n, 3) with unit normals (n, 3), at the postures that touch them, mm."""

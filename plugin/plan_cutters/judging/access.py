@@ -19,7 +19,7 @@ from plan_cutters.domain.verdicts import (
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, contacts_of, standing
+from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.threads import Progress, in_chunks, part_of
 from plan_cutters.scene.work import Work
@@ -91,19 +91,19 @@ def access(
     # What the part itself keeps off is not searched again among what holds it.
     within_fixtures = np.zeros(n, bool) if inside is None else judged & (inside >= len(conditions.surroundings.bodies))
     handed = judged & (verdicts.reason == FIXTURE)
-    told = (None, None) if progress is None else (part_of(progress, 0, 2), part_of(progress, 1, 2))
+    tells = (None, None) if progress is None else (part_of(progress, 0, 2), part_of(progress, 1, 2))
     bare, result = context.under(replace(conditions, surroundings=alone)), blank(n)
-    search(contacts, faces, np.flatnonzero(wanted | within_fixtures | handed), bare, result, told[0], fixed=True, work=work)
-    lost = wanted & (result.verdict == INACCESSIBLE)
-    verdicts.verdict[lost], verdicts.reason[lost] = INACCESSIBLE, result.reason[lost]
+    search(contacts, faces, np.flatnonzero(wanted | within_fixtures | handed), bare, result, tells[0], fixed=True, work=work)
+    blocked = wanted & (result.verdict == INACCESSIBLE)
+    verdicts.verdict[blocked], verdicts.reason[blocked] = INACCESSIBLE, result.reason[blocked]
     # Where the tool stands beside them as without them, no other posture is sought; not where it has slid along a flank.
-    kept = np.flatnonzero(wanted & result.reached & ~result.shift.any(axis=1))
-    kept = kept[standing(contacts, kept, result.axis, result.tilt_direction, context, work)[kept]]
-    verdicts.take(kept, result)
-    open_ = np.setdiff1d(np.flatnonzero(wanted & ~lost), kept, assume_unique=True)
-    search(contacts, faces, open_, context, verdicts, told[1], fixed=True, work=work)
+    good = np.flatnonzero(wanted & result.reached & ~result.shift.any(axis=1))
+    good = good[free_in_posture(contacts, good, result.axis, result.tilt_direction, context, work)[good]]
+    verdicts.take(good, result)
+    open_ = np.setdiff1d(np.flatnonzero(wanted & ~blocked), good, assume_unique=True)
+    search(contacts, faces, open_, context, verdicts, tells[1], fixed=True, work=work)
     # Of samples not reached, those that fixtures keep off are told from those that would not be reached without them, either.
-    rows = np.flatnonzero(((wanted & ~lost) | within_fixtures) & verdicts.not_reached | handed)
+    rows = np.flatnonzero(((wanted & ~blocked) | within_fixtures) & verdicts.not_reached | handed)
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
     return verdicts.freeze()

@@ -14,7 +14,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Verdicts, blank
 from plan_cutters.judging.judge import Judge, judge
-from plan_cutters.scene.conditions import Context, contacts_of, rotations_of, standing
+from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture, rotations_of
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.copies import Copies
 from plan_cutters.scene.ground import made_of, same
@@ -96,7 +96,7 @@ class JudgeOnce:
         rotation, direction[rows], axis[rows] = _posture(
             ready, rows, copies.moved(rows, result.tilt_direction[master]), result.tilt[master]
         )
-        good = standing(contacts_of(samples), rows[conditions.allows(axis[rows])], axis, direction, context, work)[rows]
+        good = free_in_posture(contacts_of(samples), rows[conditions.allows(axis[rows])], axis, direction, context, work)[rows]
         taken, own = rows[good], master[good]
         follows.verdict[taken], follows.axis[taken], follows.tilt_direction[taken] = ACCESSIBLE, axis[taken], direction[taken]
         follows.tilt[taken], follows.rotation[taken] = result.tilt[own], rotation[good]

@@ -272,7 +272,7 @@ def search_postures(
         work.add(looked)
 
 
-def standing(
+def free_in_posture(
     contacts: Contacts, rows: NDArray[np.int64], axis: Floats, tilt_direction: Floats, context: Context, work: Work | None = None
 ) -> NDArray[np.bool_]:
     """Contacts (n,) of some rows (m,) at which the tool stands free in a posture that is known from elsewhere.
