@@ -258,12 +258,10 @@ def test_an_interrupt_at_the_very_start(tmp_path):
         time.sleep(delay)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
-        # Before `begin` runs, the interpreter itself ends, with a traceback of its own.
-        if process.returncode != 130:
-            assert "KeyboardInterrupt" in said
-            assert "in begin" not in said
-        else:
-            assert "Traceback" not in said
+        # Before any code of ours runs, the interpreter itself may end with 1.
+        assert process.returncode in (130, -signal.SIGINT, *([1] if delay < 0.2 else []))
+        assert delay < 0.2 or process.returncode == 130
+        assert delay < 0.2 or "Traceback" not in said
         assert leftovers(tmp_path) == []
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cad_io.arrays import SurfaceSamples
@@ -135,6 +135,7 @@ def test_a_tool_moved_along_the_feed_leaves_as_much(case):
 
 
 @given(st.integers(0, 2**31))
+@example(266457)  # a ball on a line that is hardly bent
 @settings(max_examples=60, deadline=None)
 def test_turning_and_scaling_everything_turns_and_scales_the_strips(seed):
     rng = np.random.default_rng(seed)
@@ -147,9 +148,8 @@ def test_turning_and_scaling_everything_turns_and_scales_the_strips(seed):
     first = strips(Cutter(6.0, 80.0, corner), samples_of(high, low), axis[None], 0.02, 0.75)
     turned = samples_of(high / size, low / size, turn @ X, turn @ NORMAL)
     second = strips(Cutter(6.0 * size, 80.0 * size, corner * size), turned, (turn @ axis)[None], 0.02 * size, 0.75)
-    # The direction of the feed is found by halving, whose ends differ with the size.
-    np.testing.assert_allclose(second.width, size * first.width, rtol=1e-5)
-    np.testing.assert_allclose(second.free_width, size * first.free_width, rtol=1e-5)
+    np.testing.assert_allclose(second.width, size * first.width, rtol=1e-6)
+    np.testing.assert_allclose(second.free_width, size * first.free_width, rtol=1e-6)
     cross = np.cross(turn @ first.feed[0], second.feed[0])
     eigen_apart = corner != 6.0 or high - low > 1e-3
     assert not eigen_apart or np.linalg.norm(cross) < 1e-3

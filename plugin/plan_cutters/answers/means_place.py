@@ -143,8 +143,8 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
 
 
 def _promising(ready: Prepared, state: State, axes: list[Axis], gained: Rows) -> list[Axis]:
-    """Those of some directions in which the machine holds axes at most samples, in the order in which they came: what stands
-    around the part is made anew for each that is compared."""
+    """Those of some directions in which the machine holds axes at most samples, in the order in which they came: of each that is
+    compared the part is searched anew."""
 
     def bound(axis: Axis) -> int:
         return int(within_limits(ready.samples, state.cutters, ready.conditions, axis, gained).sum())

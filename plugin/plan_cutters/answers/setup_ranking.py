@@ -194,8 +194,7 @@ class Ranking:
         """Where any cutter has a posture in a direction, of the rows (r,); nowhere if nothing can hold the part."""
         if k not in self.held:
             try:
-                over_table = self.words[0] == TABLE
-                self.held[k] = self._over_table(k) if over_table else self._held_by(k, self.words[0], self.bound[:, k])
+                self.held[k] = self._on_plane(k) if self.over_table else self._held_by(k, self.words[0], self.bound[:, k])
             except NothingToGripError as error:
                 self.held[k] = None
                 self.refused[error.cause] = None
@@ -208,27 +207,32 @@ class Ranking:
 
     def settle(self, chosen: Sequence[int]) -> None:
         """Try in directions that were chosen whatever may hold the part, and take what holds it best."""
-        over_table = self.words[0] == TABLE
-        for k in [k for k in chosen if k not in self.settled and (over_table or len(self.words) > 1)]:
+        # What was searched with a vise or chuck is known with it; a table was only a plane.
+        words = self.words if self.over_table else self.words[1:]
+        for k in [k for k in chosen if k not in self.settled and words]:
             self.settled.add(k)
-            tried, refused = [held for held in [self.held[k]] if held is not None and not over_table], {}
-            for word in self.words[not over_table :]:
+            tried, refused = [held for held in [self.held[k]] if held is not None and not self.over_table], {}
+            for word in words:
                 try:
                     tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
                 except NothingToGripError as error:
                     refused[word] = error.why
             self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
-    def _over_table(self, k: int) -> Held:
+    @property
+    def over_table(self) -> bool:
+        """Whether directions are searched over a table."""
+        return self.words[0] == TABLE
+
+    def _on_plane(self, k: int) -> Held:
         """The part over a table that is only a plane: none of the obstacles is made anew."""
         few = self.ready.conditions
         part = replace(few, setup=self.candidates.axis[k], x=None, surroundings=few.surroundings.alone or few.surroundings)
         limit = _UPRIGHT if part.machine.tilt_limit is None else min(_UPRIGHT, part.machine.tilt_limit)
-        reached = np.zeros(len(self.ready.samples), bool)
+        reached, above = np.zeros(len(self.ready.samples), bool), float(self.candidates.lowest[k])
         for conditions in (part, replace(part, machine=replace(part.machine, tilt_limit=limit))):
             for usual in (True, False):
                 rows = self.rows[self.bound[:, k] & (self.usual == usual)]
-                above = float(self.candidates.lowest[k])
                 reached |= _reached(self.ready, rows[~reached[rows]], conditions, usual=usual, above=above)
         return Held(Fixture.each_of(TABLE)[0], reached[self.rows])
 

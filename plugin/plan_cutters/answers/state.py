@@ -69,7 +69,8 @@ class State:
     def cases(self, *, brief: bool = False) -> Iterator[tuple[Any, Case]]:
         """Each cutter in each setup, and a key by which it is known; for a `brief` look a table may be a plane."""
         for setup in self.setups:
-            there, above = (brief and setup.number is None and on_plane(self.ready, setup.axis)) or (self._in(setup), None)
+            plane = on_plane(self.ready, setup.axis) if brief and setup.number is None else None
+            there, above = plane or (self._in(setup), None)
             for cutter in self.cutters:
                 yield key(there, cutter, setup), Case(there, cutter, above)
 

@@ -85,17 +85,15 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
             result[rows[served[at]]] = place
     if cutter.shape == "end" and not cutter.taper and not cutter.corner_radius:
         near = {number: _NEAR * gaps.get(number, 0.0) for number in rows_of}
-        not_reached = np.flatnonzero(losses & (result < 0))
-        unreached = cKDTree(samples.point[not_reached])
+        remaining = np.flatnonzero(losses & (result < 0))
+        nearby = cKDTree(samples.point[remaining])
         for place, edge in enumerate(edges):
             for end in (0, -1):
                 # Between both faces the disk that touches them is no farther from the corner than this.
                 far = _BEYOND * radius / float(np.sin(0.5 * edge.angle[end]))
-                rows = (
-                    not_reached[unreached.query_ball_point(edge.point[end], far, return_sorted=True)]
-                    if np.isfinite(far)
-                    else not_reached[:0]
-                )
+                if not np.isfinite(far):
+                    continue
+                rows = remaining[nearby.query_ball_point(edge.point[end], far, return_sorted=True)]
                 result[_corner(samples, rows[result[rows] < 0], edge, end, radius, reached, tree, near)] = place
     return result
 

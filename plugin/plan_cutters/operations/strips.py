@@ -138,11 +138,11 @@ def _circles(radius: Floats, curvature: Floats, scallop: float) -> Floats:
     """Width of the part of a circle or line that a ball leaves within the scallop height, along the surface."""
     with np.errstate(divide="ignore", invalid="ignore"):
         c = -1.0 / curvature
-        cosine = ((c + radius) ** 2 + (c + scallop) ** 2 - radius**2) / (2.0 * (c + radius) * (c + scallop))
-        bent = 2.0 * np.abs(c) * np.arccos(np.clip(cosine, -1.0, 1.0))
+        # By the sine of a quarter of the arc: the cosine of half of it loses its digits where the circle is nearly flat.
+        square = scallop * (2.0 * radius - scallop) / (4.0 * (c + radius) * (c + scallop))
+        bent = 4.0 * np.abs(c) * np.arcsin(np.sqrt(np.clip(square, 0.0, 1.0)))
     flat = 2.0 * np.sqrt(np.maximum(0.0, 2.0 * radius * scallop - scallop**2))
     flat = np.where(scallop >= radius, 2.0 * radius, flat)
-    # Nearly flat ones lose their digits in the cosine.
     return np.where(np.abs(curvature) * radius < 1e-4, flat, bent)
 
 
