@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import bounded, exchanged, fastest, lagrange
+from plan_cutters.operations.fastest import bounded, cheap, exchanged, fastest, lagrange, promising
 from plan_cutters.operations.problem import Costs, Problem, Turning
 
 
@@ -115,3 +115,21 @@ def test_one_candidate_far_away_is_bounded_by_its_turn():
                       Turning(lambda chosen: 30.0 if 0 in chosen else 10.0, np.array([30.0, 10.0])))  # fmt: skip
     found = bounded(problem, np.array([0]))
     assert (found.cost, found.bound) == (32.0, pytest.approx(32.0))
+
+
+@given(st.integers(0, 2**31), st.integers(20, 60))
+@settings(max_examples=20, deadline=None)
+def test_promising_candidates_have_the_best_of_each_sample_and_a_choice_that_costs_little_more(seed, m):
+    """By prices of the samples: of a few hundred candidates that lie about as axes do, a few dozen hold a choice as good."""
+    rng = np.random.default_rng(seed)
+    place, axis = rng.random((150, 2)), rng.random((8 * m, 2))
+    away = np.linalg.norm(place[:, None] - axis, axis=2)
+    cost = np.where(away < 0.35, 0.5 + away + 0.3 * rng.random(away.shape), np.inf)
+    cost = cost[np.isfinite(cost).any(axis=1)]
+    problem = Problem(cost, rng.integers(0, 3, 8 * m).astype(np.int32), np.zeros(8 * m, np.int32), Costs(3.0, 5.0, 0.0))
+    chosen = cheap(problem)
+    some = promising(problem, chosen)
+    assert np.isin(chosen, some).all() and np.isin(cost.argmin(axis=1), some).all()
+    assert (np.diff(some) > 0).all()
+    part = problem.of(some)
+    assert part.total(cheap(part)) <= 1.03 * problem.total(chosen)

@@ -196,3 +196,24 @@ def test_candidates_that_wait_enter_where_they_could_make_a_cover_smaller(seed):
     found = search.solve()
     assert np.rint(search.columns.angle[found.chosen, 0]).tolist() == [20]
     assert found.at_least == 1
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=20, deadline=None)
+def test_dropped_candidates_come_back_where_nothing_else_serves_and_are_not_tested_elsewhere(seed):
+    table = caps(seed, 600, 80, 0.7)
+    wanted = np.flatnonzero(table.any(axis=1))
+    probes = Table(table)
+    search = Search(probes, columns(range(80)), wanted, lambda bare: columns([]), first=60)
+    first = search.begin()
+    numbers = np.rint(first.angle[:, 0]).astype(int)
+    assert table[np.ix_(search.rows, numbers)].any(axis=1).all()
+    search.narrow(first)
+    before, stays = probes.made, len(first)
+    few = search.columns.of(search.solve(prove=False).chosen)
+    assert table[np.ix_(wanted, np.rint(few.angle[:, 0]).astype(int))].any(axis=1).all()
+    assert not len(search.alone)
+    active, whole = search.whole
+    assert (whole == table[np.ix_(search.rows, np.rint(search.columns.angle[active, 0]).astype(int))]).all()
+    # Those that stay are tested at the samples that came later, and each of the others at what these leave.
+    assert len(active) >= stays and probes.made - before < 80 * len(wanted)

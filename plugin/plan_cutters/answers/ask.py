@@ -31,7 +31,7 @@ _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 #: Cutters that are mended: those that come nearest.
 NEAREST = 3
 #: The work of advice: so many boxes in any case, and this share of those that the searches for verdicts took.
-_WORK_LEAST, _WORK_SHARE = 3e7, 0.25
+_WORK_LEAST, _WORK_SHARE = 1e7, 0.15
 
 
 @reporting(lambda ready: ready.options.reported_unit)

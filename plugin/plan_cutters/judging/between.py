@@ -174,6 +174,8 @@ def between(
         trim = part.trim(grid.face)
         if trim is None or not trim.closed or (turning is not None and grid.face not in turning):
             continue  # which part of the surface it uses is not known well enough
+        if not own[-1] and not own[grid.index[grid.index >= 0]].any():
+            continue  # nothing of it is asked for
         field, mine, bare = laid(part, orientation, samples, grid, verdicts, context.conditions)
         on_grid = grid.index[grid.index >= 0]
         unlooked -= int(counted[on_grid].sum())

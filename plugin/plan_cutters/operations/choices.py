@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.candidates import STEP
-from plan_cutters.operations.fastest import cheap, exchanged
+from plan_cutters.operations.fastest import cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.plans import MINOR_AREA
 from plan_cutters.operations.problem import Costs, Problem
@@ -70,6 +70,15 @@ def quicker(task: Task, search: Search, fewest: Columns) -> Columns:
     return tested.columns.of(tested.chosen) if tested.whole else fewest
 
 
+def served(task: Task, search: Search) -> Columns:
+    """Few columns that serve all samples of a task; candidates that no good choice has by the first samples are dropped."""
+    first = search.begin()
+    columns, problem, _ = _problem(task, search, first)
+    search.narrow(columns.of(promising(problem, np.flatnonzero(np.isin(columns.key, first.key)))))
+    few = search.solve(prove=False)
+    return search.columns.of(few.chosen)
+
+
 def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns, tell: Progress) -> Choice:
     """A choice of columns of least time; candidates are laid about what is chosen.
 
@@ -101,14 +110,20 @@ def largest_first_choice(task: Task, search: Search, fewest: Columns, *, minor: 
 
 
 def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
-    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for.
+    """As `_problem`, with samples all over the part."""
+    wanted = np.setdiff1d(task.rows, search.alone)
+    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
+    search.require(wanted[:: max(1, len(wanted) // most)])
+    return _problem(task, search, fewest)
+
+
+def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
+    """The candidates that are known whole, what the samples of a search cost with each, and the area that these stand for.
 
     Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
     """
     options, indexing = task.ready.options, task.indexing
     wanted = np.setdiff1d(task.rows, search.alone)
-    most = _EVEN if options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)])
     active, table = search.whole
     columns, area = search.columns.of(active), shared_area(task.ready.samples, wanted, search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))

@@ -29,6 +29,8 @@ _FIRST, _KINDS = 80, 7
 #: Part of the newest direction in the mean; what counts as a gain, as a share; steps without one until they are made shorter, and
 #: by how much, down to what; a share of candidates left for which the others are dropped.
 _NEWEST, _GAIN, _PATIENT, _SHORTER, _SHORTEST, _FEWER = 0.2, 2e-4, 8, 0.7, 1e-3, 0.8
+#: Steps of prices by which candidates are compared, and so many of each cutter that stay, beside the best of each sample.
+_PRICED, _PROMISING = 40, 60
 #: Seconds that count as nothing.
 _NOTHING = 1e-9
 
@@ -87,6 +89,30 @@ def bounded(problem: Problem, chosen: Which) -> Location:
     """Say what a choice costs, and bound what any choice does."""
     cost = problem.turned(chosen)
     return Location(chosen, cost, min(_bound(problem, chosen), cost))
+
+
+def promising(problem: Problem, chosen: Which) -> Which:
+    """The candidates that a good choice may have, ascending, by prices of the samples: `chosen`, which serves all, is among them.
+
+    These are the best of each sample, and of each cutter those that gain most where each sample pays its price.
+    """
+    first = _shares(problem, chosen)
+    ascent = _Ascent(
+        np.ascontiguousarray(problem.cost.T), problem.costs.operation, 0.0, first, *np.zeros((2, len(problem.cutter)), int)
+    )
+    while not ascent.over and ascent.steps < _PRICED:
+        ascent.step(problem.total(chosen))
+    reduced, picked = lagrange(problem.cost.T, problem.costs.operation, ascent.price)[1], [chosen, problem.cost.argmin(axis=1)]
+    for cutter in np.unique(problem.cutter).tolist():
+        own = np.flatnonzero(problem.cutter == cutter)
+        picked.append(own[np.argsort(reduced[own], kind="stable")[:_PROMISING]])
+    return np.unique(np.concatenate(picked))
+
+
+def _shares(problem: Problem, chosen: Which) -> Floats:
+    """What each sample costs with a choice, with its share of the operation that cuts it: prices to begin with."""
+    which, now = problem.cost[:, chosen].argmin(axis=1), problem.cost[:, chosen].min(axis=1)
+    return np.asarray(now + problem.costs.operation / np.bincount(which, minlength=len(chosen))[which])
 
 
 def _now(problem: Problem, chosen: Which) -> Floats:
@@ -260,15 +286,15 @@ class _Ascent:
     ----------
     bound : float
         Of choices with all these cutters and setups.
-    work : int
-        Costs looked at.
+    work, steps : int
+        Costs looked at, and steps made.
     """
 
     def __init__(self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which) -> None:
         self._cost, self._operation, self._base, self.price = cost, operation, base, price
         self._least, self._group, self._reach = reach, group, Reach.of(reach, group)
         self._mean, self._length, self._waited = np.zeros(len(price)), 1.0, 0
-        self.bound, self.work, self.over = -np.inf, 0, not len(cost)
+        self.bound, self.work, self.steps, self.over = -np.inf, 0, 0, not len(cost)
 
     def step(self, most: float) -> None:
         """Make the prices better, below a cost that a choice has."""
@@ -285,7 +311,7 @@ class _Ascent:
             self.bound, self.price = value, price
         if self._waited >= _PATIENT:
             self._length, self._waited = _SHORTER * self._length, 0
-        self.work += self._cost.size
+        self.work, self.steps = self.work + self._cost.size, self.steps + 1
         self.over = self._length < _SHORTEST or not self._mean.any()
         # With one of the others any choice costs more than that: they are in no better choice.
         some = value + np.maximum(0.0, reduced) <= most + _NOTHING
@@ -302,8 +328,7 @@ def _bound(problem: Problem, chosen: Which) -> float:
     if not len(problem.cost):
         return 0.0
     most, costs, turning = problem.turned(chosen), problem.costs, problem.turning
-    which, now = problem.cost[:, chosen].argmin(axis=1), problem.cost[:, chosen].min(axis=1)
-    first = now + costs.operation / np.bincount(which, minlength=len(chosen))[which]
+    first = _shares(problem, chosen)
     reach = np.zeros(len(problem.cutter)) if turning is None else turning.reach
     operation = costs.operation if turning is None else 0.0
     group = np.unique(np.column_stack([problem.cutter, problem.setup]), axis=0, return_inverse=True)[1].reshape(-1)

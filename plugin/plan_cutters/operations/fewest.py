@@ -111,6 +111,8 @@ class Search:
         Gives columns for samples that no candidate serves: their own postures.
     progress : callable, optional
         Called with how much of the first table is done, of how much.
+    first : int
+        Samples that the first table holds.
 
     Attributes
     ----------
@@ -123,18 +125,26 @@ class Search:
     """
 
     def __init__(
-        self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns], progress: Progress | None = None
+        self,
+        probes: Probes,
+        columns: Columns,
+        rows: Rows,
+        stored: Callable[[Rows], Columns],
+        progress: Progress | None = None,
+        first: int = _FIRST,
     ) -> None:
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
         self.rows: Rows = np.zeros(0, np.int64)
         self.alone: Rows = np.zeros(0, np.int64)
         self._table = np.zeros((0, len(columns)), np.int8)
         self._active = np.ones(len(columns), bool)
+        #: Those that neither wait nor are in the table: no good choice has them by the samples so far.
+        self._dropped = np.zeros(len(columns), bool)
         #: What is left of the time for proofs, s.
         self._seconds = SECONDS
         rng = np.random.default_rng(0)
-        first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
-        self._add_rows(np.sort(first), progress)
+        some = rng.choice(rows, min(first, len(rows)), replace=False) if len(rows) else rows
+        self._add_rows(np.sort(some), progress)
 
     def solve(self, known: Rows | None = None, *, prove: bool = True) -> Cover:
         """Return a small cover of the candidates that serves all samples but those that none serves.
@@ -163,6 +173,15 @@ class Search:
         """The candidates of which it is known where each serves, and the table (rows, candidates) of these."""
         active = np.flatnonzero(self._active)
         return active, self._table[:, active] == 1
+
+    def begin(self) -> Columns:
+        """Few candidates that serve the samples in the table."""
+        return self.columns.of(self._cover(None, prove=False).chosen)
+
+    def narrow(self, columns: Columns) -> None:
+        """Drop all candidates but for some: they are looked at again at samples alone that no other serves."""
+        self._active = np.isin(self.columns.key, columns.key)
+        self._dropped = ~self._active
 
     def require(self, rows: Rows) -> None:
         """Take samples into the table."""
@@ -222,7 +241,7 @@ class Search:
 
     def _idle(self, weight: Rows) -> tuple[Rows, Rows]:
         """Candidates that wait, and how much the weights load each."""
-        idle, rows = np.flatnonzero(~self._active), np.flatnonzero(weight)
+        idle, rows = np.flatnonzero(~self._active & ~self._dropped), np.flatnonzero(weight)
         open_ = rows[(self._table[np.ix_(rows, idle)] < 0).any(axis=1)]
         if len(open_) and len(idle):
             self._table[np.ix_(open_, idle)] = self._probes.table(self.rows[open_], self.columns.of(idle))
@@ -251,6 +270,7 @@ class Search:
         active = np.flatnonzero(self._active)
         new = np.full((len(rows), len(self.columns)), -1, np.int8)
         new[:, active] = self._probes.table(rows, self.columns.of(active), progress)
+        self._wake(rows, new)
         bare = rows[~(new == 1).any(axis=1)]
         if len(bare):
             before = len(self.columns)
@@ -264,9 +284,25 @@ class Search:
         self.rows = np.concatenate([self.rows, rows[served]])
         self._table = np.concatenate([self._table, new[served]])
 
+    def _wake(self, rows: Rows, new: NDArray[np.int8]) -> None:
+        """Take dropped candidates that serve what no other does into the table again, and into its `new` part (rows, columns)."""
+        while True:
+            bare, dropped = np.flatnonzero(~(new[:, self._active] == 1).any(axis=1)), np.flatnonzero(self._dropped)
+            if not len(bare) or not len(dropped):
+                return
+            open_ = dropped[(new[np.ix_(bare, dropped)] < 0).any(axis=0)]
+            new[np.ix_(bare, open_)] = self._probes.table(rows[bare], self.columns.of(open_))
+            serves = (new[np.ix_(bare, dropped)] == 1).sum(axis=0)
+            if not serves.any():
+                return
+            best = dropped[[int(serves.argmax())]]
+            self._table[:, best] = self._probes.table(self.rows, self.columns.of(best))
+            new[:, best] = self._probes.table(rows, self.columns.of(best))
+            self._active[best], self._dropped[best] = True, False
+
     def _add_columns(self, new: Columns) -> None:
         self._table = np.concatenate([self._table, np.full((len(self.rows), len(new)), -1, np.int8)], axis=1)
-        self._active = np.concatenate([self._active, np.zeros(len(new), bool)])
+        self._active, self._dropped = (np.append(each, np.zeros(len(new), bool)) for each in (self._active, self._dropped))
         self.columns = self.columns.and_(new)
 
     def _patched(self) -> Cover:

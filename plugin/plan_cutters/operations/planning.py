@@ -19,7 +19,7 @@ from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker
+from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker, served
 from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
@@ -30,6 +30,7 @@ from plan_cutters.operations.plans import (
     MINOR_AREA,
     best_area,
     considered,
+    costs_with,
     orientations_of,
     plan_with,
     small_pieces,
@@ -40,7 +41,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import with_and_without, worths
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.thinned import thinned
+from plan_cutters.operations.thinned import standing_for, thinned
 from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan, Operations
@@ -52,6 +53,10 @@ Rows = NDArray[np.int64]
 _CUTTERS = 4
 #: Parts of the work whose progress is told as one: what may be repeated, the fewest, the plans, their proof.
 _PARTS = 4
+#: Samples by which all candidates for the fastest are compared; those that are not dropped then are compared by more.
+_PRICED = 200
+#: How often canonical orientations are sought by some samples, with so many more of what they leave, before it is by all.
+_AGAIN, _LEFT = 4, 200
 #: No columns.
 _NONE = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
 
@@ -112,20 +117,14 @@ def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
     """The fewest orientations among candidates, with the search that found them."""
     options = task.ready.options
     finest = FINEST if options.index_step is None else options.index_step
-    search = _search(task, STEP, part_of(tell, 0, 2))
+    search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(tell, 0, 2))
     return search, search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, 2))
 
 
 def _served(task: Task, tell: Progress) -> tuple[Search, Columns]:
     """Few orientations among coarse candidates that serve all samples of a task, with the search that found them."""
-    search = _search(task, COARSE, tell)
-    few = search.solve(prove=False)
-    return search, search.columns.of(few.chosen)
-
-
-def _search(task: Task, spacing: float, tell: Progress) -> Search:
-    """A search among the first candidates, with a grid of a spacing, rad."""
-    return Search(task.probes, _first(task, spacing), task.rows, lambda bare: _stored(task, bare), tell)
+    search = Search(task.probes, _first(task, COARSE), task.rows, partial(_stored, task), tell, _PRICED)
+    return search, served(task, search)
 
 
 def _offer(task: Task, tell: Progress) -> Repeated | None:
@@ -206,7 +205,7 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     Choices are compared by some of the samples; the plan of the one that is taken is made of all.
     """
     which, parts = task.ready.options.operations, [part_of(tell, k, 3) for k in range(3)]
-    printed = [] if which == "fastest" else [_capped(task, "fewest", quicker(task, search, few), parts[0])]
+    printed = [] if which == "fastest" else [_capped(task, thinned(task), "fewest", quicker(task, search, few), parts[0])]
     if which == "fewest":
         return printed, None, (), ()
     choice = fastest_choice(task, some, search, few, parts[1])
@@ -215,9 +214,9 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
         by_size = largest_first_choice(some, search, few, minor=some is not task)
         compared.append(recommended(some, _worth(some, "fastest", by_size)))
     compared += [_columns_of(task, each) for each in printed]
-    plans = [plan_with(some, "fastest", _worth(some, "fastest", each)) for each in compared]
+    plans = [plan_with(some, "fastest", _worth(some, "fastest", each), times=True) for each in compared]
     best, words = _recommended(some, plans)
-    plan = _capped(task, "fastest", _columns_of(task, best), parts[2])
+    plan = _capped(task, some, "fastest", _columns_of(task, best), parts[2])
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
@@ -238,7 +237,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     fixed = best.orientations
     if len(columns) == fixed:
         return replace(best, name="fastest"), ()
-    tried = [plan_with(task, "fastest", columns), *(each for each in plans if few_enough(task, each))]
+    tried = [plan_with(task, "fastest", columns, times=True), *(each for each in plans if few_enough(task, each))]
     chosen = min(tried, key=_seconds)
     if few_enough(task, best) and _seconds(best) <= _seconds(chosen):
         return replace(best, name="fastest"), ()
@@ -315,10 +314,23 @@ def _stored(task: Task, rows: Rows) -> Columns:
     return columns
 
 
-def _capped(task: Task, name: str, columns: Columns, tell: Progress) -> OperationPlan:
-    columns = _worth(task, name, canonical(task, _worth(task, name, columns), progress=tell))
+def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress) -> OperationPlan:
+    """The plan of columns that are worth an orientation; by some samples first, so that few columns are tested at all."""
+    columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
     columns = accompanied(task, columns) if name == "fewest" else columns
     return plan_with(task, name, columns)
+
+
+def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Columns:
+    """Canonical orientations in place of columns, by some samples, and by those that these leave and the columns do not."""
+    for k in range(_AGAIN if some is not task else 0):
+        tried = canonical(some, columns, progress=part_of(tell, k, _AGAIN + 1))
+        rest = task.rows[~np.isfinite(costs_with(task, tried)[1]).any(axis=1)]
+        left = rest[np.isfinite(costs_with(standing_for(task, rest), columns)[1]).any(axis=1)]
+        if not len(left):
+            return tried
+        some = standing_for(task, np.union1d(some.rows, left[:: 1 + len(left) // _LEFT]))
+    return canonical(task, columns, progress=part_of(tell, _AGAIN, _AGAIN + 1))
 
 
 def _worth(task: Task, name: str, columns: Columns) -> Columns:

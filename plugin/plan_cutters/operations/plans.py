@@ -56,12 +56,12 @@ class Reserved:
 
 def plan_with(
     task: Task, name: str, columns: Columns, rule: Callable[[NDArray[np.bool_]], NDArray[np.bool_]] | None = None,
-    own: Reserved | None = None,
+    own: Reserved | None = None, *, times: bool = False,
 ) -> OperationPlan:  # fmt: skip
     """Make the plan of some columns: each sample goes with one that serves it, the rest with simultaneous operations.
 
     A `rule` says which of those that serve (n, k) a sample may go with; where some columns are a person's `own`, crumbs keep to
-    it, too.
+    it, too. With `times`, which are enough to compare plans, nothing is looked at of how tools stand.
     """
     columns, orbit = expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
@@ -94,7 +94,7 @@ def plan_with(
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
-    for k, operation in enumerate(operations):
+    for k, operation in enumerate([] if times else operations):
         stands, mine = _stands(task, operation), operation.rows
         tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
         strategy[mine] = stands.strategy

@@ -22,7 +22,7 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
 #: The work of a plan unless a budget was requested: boxes in any case, and this share of those of the searches for verdicts.
-_WORK_LEAST, _WORK_SHARE = 2e7, 0.2
+_WORK_LEAST, _WORK_SHARE = 5e6, 0.12
 #: Contacts for each sample, where that is more than a plan may add between samples.
 _CONTACTS = 4
 
@@ -97,7 +97,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
         ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
-        axes=Fixed(axes, serves), progress=tell,
+        axes=Fixed(axes, serves), own=np.append(number >= 0, False), progress=tell,
     )  # fmt: skip
     cells = proved.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Problems, shared_area
-from plan_cutters.operations.walls import Walls
 
 #: Samples at which choices are compared, at most about.
 SOME = 2500
@@ -28,14 +28,17 @@ def thinned(task: Task, most: int = SOME) -> Task:
         Its plans reckon what the plans of all samples take; where it is served, others need not be.
     """
     every = len(task.rows) // most
-    if every < 2:
-        return task
-    ready, rows = task.ready, task.rows[::every]
+    return task if every < 2 else standing_for(task, task.rows[::every])
+
+
+def standing_for(task: Task, rows: NDArray[np.int64]) -> Task:
+    """The same task for some of its samples (r,), each with the area of those that it stands for."""
+    ready = task.ready
     area = np.zeros(len(ready.samples))
     area[rows] = shared_area(ready.samples, task.rows, rows)
     samples = replace(ready.samples, area=area)
     probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred)
-    walls = Walls.of(probes, task.paths.scallop, task.paths.accuracy)
+    walls = task.walls.of_probes(probes)
     return replace(
         task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls,
         problems=Problems(samples, task.cutters, task.paths, task.indexing, walls),

@@ -124,6 +124,12 @@ class Walls:
         triangles = {face: obstacles.vertex[rows[face]] for face in wanted.tolist() if face in rows}
         return cls(probes, triangles, obstacles.chord_error, scallop, accuracy)
 
+    def of_probes(self, probes: Probes) -> "Walls":
+        """The same with probes of the same tools at the same samples: what is cut along the setup axis is known already."""
+        same = Walls(probes, self._triangles, self._band - self._scallop, self._scallop, self._accuracy)
+        same._upright = self._upright
+        return same
+
     def strips(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
         """Heights of the strips (rows, columns) of passes along walls, mm; nan where there is none, or `where` is not set."""
         result, samples = np.full(where.shape, np.nan), self._probes.samples
