@@ -6,10 +6,13 @@ from functools import partial
 import numpy as np
 
 from cad_io.arrays import Floats, Record
+from plan_cutters.domain.clamping import Clamping
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.scene.fixtures import body_near
 from plan_cutters.scene.obstacles import Obstacles, divided
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups.solids import insides
 
 #: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
 _APART, _MOST = 1 / 64, 200_000
@@ -80,6 +83,17 @@ def overlaps(part: Obstacles, fixture: Obstacles, tolerance: float) -> bool:
     return any(len(_within(few, deep, other)) for few, _, other in each) or any(
         len(_within(points, deep, other)) for _, points, other in each
     )
+
+
+def entered(part: Obstacles, fixture: Fixture, clamping: Clamping, deep: float) -> bool:
+    """Whether some point of a part's faces surely lies deeper in a vise or chuck in its place than a length, mm.
+
+    Corners and middles of triangles are looked at: no does not mean that nothing lies in it.
+    """
+    from plan_cutters.kernels.linear.within import Space, any_within
+
+    spaces = (Space(fixture.shift, fixture.rotation, *each) for each in insides(clamping, deep))
+    return any(any_within(part.tree, part.faces, each) for each in spaces)
 
 
 def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[float, list[tuple[Floats, Obstacles]]]:
