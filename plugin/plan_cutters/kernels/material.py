@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import CENTRE, HALVES, SIDES
+from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.rows import Tree
 
@@ -38,7 +39,7 @@ class Solids(NamedTuple):
     below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
     nothing encloses anything. whole: the cells hold all that encloses; end (2, 3): corners of a box that does. grow: what
     keeps so far off every triangle, mm, goes past every skin; nan where skins are not closed, or nothing encloses anything. key:
-    of no others, in one process.
+    of no others, in one process. more_weight, more_moment: weight and moment of the second tree.
     """
 
     tree: Tree
@@ -51,6 +52,8 @@ class Solids(NamedTuple):
     end: Any
     grow: float
     key: int
+    more_weight: Any = np.zeros(0, np.int8)
+    more_moment: Any = np.zeros((1, MOMENTS))
 
 
 def sheet(tree: Tree) -> Solids:
@@ -58,8 +61,16 @@ def sheet(tree: Tree) -> Solids:
     none = np.zeros((0, 0, 0), np.uint8)
     return Solids(
         tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True, np.zeros((2, 3)),
-        np.nan, 0,
+        np.nan, 0, np.zeros(len(tree.more_vertex), np.int8), np.zeros((0, MOMENTS)),
     )  # fmt: skip
+
+
+@kernel
+def _counted(solids, which):
+    """Weights and moments of the triangles of the first (0) or second tree (1)."""
+    if which == 0:
+        return solids.weight, solids.moment
+    return solids.more_weight, solids.more_moment
 
 
 @entry
@@ -150,29 +161,32 @@ def winding(x, y, z, solids, stack):
     """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
     if outside(x, y, z, solids):
         return 0.0
-    vertex, depth, weight, moment = solids.tree.vertex, solids.tree.depth, solids.weight, solids.moment
-    n, first, top, total = len(vertex), (1 << depth) - 1, 1, 0.0
-    stack[0] = 0
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        if moment[node, _AREA] <= 0.0:
-            continue
-        dx, dy, dz = moment[node, 0] - x, moment[node, 1] - y, moment[node, 2] - z
-        square, radius = dx * dx + dy * dy + dz * dz, _FAR * moment[node, _RADIUS]
-        if square > radius * radius:
-            along = dx * moment[node, _VECTOR] + dy * moment[node, _VECTOR + 1] + dz * moment[node, _VECTOR + 2]
-            total += along / (square * np.sqrt(square))
-            continue
-        if node < first:
-            stack[top] = 2 * node + 2
-            stack[top + 1] = 2 * node + 1
-            top += 2
-            continue
-        leaf = node - first
-        for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            if weight[t] != 0:
-                total += weight[t] * _solid_angle(vertex[t], x, y, z)
+    total = 0.0
+    for which in range(2):
+        vertex, _, depth, _ = half(solids.tree, which)
+        weight, moment = _counted(solids, which)
+        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if moment[node, _AREA] <= 0.0:
+                continue
+            dx, dy, dz = moment[node, 0] - x, moment[node, 1] - y, moment[node, 2] - z
+            square, radius = dx * dx + dy * dy + dz * dz, _FAR * moment[node, _RADIUS]
+            if square > radius * radius:
+                along = dx * moment[node, _VECTOR] + dy * moment[node, _VECTOR + 1] + dz * moment[node, _VECTOR + 2]
+                total += along / (square * np.sqrt(square))
+                continue
+            if node < first:
+                stack[top] = 2 * node + 2
+                stack[top + 1] = 2 * node + 1
+                top += 2
+                continue
+            leaf = node - first
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if weight[t] != 0:
+                    total += weight[t] * _solid_angle(vertex[t], x, y, z)
     # A skin whose sense could not be told encloses all the same.
     return abs(total) / (4.0 * np.pi)
 
@@ -218,38 +232,39 @@ def _nearest(x, y, z, most, enough, solids, stack):
 
     What is not more than `enough` need not be the least. Of what is no point it is nan.
     """
-    vertex, box, depth = solids.tree
-    weight, moment = solids.weight, solids.moment
-    n, first, top, best = len(vertex), (1 << depth) - 1, 1, most * most
-    enough, met = enough * enough, False
-    stack[0] = 0
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        if moment[node, _AREA] <= 0.0:
-            continue
-        # Distance from the node's oriented box.
-        dx, dy, dz = x - box[node, CENTRE], y - box[node, CENTRE + 1], z - box[node, CENTRE + 2]
-        square = 0.0
-        for k in range(3):
-            side = SIDES + 3 * k
-            along = dx * box[node, side] + dy * box[node, side + 1] + dz * box[node, side + 2]
-            square += max(0.0, abs(along) - box[node, HALVES + k]) ** 2
-        if square > best:
-            continue
-        if node < first:
-            stack[top] = 2 * node + 2
-            stack[top + 1] = 2 * node + 1
-            top += 2
-            continue
-        leaf = node - first
-        for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            if weight[t] != 0:
-                square = _square_to_triangle(vertex[t], x, y, z)
-                if not square > best:
-                    best, met = square, True
-                    if not best > enough:
-                        return np.sqrt(best)
+    best, enough, met = most * most, enough * enough, False
+    for which in range(2):
+        vertex, box, depth, _ = half(solids.tree, which)
+        weight, moment = _counted(solids, which)
+        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if moment[node, _AREA] <= 0.0:
+                continue
+            # Distance from the node's oriented box.
+            dx, dy, dz = x - box[node, CENTRE], y - box[node, CENTRE + 1], z - box[node, CENTRE + 2]
+            square = 0.0
+            for k in range(3):
+                side = SIDES + 3 * k
+                along = dx * box[node, side] + dy * box[node, side + 1] + dz * box[node, side + 2]
+                square += max(0.0, abs(along) - box[node, HALVES + k]) ** 2
+            if square > best:
+                continue
+            if node < first:
+                stack[top] = 2 * node + 2
+                stack[top + 1] = 2 * node + 1
+                top += 2
+                continue
+            leaf = node - first
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if weight[t] != 0:
+                    square = _square_to_triangle(vertex[t], x, y, z)
+                    if not square > best:
+                        best, met = square, True
+                        if not best > enough:
+                            return np.sqrt(best)
     return np.sqrt(best) if met else np.inf
 
 

@@ -129,8 +129,7 @@ def joined(
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
         return surroundings
-    vertex = surroundings.possible.triangles.vertex
-    near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
+    near = np.array(surroundings.possible.corners)
     placed_fixtures, bodies = [], []
     for number, (requested, across) in enumerate(placed, 1):
         held = None if hold is None or not requested.to_place else hold(requested, across)
@@ -151,7 +150,10 @@ def joined(
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
     certain = possible
     if surroundings.certain is not surroundings.possible or any(body.certain is not body.possible for body in bodies):
-        certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near)
+        # What is the same is there once.
+        same = surroundings.possible._own is surroundings.certain and all(body.certain is body.possible for body in bodies)
+        within = possible.triangles.vertex if same else None
+        certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near, within)
     return replace(surroundings, possible=possible, certain=certain, fixtures=tuple(placed_fixtures), alone=surroundings)
 
 
@@ -174,9 +176,16 @@ def _placed(
     )
 
 
-def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
-    """One set of obstacles, with one tree."""
-    vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
+def _together(
+    own: Obstacles,
+    placed_fixtures: Sequence[PlacedFixture],
+    bodies: Sequence[Obstacles],
+    near: Floats,
+    within: Floats | None = None,
+) -> Obstacles:
+    """One set of obstacles: what is added to the part has a tree of its own. `within`: triangles that begin with all of them."""
+    first = len(own.triangles) if own.first is None else own.first
+    vertex, face, weight = [own.triangles.vertex[:first]], [own.triangles.face[:first]], [own.weight[:first]]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
     measured = list(own.triangles.measured)
     for each, body in zip(placed_fixtures, bodies, strict=True):
@@ -190,11 +199,14 @@ def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: 
             corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
             placed = each.fixture.placed(corners)
             boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
+    for each_list, rest in ((vertex, own.triangles.vertex), (face, own.triangles.face), (weight, own.weight)):
+        each_list.append(rest[first:])
+    joined_vertex = np.concatenate(vertex) if within is None else within[: sum(map(len, vertex))]
     triangles = Triangles(
-        np.concatenate(vertex), np.concatenate(face), max(errors), own.triangles.missing, tuple(measured),
+        joined_vertex, np.concatenate(face), max(errors), own.triangles.missing, tuple(measured),
         own.triangles.loose, own.triangles.errors,
     )  # fmt: skip
-    return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
+    return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near, first).among(own)
 
 
 def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:

@@ -29,8 +29,11 @@ _BUILT = 15.0
 _CELLS = 64
 #: Numbers of what encloses something, each once in a process; 0 is that of nothing.
 _KEYS = count(1)
-#: In place of a tree that is made anew.
-_NO_TREE = Tree(np.zeros((0, 3, 3)), np.zeros((0, 0)), 0)
+#: In place of a tree that is made anew; and one of no triangles, with its order.
+_NOTHING = Tree(np.zeros((0, 3, 3)), np.zeros((0, 16)), 0)
+_NO_TREE = (np.zeros(0, np.int32), _NOTHING.box, 0)
+#: Triangles that are marked in the grid at a time.
+_AT_ONCE = 1 << 15
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
 
@@ -51,6 +54,8 @@ class Obstacles(Record):
         Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
     near : (2, 3) float, optional
         Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
+    first : int, optional
+        So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
 
     Raises
     ------
@@ -63,6 +68,7 @@ class Obstacles(Record):
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
     gap: float = 0.0
     near: Floats | None = None
+    first: int | None = None
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
@@ -76,26 +82,54 @@ class Obstacles(Record):
         # Trees are built again where they are needed.
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
+    def among(self, own: "Obstacles") -> "Obstacles":
+        """The same, which take the tree of their first triangles from others: those alone, or with more of their own."""
+        own = own._own or own
+        if own.first is None and self.first == len(own.triangles):
+            self.__dict__["_shared"] = own
+        return self
+
+    @property
+    def _own(self) -> "Obstacles | None":
+        """Those that share the tree of their triangles."""
+        shared: Obstacles | None = self.__dict__.get("_shared")
+        return shared
+
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
-        from plan_cutters.kernels.linear.tree import build, build_apart
+        """Order, boxes and depth of the first tree."""
+        return _tree_of(self.triangles.vertex[: self.first]) if self._own is None else self._own._built
 
-        vertex = np.ascontiguousarray(self.triangles.vertex)
-        if self.near is None:
-            order, box, depth = build(vertex)
-        else:
-            # Near the part a search looks at its own triangles nearly alone.
-            own, away = int((self.triangles.face >= 0).sum()), 10.0 * float(np.ptp(vertex, axis=(0, 1)).max())
-            order, box, depth = build_apart(vertex, own, away)
-        return order, box, int(depth)
+    @cached_property
+    def _more(self) -> tuple[Ints, Floats, int]:
+        """The same of the second tree."""
+        return _NO_TREE if self.first is None else _tree_of(self.triangles.vertex[self.first :])
+
+    @cached_property
+    def _first_vertex(self) -> Floats:
+        """Triangles of the first tree in its order."""
+        return self.triangles.vertex.take(self._built[0], axis=0) if self._own is None else self._own._first_vertex
 
     @cached_property
     def tree(self) -> Tree:
         """The triangles in tree order, and the tree, as the kernels take it."""
-        order, box, depth = self._built
+        (_, box, depth), (more, more_box, more_depth) = self._built, self._more
         # As much in a budget whether it was made now or kept.
-        METER.add(int(_BUILT * len(order)))
-        return Tree(self.triangles.vertex.take(order, axis=0), box, depth)
+        METER.add(int(_BUILT * len(self.triangles)))
+        rest = self.triangles.vertex[len(self.triangles) - len(more) :]
+        return Tree(self._first_vertex, box, depth, rest.take(more, axis=0), more_box, more_depth)
+
+    @cached_property
+    def _moment(self) -> Floats:
+        """Moments of the triangles of the first tree."""
+        from plan_cutters.kernels.material import MOMENTS, moments
+
+        (order, box, depth), own, weight = self._built, self._own, self.weight[: self.first]
+        if not weight.any():
+            return np.zeros((len(box), MOMENTS))
+        if own is not None and (weight == own.weight).all():
+            return own._moment
+        return moments(self._first_vertex, np.ascontiguousarray(weight[order]), depth)
 
     @cached_property
     def solids(self) -> "Solids":
@@ -108,30 +142,50 @@ class Obstacles(Record):
         """Make the tree and `solids`, or take them from a cache: those of the same triangles are the same."""
         if "solids" in self.__dict__:
             return
+        if self._own is not None:
+            self._own.build(cache)
         triangles = self.triangles
         own = None if self.near is None else triangles.face >= 0
-        built, solids = cache.cached(
+        built, more, solids = cache.cached(
             "tree",
-            (triangles.vertex, triangles.chord_error, self.weight, self.open_boxes, self.gap, self.near, own),
-            # The triangles are known, and numbers hold in one process.
-            lambda: (self._built, self.solids._replace(tree=_NO_TREE, key=0)),
+            (triangles.vertex, triangles.chord_error, self.weight, self.open_boxes, self.gap, self.near, own, self.first),
+            # The triangles are known, moments soon made, and numbers hold in one process.
+            lambda: (
+                None if self._own else self._built,
+                self._more,
+                self.solids._replace(tree=_NOTHING, moment=_NOTHING.box, key=0),
+            ),
         )
         if "solids" not in self.__dict__:
-            self.__dict__["_built"] = built
-            self.__dict__["solids"] = solids._replace(tree=self.tree, key=next(_KEYS) if self.weight.any() else 0)
+            if built is not None:
+                self.__dict__["_built"] = built
+            self.__dict__["_more"] = more
+            key = next(_KEYS) if self.weight.any() else 0
+            self.__dict__["solids"] = solids._replace(tree=self.tree, moment=self._moment if key else solids.more_moment, key=key)
 
     def _filled(self, cells: tuple[NDArray[np.uint8], Floats, float, bool], end: Floats) -> "Solids":
         from plan_cutters.kernels.material import Solids, moments
 
-        weight = np.ascontiguousarray(self.weight[self._built[0]])
+        tree, weight = self.tree, np.ascontiguousarray(self.weight[self.order])
         grow = np.nan if len(self.open_boxes) else self._extent[2]
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end, grow, next(_KEYS))
+        mine, more = np.split(weight, [len(tree.vertex)])
+        more_moment = moments(tree.more_vertex, more, tree.more_depth)
+        return Solids(tree, mine, self._moment, *cells, end, grow, next(_KEYS), more, more_moment)
+
+    @cached_property
+    def corners(self) -> tuple[Floats, Floats]:
+        """Least and largest corner (3,) of the box around all triangles."""
+        own, vertex = self._own, self.triangles.vertex
+        rest = vertex if own is None else vertex[self.first :]
+        each = [] if own is None else [own.corners]
+        if len(rest):
+            each.append((rest.min(axis=(0, 1)), rest.max(axis=(0, 1))))
+        return np.min([low for low, _ in each], axis=0), np.max([high for _, high in each], axis=0)
 
     @property
     def _extent(self) -> tuple[Floats, Floats, float]:
         """Corners (3,) of the box around all triangles, and how far skins may be off and open, mm."""
-        vertex = self.triangles.vertex
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        low, high = self.corners
         return low, high, self.triangles.chord_error + self.gap + 1e-9 * float(np.abs([low, high]).max())
 
     @property
@@ -146,7 +200,7 @@ class Obstacles(Record):
         lies beyond the grid."""
         from plan_cutters.kernels.material import mark_shell
 
-        vertex, (low, high, grow) = self.tree.vertex, self._extent
+        vertex, (low, high, grow) = self.triangles.vertex, self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
@@ -160,10 +214,12 @@ class Obstacles(Record):
         size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
-        if self.near is not None:
-            # Of a large one that stands askew, the kernel would look at every cell of the box around it.
-            vertex = divided(vertex, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
-        mark_shell(vertex, grow, origin, size, cell)
+        for begin in range(0, len(vertex), _AT_ONCE):
+            some = vertex[begin : begin + _AT_ONCE]
+            if self.near is not None:
+                # Of a large one that stands askew, the kernel would look at every cell of the box around it.
+                some = divided(some, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
+            mark_shell(np.ascontiguousarray(some), grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
         outside = region == region[0, 0, 0] if whole else self._open_air(region, origin, size)
@@ -200,20 +256,29 @@ class Obstacles(Record):
 
     @cached_property
     def wide_tree(self) -> "WideTree":
-        """The tree as posture maps take it, eight boxes at a time."""
+        """All triangles in one tree, as posture maps take it, eight boxes at a time."""
         from plan_cutters.kernels.linear.lanes import WideTree, wide_tree
+        from plan_cutters.kernels.linear.tree import build_apart
 
-        return WideTree(*wide_tree(self.tree))
+        if self.first is None:
+            return WideTree(*wide_tree(self.tree))
+        # Near the part a search looks at its own triangles nearly alone.
+        apart = self.near is not None and self.triangles.face < 0
+        rows = np.argsort(np.broadcast_to(apart, len(self.triangles)), kind="stable")
+        vertex, (low, high) = self.triangles.vertex[rows], self.corners
+        order, box, depth = build_apart(vertex, len(rows) - int(np.sum(apart)), 10.0 * float((high - low).max()))
+        return WideTree(*wide_tree(Tree(vertex[order], box, depth)))
 
     @cached_property
     def faces(self) -> Ints:
         """Face numbers (n,) in tree order."""
-        return np.ascontiguousarray(self.triangles.face[self._built[0]])
+        return np.ascontiguousarray(self.triangles.face[self.order])
 
     @property
     def order(self) -> Ints:
         """Rows (n,) of `triangles` in tree order."""
-        return self._built[0]
+        first, more = self._built[0], self._more[0]
+        return np.concatenate([first, len(first) + more]) if len(more) else first
 
     def face(self, triangle: int) -> int:
         """Face number of a triangle in tree order."""
@@ -226,8 +291,8 @@ class Obstacles(Record):
     @cached_property
     def skin(self) -> "Obstacles":
         """The same triangles, which enclose nothing."""
-        bare = Obstacles(self.triangles)
-        bare.__dict__.update(_built=self._built, tree=self.tree)
+        bare = Obstacles(self.triangles, first=self.first)
+        bare.__dict__.update(_built=self._built, _more=self._more, _first_vertex=self._first_vertex, tree=self.tree)
         return bare
 
     def skin_of(self, body: Body) -> "Obstacles":
@@ -252,6 +317,9 @@ class Obstacles(Record):
         return np.sort(np.concatenate([none, *(self._rows.get(number, none) for number in set(faces))]))
 
     def _skin_of(self, body: Body) -> "Obstacles":
+        own = self._own
+        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
+            return own.skin_of(body)
         mine = self.rows_of(body.faces)
         triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
         # A fixture is one body whatever it consists of, and its triangles know what they count.
@@ -280,6 +348,16 @@ class Obstacles(Record):
         out = np.empty(len(point))
         windings(np.ascontiguousarray(point), self.solids, out)
         return np.asarray(out >= SURELY_INSIDE if certain else ~(out < MAYBE_INSIDE))
+
+
+def _tree_of(vertex: Floats) -> tuple[Ints, Floats, int]:
+    """Order, boxes and depth of the tree of triangles."""
+    from plan_cutters.kernels.linear.tree import build
+
+    if not len(vertex):
+        return _NO_TREE
+    order, box, depth = build(np.ascontiguousarray(vertex))
+    return order, box, int(depth)
 
 
 def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:

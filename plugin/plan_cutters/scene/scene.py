@@ -232,7 +232,7 @@ class Scene(Record):
                     lambda: surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at),
                     # What is missing may be so for a limit of time.
                     lambda made: not made.missing,
-                )
+                ).sharing()
             obstacles = joined(
                 memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign
             )

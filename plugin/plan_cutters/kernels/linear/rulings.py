@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
+from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot
 
@@ -71,8 +72,10 @@ def _apart(box, node, along, offset, most):
     for k in range(3):
         at += along[k] * box[node, CENTRE + k]
         size += abs(box[node, CENTRE + k])
-        row = SIDES + 3 * k
-        half += box[node, HALVES + k] * abs(along[0] * box[node, row] + along[1] * box[node, row + 1] + along[2] * box[node, row + 2])
+        side = 0.0
+        for j in range(3):
+            side += along[j] * box[node, SIDES + 3 * k + j]
+        half += box[node, HALVES + k] * abs(side)
     return abs(at) > half + 1e-12 * size
 
 
@@ -82,6 +85,45 @@ class OneFace(NamedTuple):
     tree: Any
     faces: Any
     number: int
+
+
+class _Workspace(NamedTuple):
+    """This is a workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64."""
+
+    side: Any
+    ends: Any
+    limit: Any
+    stack: Any
+
+
+@kernel
+def _among(point, ruling, normal, own, band, workspace):
+    """The least and the largest place along a line at which a face is met; where it leaves the line is written as its limit."""
+    side, ends, limit, stack = workspace
+    limit[0], limit[1] = -np.inf, np.inf
+    first, last = np.inf, -np.inf
+    through, over = dot(side, point), dot(normal, point)
+    for k in range(2):
+        vertex, box, depth, begin = half(own.tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            # What the plane through the line does not cross within the band changes nothing.
+            if _apart(box, node, side, through, 0.0) or _apart(box, node, normal, over, band):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if own.faces[begin + t] != own.number:
+                    continue
+                if _piece(vertex[t], point, ruling, normal, side, ends) and _clipped(ends, band, limit):
+                    first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+    return first, last
 
 
 @entry
@@ -103,33 +145,12 @@ def extents(point, ruling, normal, own, band, low, high):
     low, high : (p,) float64, written
         Ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no triangle is near the line.
     """
-    side, ends, limit, stack = np.empty(3), np.empty((2, 2)), np.empty(2), np.empty(64, np.int64)
-    vertex, box, depth = own.tree.vertex, own.tree.box, own.tree.depth
-    n, inner = len(vertex), (1 << depth) - 1
+    workspace = _Workspace(np.empty(3), np.empty((2, 2)), np.empty(2), np.empty(64, np.int64))
     for i in range(len(point)):
-        cross(ruling[i], normal[i], side)
+        cross(ruling[i], normal[i], workspace.side)
         low[i] = high[i] = np.nan
-        if not dot(side, side) > 0.5:
+        if not dot(workspace.side, workspace.side) > 0.5:
             continue
-        limit[0], limit[1] = -np.inf, np.inf
-        first, last = np.inf, -np.inf
-        through, over = dot(side, point[i]), dot(normal[i], point[i])
-        stack[0], top = 0, 1
-        while top > 0:
-            top -= 1
-            node = stack[top]
-            # What the plane through the line does not cross within the band changes nothing.
-            if _apart(box, node, side, through, 0.0) or _apart(box, node, normal[i], over, band):
-                continue
-            if node < inner:
-                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
-                top += 2
-                continue
-            leaf = node - inner
-            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-                if own.faces[t] != own.number:
-                    continue
-                if _piece(vertex[t], point[i], ruling[i], normal[i], side, ends) and _clipped(ends, band, limit):
-                    first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+        first, last = _among(point[i], ruling[i], normal[i], own, band, workspace)
         if first <= last:
-            low[i], high[i] = min(0.0, max(first, limit[0])), max(0.0, min(last, limit[1]))
+            low[i], high[i] = min(0.0, max(first, workspace.limit[0])), max(0.0, min(last, workspace.limit[1]))

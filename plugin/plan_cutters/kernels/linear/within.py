@@ -5,12 +5,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
+from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
 
 
 class Space(NamedTuple):
-    """The inside of a box or cylinder in a frame of its own: the frame's origin (3,) and its axes (3, 3), as columns; corners (3,)
-    of the box, and about z the radius of the cylinder, infinite for a box; mm."""
+    """The inside of a box or cylinder: its frame's origin (3,) and axes (3, 3), as columns; corners (3,) of the box in it, and
+    about z the radius of the cylinder, infinite for a box; mm."""
 
     origin: Any
     axes: Any
@@ -48,6 +49,38 @@ def _holds(x, y, z, space, local):
     return np.hypot(local[0], local[1]) < space.radius
 
 
+@kernel
+def _any(tree, faces, space, stack, local):
+    """As `any_within`; scratch: stack (64,) int64, local (3,)."""
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if _misses(box, node, space):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if faces[begin + t] <= 0:
+                    continue
+                a, b, c = vertex[t, 0], vertex[t, 1], vertex[t, 2]
+                if _holds((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0, space, local):
+                    return True
+                for i in range(3):
+                    p, q = vertex[t, i], vertex[t, i + 1 if i < 2 else 0]
+                    if _holds(p[0], p[1], p[2], space, local):
+                        return True
+                    if _holds(0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]), space, local):
+                        return True
+    return False
+
+
 @entry
 def any_within(tree, faces, space):
     """Whether a corner, the middle of a side or the middle of any triangle of a face lies in a space.
@@ -63,30 +96,4 @@ def any_within(tree, faces, space):
     -------
     bool
     """
-    vertex, box, depth = tree
-    n, inner = len(vertex), (1 << depth) - 1
-    stack, local = np.empty(64, np.int64), np.empty(3)
-    stack[0], top = 0, 1
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        if _misses(box, node, space):
-            continue
-        if node < inner:
-            stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
-            top += 2
-            continue
-        leaf = node - inner
-        for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            if faces[t] <= 0:
-                continue
-            a, b, c = vertex[t, 0], vertex[t, 1], vertex[t, 2]
-            if _holds((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0, space, local):
-                return True
-            for i in range(3):
-                p, q = vertex[t, i], vertex[t, i + 1 if i < 2 else 0]
-                if _holds(p[0], p[1], p[2], space, local):
-                    return True
-                if _holds(0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]), space, local):
-                    return True
-    return False
+    return _any(tree, faces, space, np.empty(64, np.int64), np.empty(3))
