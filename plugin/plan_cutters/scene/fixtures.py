@@ -226,7 +226,8 @@ def body_near(clamping: Clamping, fixture: Fixture, chord: float, part: Obstacle
 
     `chord`: the chord error to ask for, mm.
     """
-    lowest = float(((part.triangles.vertex - fixture.shift) @ fixture.rotation[:, 2]).min())
+    up = fixture.rotation[:, 2]
+    lowest = float(((part.lowest(up) - fixture.shift) @ up).min())
     vertex, error = triangles_of(clamping, chord, above=lowest)
     return _solid(fixture.placed(vertex), error).certain
 
@@ -272,8 +273,7 @@ def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], n
         (top,) = fixture.sizes
     else:
         # What surely is the part: what only stands for something missing may reach lower than anything does.
-        part = surroundings.certain.triangles.vertex
-        part = part if len(part) else surroundings.possible.triangles.vertex
+        part = surroundings.certain.lowest((fixture.rotation @ frame.T)[:, 2])
         # Its shift comes on top, as for any fixture.
         top = float(heights(part + fixture.shift)[..., 2].min())
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -32,8 +32,6 @@ _KEYS = count(1)
 #: In place of a tree that is made anew; and one of no triangles, with its order.
 _NOTHING = Tree(np.zeros((0, 3, 3)), np.zeros((0, 16)), 0)
 _NO_TREE = (np.zeros(0, np.int32), _NOTHING.box, 0)
-#: Triangles that are marked in the grid at a time.
-_AT_ONCE = 1 << 15
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
 
@@ -198,7 +196,7 @@ class Obstacles(Record):
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
         lies beyond the grid."""
-        from plan_cutters.kernels.material import mark_shell
+        from plan_cutters.kernels.material import mark_shell, mark_small
 
         vertex, (low, high, grow) = self.triangles.vertex, self._extent
         extent = float((high - low).max())
@@ -214,12 +212,14 @@ class Obstacles(Record):
         size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
-        for begin in range(0, len(vertex), _AT_ONCE):
-            some = vertex[begin : begin + _AT_ONCE]
-            if self.near is not None:
-                # Of a large one that stands askew, the kernel would look at every cell of the box around it.
-                some = divided(some, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
-            mark_shell(np.ascontiguousarray(some), grow, origin, size, cell)
+        if self.near is None:
+            mark_shell(np.ascontiguousarray(vertex), grow, origin, size, cell)
+        else:
+            # Of a large one that stands askew, the kernel would look at every cell of the box around it.
+            first, last, longest = low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size
+            large = np.zeros(len(vertex), bool)
+            mark_small(np.ascontiguousarray(vertex), (first, last), longest, grow, origin, size, cell, large)
+            mark_shell(divided(vertex[large], first, last, longest), grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
         outside = region == region[0, 0, 0] if whole else self._open_air(region, origin, size)
@@ -287,6 +287,20 @@ class Obstacles(Record):
     def depths(self, tolerance: float) -> tuple[float, float]:
         """Depths that are safe and that are blocked among these triangles, mm (`tolerance.depths`)."""
         return depths(tolerance, self.triangles.chord_error)
+
+    def rows_in(self, low: Floats, high: Floats) -> NDArray[np.int64]:
+        """Rows of `triangles`, ascending, of those whose boxes meet a box (3,), (3,)."""
+        from plan_cutters.kernels.linear.within import Space, in_box
+
+        found = np.zeros(len(self.triangles), bool)
+        in_box(self.tree, Space(np.zeros(3), np.eye(3), low, high, np.inf), found)
+        return np.sort(self.order[found])
+
+    def lowest(self, direction: Floats) -> Floats:
+        """Triangles (k, 3, 3) of which one is the lowest along a direction: no other may be."""
+        vertex = self.triangles.vertex
+        height = (vertex.reshape(-1, 3) @ direction).reshape(-1, 3).min(axis=1)
+        return vertex[height <= height.min() + 1e-9 * (1.0 + float(np.abs(self.corners).max()))]
 
     @cached_property
     def skin(self) -> "Obstacles":

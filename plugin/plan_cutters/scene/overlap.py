@@ -100,7 +100,7 @@ def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[fl
     """Depth that is no fault, mm, and points of each of two with the other in which they are searched; none where these are
     apart."""
     deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
-    ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
+    ends = [o.corners for o in (part, fixture)]
     low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
     if (high - low < 0).any():
         return deep, []
@@ -110,7 +110,7 @@ def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[fl
 
 def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
     """Points (n, 3) of triangles within a box, no farther apart than asked, if they are not too many."""
-    small = divided(obstacles.triangles.vertex, low, high, apart, _MOST)
+    small = divided(obstacles.triangles.vertex[obstacles.rows_in(low, high)], low, high, apart, _MOST)
     points = np.concatenate([*np.moveaxis(small, 1, 0), small.mean(axis=1)])
     return points[((points >= low) & (points <= high)).all(axis=1)]
 

@@ -1,4 +1,4 @@
-"""Does a point of a face lie in a box or cylinder? Only what a tree has near it is looked at."""
+"""What of a part lies in a box or cylinder? Only what a tree has near it is looked at."""
 
 from typing import Any, NamedTuple
 
@@ -97,3 +97,42 @@ def any_within(tree, faces, space):
     bool
     """
     return _any(tree, faces, space, np.empty(64, np.int64), np.empty(3))
+
+
+@kernel
+def _mark(tree, space, stack, found):
+    """As `in_box`; scratch: stack (64,) int64."""
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if _misses(box, node, space):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                v, meets = vertex[t], True
+                for j in range(3):
+                    low, high = min(v[0, j], min(v[1, j], v[2, j])), max(v[0, j], max(v[1, j], v[2, j]))
+                    meets = meets and high >= space.low[j] and low <= space.high[j]
+                found[begin + t] = meets
+
+
+@entry
+def in_box(tree, space, found):
+    """Write for triangles (n,) in tree order whether the box around each, along x, y and z, meets a box along them.
+
+    Parameters
+    ----------
+    tree : Tree
+    space : Space
+        The box, in the frame of the triangles.
+    found : (n,) bool, written where it is true
+    """
+    _mark(tree, space, np.empty(64, np.int64), found)
