@@ -12,7 +12,7 @@ from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import material
+from plan_cutters.kernels import cells, material
 from plan_cutters.kernels.limits import any_axis
 from plan_cutters.kernels.linear.rulings import OneFace, extents
 from plan_cutters.kernels.maps.free_tilts import free_tilts
@@ -157,7 +157,7 @@ def test_trees_and_bodies_say_what_is_kept(keeps, obstacles):
     material.near_shell(points, 0.9, solids, near)
     material.far_inside(points, 0.4, solids, inside)
     cell = np.zeros((17, 19, 13), np.uint8)
-    material.mark_shell(solids.tree.vertex[::5], 0.37, np.array([3.1, 2.3, -6.1]), 1.7, cell)
+    cells.mark_shell(solids.tree.vertex[::5], 0.37, np.array([3.1, 2.3, -6.1]), 1.7, cell)
     trees = [waves.tree_of(soup(rng, count, -9, 9, 1.3)) for count in (1, 7, 8, 9, 200)]
     face = waves.triangles(9)
     own = OneFace(waves.tree_of(face), np.ones(len(face), np.int32), 1)

@@ -26,6 +26,7 @@ from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
+from plan_cutters.scene.triangles import AddedTriangles, pieces
 from plan_cutters.setups.gripped import material_bodies, unheld_bodies
 from plan_cutters.setups.holds import Hold
 from plan_cutters.setups.solids import box, cylinder, sides_of, triangles_of
@@ -150,10 +151,7 @@ def joined(
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
     certain = possible
     if surroundings.certain is not surroundings.possible or any(body.certain is not body.possible for body in bodies):
-        # What is the same is there once.
-        same = surroundings.possible._own is surroundings.certain and all(body.certain is body.possible for body in bodies)
-        within = possible.triangles.vertex if same else None
-        certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near, within)
+        certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near)
     return replace(surroundings, possible=possible, certain=certain, fixtures=tuple(placed_fixtures), alone=surroundings)
 
 
@@ -176,16 +174,11 @@ def _placed(
     )
 
 
-def _together(
-    own: Obstacles,
-    placed_fixtures: Sequence[PlacedFixture],
-    bodies: Sequence[Obstacles],
-    near: Floats,
-    within: Floats | None = None,
-) -> Obstacles:
-    """One set of obstacles: what is added to the part has a tree of its own. `within`: triangles that begin with all of them."""
+def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
+    """One set of obstacles: what is added to the part has a tree of its own."""
     first = len(own.triangles) if own.first is None else own.first
-    vertex, face, weight = [own.triangles.vertex[:first]], [own.triangles.face[:first]], [own.weight[:first]]
+    shared, more = pieces(own.triangles, first)
+    vertex, face, weight = list[Floats](), [own.triangles.face[:first]], [own.weight[:first]]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
     measured = list(own.triangles.measured)
     for each, body in zip(placed_fixtures, bodies, strict=True):
@@ -199,12 +192,10 @@ def _together(
             corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
             placed = each.fixture.placed(corners)
             boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
-    for each_list, rest in ((vertex, own.triangles.vertex), (face, own.triangles.face), (weight, own.weight)):
-        each_list.append(rest[first:])
-    joined_vertex = np.concatenate(vertex) if within is None else within[: sum(map(len, vertex))]
-    triangles = Triangles(
-        joined_vertex, np.concatenate(face), max(errors), own.triangles.missing, tuple(measured),
-        own.triangles.loose, own.triangles.errors,
+    face, weight = [*face, own.triangles.face[first:]], [*weight, own.weight[first:]]
+    triangles = AddedTriangles(
+        shared, np.concatenate([*vertex, more]), np.concatenate(face), chord_error=max(errors), missing=own.triangles.missing,
+        measured=tuple(measured), loose=own.triangles.loose, errors=own.triangles.errors,
     )  # fmt: skip
     return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near, first).among(own)
 

@@ -1,7 +1,7 @@
 """Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
+from plan_cutters.scene.triangles import divided, pieces
 from plan_cutters.scene.work import METER
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
@@ -71,7 +72,7 @@ class Obstacles(Record):
     def __post_init__(self) -> None:
         if not len(self.triangles):
             raise UnjudgeableError("there is nothing that could be in the way: no face has triangles")
-        if not (np.isfinite(self.triangles.vertex).all() and np.isfinite(self.triangles.chord_error)):
+        if not (all(np.isfinite(each).all() for each in self._pieces) and np.isfinite(self.triangles.chord_error)):
             raise UnjudgeableError("the part's triangles have corners that are no points: export it again")
         if not len(self.weight):
             object.__setattr__(self, "weight", np.zeros(len(self.triangles), np.int8))
@@ -79,6 +80,11 @@ class Obstacles(Record):
     def __getstate__(self) -> dict[str, Any]:
         # Trees are built again where they are needed.
         return {each.name: getattr(self, each.name) for each in fields(self)}
+
+    @property
+    def _pieces(self) -> list[Floats]:
+        """Triangles of the first tree, and of the second."""
+        return pieces(self.triangles, self.first)
 
     def among(self, own: "Obstacles") -> "Obstacles":
         """The same, which take the tree of their first triangles from others: those alone, or with more of their own."""
@@ -96,17 +102,17 @@ class Obstacles(Record):
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
         """Order, boxes and depth of the first tree."""
-        return _tree_of(self.triangles.vertex[: self.first]) if self._own is None else self._own._built
+        return _tree_of(self._pieces[0]) if self._own is None else self._own._built
 
     @cached_property
     def _more(self) -> tuple[Ints, Floats, int]:
         """The same of the second tree."""
-        return _NO_TREE if self.first is None else _tree_of(self.triangles.vertex[self.first :])
+        return _tree_of(self._pieces[1])
 
     @cached_property
     def _first_vertex(self) -> Floats:
         """Triangles of the first tree in its order."""
-        return self.triangles.vertex.take(self._built[0], axis=0) if self._own is None else self._own._first_vertex
+        return self._pieces[0].take(self._built[0], axis=0) if self._own is None else self._own._first_vertex
 
     @cached_property
     def tree(self) -> Tree:
@@ -114,8 +120,7 @@ class Obstacles(Record):
         (_, box, depth), (more, more_box, more_depth) = self._built, self._more
         # As much in a budget whether it was made now or kept.
         METER.add(int(_BUILT * len(self.triangles)))
-        rest = self.triangles.vertex[len(self.triangles) - len(more) :]
-        return Tree(self._first_vertex, box, depth, rest.take(more, axis=0), more_box, more_depth)
+        return Tree(self._first_vertex, box, depth, self._pieces[1].take(more, axis=0), more_box, more_depth)
 
     @cached_property
     def _moment(self) -> Floats:
@@ -173,11 +178,9 @@ class Obstacles(Record):
     @cached_property
     def corners(self) -> tuple[Floats, Floats]:
         """Least and largest corner (3,) of the box around all triangles."""
-        own, vertex = self._own, self.triangles.vertex
-        rest = vertex if own is None else vertex[self.first :]
+        own, vertex = self._own, self._pieces
         each = [] if own is None else [own.corners]
-        if len(rest):
-            each.append((rest.min(axis=(0, 1)), rest.max(axis=(0, 1))))
+        each += [(some.min(axis=(0, 1)), some.max(axis=(0, 1))) for some in (vertex if own is None else vertex[1:]) if len(some)]
         return np.min([low for low, _ in each], axis=0), np.max([high for _, high in each], axis=0)
 
     @property
@@ -196,9 +199,9 @@ class Obstacles(Record):
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
         lies beyond the grid."""
-        from plan_cutters.kernels.material import mark_shell, mark_small
+        from plan_cutters.kernels.cells import mark_shell, mark_small
 
-        vertex, (low, high, grow) = self.triangles.vertex, self._extent
+        low, high, grow = self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
@@ -212,13 +215,14 @@ class Obstacles(Record):
         size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
-        if self.near is None:
-            mark_shell(np.ascontiguousarray(vertex), grow, origin, size, cell)
-        else:
+        first, last, longest = low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size
+        for vertex in map(np.ascontiguousarray, self._pieces):
+            if self.near is None:
+                mark_shell(vertex, grow, origin, size, cell)
+                continue
             # Of a large one that stands askew, the kernel would look at every cell of the box around it.
-            first, last, longest = low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size
             large = np.zeros(len(vertex), bool)
-            mark_small(np.ascontiguousarray(vertex), (first, last), longest, grow, origin, size, cell, large)
+            mark_small(vertex, (first, last), longest, grow, origin, size, cell, large)
             mark_shell(divided(vertex[large], first, last, longest), grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
@@ -240,9 +244,7 @@ class Obstacles(Record):
         numbers, first = np.unique(np.where(rim, region, 0), return_index=True)
         point = origin + (np.stack(np.unravel_index(first, region.shape), axis=1) + 0.5) * size
         mine = self.triangles.face < 0
-        fixtures = Obstacles(
-            replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]), self.weight[mine]
-        )
+        fixtures = Obstacles(self.triangles.take(mine), self.weight[mine])
         distance = np.zeros(len(point))
         if fixtures.weight.any():
             windings(np.ascontiguousarray(point), fixtures._everywhere, distance)
@@ -298,9 +300,9 @@ class Obstacles(Record):
 
     def lowest(self, direction: Floats) -> Floats:
         """Triangles (k, 3, 3) of which one is the lowest along a direction: no other may be."""
-        vertex = self.triangles.vertex
-        height = (vertex.reshape(-1, 3) @ direction).reshape(-1, 3).min(axis=1)
-        return vertex[height <= height.min() + 1e-9 * (1.0 + float(np.abs(self.corners).max()))]
+        each = [(some, (some.reshape(-1, 3) @ direction).reshape(-1, 3).min(axis=1)) for some in self._pieces if len(some)]
+        most = min(float(height.min()) for _, height in each) + 1e-9 * (1.0 + float(np.abs(self.corners).max()))
+        return np.concatenate([some[height <= most] for some, height in each])
 
     @cached_property
     def skin(self) -> "Obstacles":
@@ -335,7 +337,7 @@ class Obstacles(Record):
         if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
             return own.skin_of(body)
         mine = self.rows_of(body.faces)
-        triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
+        triangles = self.triangles.take(mine)
         # A fixture is one body whatever it consists of, and its triangles know what they count.
         weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
         if len(mine) == len(self.triangles) and (weight == self.weight).all():
@@ -372,33 +374,6 @@ def _tree_of(vertex: Floats) -> tuple[Ints, Floats, int]:
         return _NO_TREE
     order, box, depth = build(np.ascontiguousarray(vertex))
     return order, box, int(depth)
-
-
-def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:
-    """Triangles (n, 3, 3) halved until no side is longer than asked, mm, without those whose box misses a box.
-
-    Where there are already more than `most`, they stay as they are.
-    """
-    done = []
-    while len(vertex):
-        vertex = vertex[((vertex.max(axis=1) >= low) & (vertex.min(axis=1) <= high)).all(axis=1)]
-        side = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2)
-        small = side.max(axis=1) <= longest
-        if most is not None and len(vertex) > most:
-            small[:] = True
-        done.append(vertex[small])
-        vertex = halved(vertex[~small], side[~small])
-    return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
-
-
-def halved(vertex: Floats, side: Floats) -> Floats:
-    """Halve triangles (n, 3, 3) at the middle of the longest of their sides (n, 3): long thin ones come out compact.
-
-    All first halves come before all second ones. A side goes from the corner of its number to the next one.
-    """
-    a, b, c = (vertex[np.arange(len(vertex)), (side.argmax(axis=1) + k) % 3] for k in range(3))
-    middle = 0.5 * (a + b)
-    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def weights(triangles: Triangles, bodies: Sequence[Body]) -> NDArray[np.int8]:

@@ -10,8 +10,9 @@ from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.scene.fixtures import body_near
-from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.triangles import divided
 from plan_cutters.setups.solids import insides
 
 #: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.

@@ -312,9 +312,9 @@ class Scene(Record):
             obstacles = alone.certain if len(alone.certain.triangles) else alone.possible
             triangles, tolerance = obstacles.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
-            own = triangles.face > 0
+            of_part = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
             piece = Workpiece.of(
-                triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup),
+                of_part.vertex, of_part.face, self.orientation.sign, planes, self.targets, tuple(setup),
                 material_bodies(alone.bodies, self.orientation.sign),
             )  # fmt: skip
             chord = CHORD_REQUESTED * self.asked
