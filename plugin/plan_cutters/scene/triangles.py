@@ -29,7 +29,7 @@ class AddedTriangles(Triangles):
             object.__setattr__(self, name, value)
 
     @property
-    def vertex(self) -> Floats:  # type: ignore[override]
+    def vertex(self) -> Floats:
         """All of them (n + m, 3, 3)."""
         return np.concatenate([self.shared, self.added])
 
