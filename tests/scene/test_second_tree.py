@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from cad_io.arrays import Triangles
 from plan_cutters import Cutter, Scene
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels.material import far_inside, near_shell, windings
+from plan_cutters.kernels.material import far_inside, near_shell, plainly_outside, windings
 from plan_cutters.kernels.search.postures import free
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.kernels.search.stick_out import least_stick_outs
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.triangles import AddedTriangles
+from plan_cutters.scene.triangles import AddedTriangles, divided
 from plan_cutters.setups.solids import box
 from tests.support import waves
 from tests.support.cad_parts import box as block
@@ -62,6 +62,25 @@ def test_bodies_enclose_as_much_in_a_second_tree(seed):
         np.testing.assert_array_equal(each.rows_in(low, high), expected)
     up = rng.normal(size=3)
     assert (two.lowest(up) @ up).min() == pytest.approx((vertex @ up).min(), abs=1e-12)
+
+
+@settings(max_examples=25, deadline=None)
+@given(SEEDS)
+def test_a_rough_sum_calls_no_point_outside_that_may_be_inside(seed):
+    """Of bodies that lack some of their triangles, next to these, too."""
+    rng, one, _, _ = among_blocks(seed)
+    blocks = one.triangles.vertex[one.weight > 0]
+    blocks = divided(blocks, blocks.min(axis=(0, 1)), blocks.max(axis=(0, 1)), rng.uniform(0.5, 4.0))
+    blocks = blocks[rng.random(len(blocks)) < rng.choice([0.8, 0.95, 1.0])]
+    solids = Obstacles(Triangles(blocks, np.ones(len(blocks), np.int32), 0.01, ()), np.ones(len(blocks), np.int8)).solids
+    solids = solids._replace(cell=np.zeros_like(solids.cell))
+    middle = blocks[rng.integers(len(blocks), size=300)].mean(axis=1)
+    points = middle + rng.normal(size=(300, 3)) * 10.0 ** rng.uniform(-3.0, 1.0, (300, 1))
+    winding, stack = np.empty(300), np.empty(64, np.int64)
+    windings(points, solids, winding)
+    outside = np.array([plainly_outside(*point, solids, stack) for point in points.tolist()])
+    assert winding[outside].max(initial=0.0) < 0.2
+    assert outside[winding < 0.02].all()
 
 
 @settings(max_examples=15, deadline=None)

@@ -27,6 +27,9 @@ _STEPS, _SHORT = 8, 1e-3
 _PART, _REMAINS = 0.2, 0.5
 #: A node so many of its radii away counts by its area vector: a hundredth of a turn is what this has been seen to cost.
 _FAR = 3.0
+#: The same for a rough sum, seen to be off by 0.14 at most; and what it has to be below for no doubt that the other is below
+#: `MAYBE_INSIDE`: most points are far from all that encloses, and take half of the time.
+_NEARER, _NO_DOUBT = 2.0, 0.1
 #: Columns of a node's moments: centroid, radius about it, area vector, area.
 _RADIUS, _VECTOR, _AREA, MOMENTS = 3, 4, 7, 8
 
@@ -157,8 +160,11 @@ def outside(x, y, z, solids):
 
 
 @kernel
-def winding(x, y, z, solids, stack):
-    """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
+def _wound(x, y, z, far, solids, stack):
+    """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none.
+
+    A node so many of its radii away as `far` says counts by its area vector.
+    """
     if outside(x, y, z, solids):
         return 0.0
     total = 0.0
@@ -173,7 +179,7 @@ def winding(x, y, z, solids, stack):
             if moment[node, _AREA] <= 0.0:
                 continue
             dx, dy, dz = moment[node, 0] - x, moment[node, 1] - y, moment[node, 2] - z
-            square, radius = dx * dx + dy * dy + dz * dz, _FAR * moment[node, _RADIUS]
+            square, radius = dx * dx + dy * dy + dz * dz, far * moment[node, _RADIUS]
             if square > radius * radius:
                 along = dx * moment[node, _VECTOR] + dy * moment[node, _VECTOR + 1] + dz * moment[node, _VECTOR + 2]
                 total += along / (square * np.sqrt(square))
@@ -189,6 +195,18 @@ def winding(x, y, z, solids, stack):
                     total += weight[t] * _solid_angle(vertex[t], x, y, z)
     # A skin whose sense could not be told encloses all the same.
     return abs(total) / (4.0 * np.pi)
+
+
+@kernel
+def winding(x, y, z, solids, stack):
+    """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
+    return _wound(x, y, z, _FAR, solids, stack)
+
+
+@kernel
+def plainly_outside(x, y, z, solids, stack):
+    """Whether a rough sum leaves no doubt that a point lies in no body, of what is not quite closed neither."""
+    return _wound(x, y, z, _NEARER, solids, stack) < _NO_DOUBT
 
 
 @entry

@@ -294,9 +294,9 @@ class Obstacles(Record):
         """Rows of `triangles`, ascending, of those whose boxes meet a box (3,), (3,)."""
         from plan_cutters.kernels.linear.within import Space, in_box
 
-        found = np.zeros(len(self.triangles), bool)
-        in_box(self.tree, Space(np.zeros(3), np.eye(3), low, high, np.inf), found)
-        return np.sort(self.order[found])
+        met = np.zeros(len(self.triangles), bool)
+        in_box(self.tree, Space(np.zeros(3), np.eye(3), low, high, np.inf), met)
+        return np.sort(self.order[met])
 
     def lowest(self, direction: Floats) -> Floats:
         """Triangles (k, 3, 3) of which one is the lowest along a direction: no other may be."""

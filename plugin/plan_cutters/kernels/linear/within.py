@@ -1,4 +1,4 @@
-"""What of a part lies in a box or cylinder? Only what a tree has near it is looked at."""
+"""Which triangles, or points of them, lie in a box or cylinder? Only what a tree has near it is looked at."""
 
 from typing import Any, NamedTuple
 
@@ -100,7 +100,7 @@ def any_within(tree, faces, space):
 
 
 @kernel
-def _mark(tree, space, stack, found):
+def _mark(tree, space, stack, marked):
     """As `in_box`; scratch: stack (64,) int64."""
     for k in range(2):
         vertex, box, depth, begin = half(tree, k)
@@ -121,11 +121,11 @@ def _mark(tree, space, stack, found):
                 for j in range(3):
                     low, high = min(v[0, j], min(v[1, j], v[2, j])), max(v[0, j], max(v[1, j], v[2, j]))
                     meets = meets and high >= space.low[j] and low <= space.high[j]
-                found[begin + t] = meets
+                marked[begin + t] = meets
 
 
 @entry
-def in_box(tree, space, found):
+def in_box(tree, space, marked):
     """Write for triangles (n,) in tree order whether the box around each, along x, y and z, meets a box along them.
 
     Parameters
@@ -133,6 +133,6 @@ def in_box(tree, space, found):
     tree : Tree
     space : Space
         The box, in the frame of the triangles.
-    found : (n,) bool, written where it is true
+    marked : (n,) bool, written where it is true
     """
-    _mark(tree, space, np.empty(64, np.int64), found)
+    _mark(tree, space, np.empty(64, np.int64), marked)
