@@ -208,7 +208,7 @@ class JudgedPart:
             compiling("cover.cover")
             most = np.inf
             if ready.options.area_budget is None:
-                triangles = len(ready.conditions.obstacles.tree.vertex)
+                triangles = len(ready.conditions.obstacles.triangles)
                 made = _TRIANGLE * triangles + _SAMPLE * len(ready.samples)
                 most = _WORK_LEAST / max(1.0, triangles / _FEW) + _WORK_SHARE * (self.searched.looked + made)
                 most *= EFFORT[ready.options.effort]

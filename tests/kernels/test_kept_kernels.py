@@ -12,9 +12,9 @@ from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import material
+from plan_cutters.kernels import cells, material
 from plan_cutters.kernels.limits import any_axis
-from plan_cutters.kernels.linear.rulings import extents
+from plan_cutters.kernels.linear.rulings import OneFace, extents
 from plan_cutters.kernels.maps.free_tilts import free_tilts
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.kernels.search import search
@@ -157,14 +157,15 @@ def test_trees_and_bodies_say_what_is_kept(keeps, obstacles):
     material.near_shell(points, 0.9, solids, near)
     material.far_inside(points, 0.4, solids, inside)
     cell = np.zeros((17, 19, 13), np.uint8)
-    material.mark_shell(solids.tree.vertex[::5], 0.37, np.array([3.1, 2.3, -6.1]), 1.7, cell)
+    cells.mark_shell(solids.tree.vertex[::5], 0.37, np.array([3.1, 2.3, -6.1]), 1.7, cell)
     trees = [waves.tree_of(soup(rng, count, -9, 9, 1.3)) for count in (1, 7, 8, 9, 200)]
     face = waves.triangles(9)
+    own = OneFace(waves.tree_of(face), np.ones(len(face), np.int32), 1)
     point = waves.samples(5).point
     lines = []
     for band in (0.01, 0.4, 2.0):
         low, high = np.zeros(25), np.zeros(25)
-        extents(point, np.tile([0.6, 0.8, 0.0], (25, 1)), np.tile([0.0, 0.0, 1.0], (25, 1)), face, band, low, high)
+        extents(point, np.tile([0.6, 0.8, 0.0], (25, 1)), np.tile([0.0, 0.0, 1.0], (25, 1)), own, band, low, high)
         lines.append((low, high))
     keeps("trees_and_bodies", [solids._replace(key=0), winding, near, inside, cell, trees, lines])
 

@@ -9,14 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from cad_io.arrays import Triangles
 from plan_cutters import plan
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import STRATEGIES
-from plan_cutters.kernels.linear.rulings import extents
+from plan_cutters.kernels.linear import rulings
+from plan_cutters.kernels.linear.rulings import OneFace, extents
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.walls import Walls, flank_of, flat_of
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.obstacles import Obstacles
+from tests.support import waves
 from tests.support.cad_parts import box, rod
 from tests.support.places import real_file
 
@@ -88,18 +92,33 @@ def test_no_tip_but_a_flat_one_lies_on_a_floor():
     assert flat_of(Cutter.lens(radius=6, bottom_radius=60, corner_radius=1, length=40)) == 0.0
 
 
+def alone(vertex):
+    """Triangles (n, 3, 3) as those of face 1, with no others."""
+    return OneFace(waves.tree_of(np.asarray(vertex)), np.ones(len(vertex), np.int32), 1)
+
+
+def among_all(point, ruling, normal, own, band):
+    """The slow twin of `extents` for one line: every triangle of the face is looked at."""
+    side, ends, limit = np.cross(ruling, normal), np.empty((2, 2)), np.array([-np.inf, np.inf])
+    first, last = np.inf, -np.inf
+    for triangle in own.tree.vertex[own.faces == own.number]:
+        if rulings._piece(triangle, point, ruling, normal, side, ends) and rulings._clipped(ends, band, limit):
+            first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+    return (min(0.0, max(first, limit[0])), max(0.0, min(last, limit[1]))) if first <= last else (np.nan, np.nan)
+
+
 def test_a_face_ends_along_a_line_where_its_triangles_do_and_where_it_leaves_the_line():
     flat = np.array([[[0.0, 0, 0], [10, 0, 0], [0, 10, 0]]])
     low, high = np.empty((2, 1))
     start = np.array([[2.0, 3.0, 0.0]])
-    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), flat, 0.01, low, high)
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), alone(flat), 0.01, low, high)
     assert (low[0], high[0]) == pytest.approx((-2.0, 5.0))
     # From x = 4 on it rises by a tenth: it leaves the band after 0.1 mm.
     bent = np.array([[[0.0, 0, 0], [4, 0, 0], [4, 10, 0]], [[0, 0, 0], [4, 10, 0], [0, 10, 0]],
                      [[4, 0, 0], [9, 0, 0.5], [9, 10, 0.5]], [[4, 0, 0], [9, 10, 0.5], [4, 10, 0]]])  # fmt: skip
-    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), bent, 0.01, low, high)
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), alone(bent), 0.01, low, high)
     assert (low[0], high[0]) == pytest.approx((-2.0, 2.1))
-    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), flat[:0], 0.01, low, high)
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), alone(flat)._replace(number=2), 0.01, low, high)
     assert np.isnan(low[0])
     assert np.isnan(high[0])
 
@@ -119,9 +138,38 @@ def test_a_face_goes_as_far_wherever_it_stands_and_whatever_lies_beside_the_line
     for k, (some, moved) in enumerate([(sheet, False), ([*sheet, *beside], False), ([*sheet, *beside], True)]):
         frame, place = (turn, far * np.ones(3)) if moved else (np.eye(3), np.zeros(3))
         start = np.array([[0.0, 0.0, 0.0]]) @ frame.T + place
-        extents(start, frame[:, [0]].T.copy(), frame[:, [2]].T.copy(), np.array(some) @ frame.T + place, 0.05, low[k], high[k])
+        own = alone(np.array(some) @ frame.T + place)
+        extents(start, frame[:, [0]].T.copy(), frame[:, [2]].T.copy(), own, 0.05, low[k], high[k])
     assert low[:, 0] == pytest.approx(low[0, 0], abs=1e-6, nan_ok=True)
     assert high[:, 0] == pytest.approx(high[0, 0], abs=1e-6, nan_ok=True)
+
+
+@given(st.integers(0, 2**31), st.sampled_from([0.0, 1e-6, 0.01, 0.3]), st.booleans())
+@settings(max_examples=40, deadline=None)
+def test_a_face_ends_where_it_does_among_all_of_its_triangles(seed, band, exact):
+    """Bit for bit: waves and steps, another face through them, lines through corners, and along sides, of triangles."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(9.0), np.arange(9.0), indexing="ij")
+    height = np.where(exact, np.rint(rng.normal(0.0, 0.4, x.shape)) * 0.25, rng.normal(0.0, 0.02, x.shape))
+    grid = np.stack([x, y, height], axis=-1)
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+    vertex = np.concatenate([np.stack(each, axis=2).reshape(-1, 3, 3) for each in ((a, b, c), (a, c, d))])
+    # A corner lies in the plane of a line, or next to it.
+    start = grid[rng.integers(9, size=20), rng.integers(9, size=20)] + rng.choice([0.0, 0.0, 1e-9, 0.3], (20, 3))
+    turn = 2.0 * np.pi * (rng.integers(4, size=20) / 4.0 if exact else rng.random(20))
+    ruling, up = np.stack([np.cos(turn), np.sin(turn), np.zeros(20)], axis=1), np.tile([0.0, 0.0, 1.0], (20, 1))
+    if not exact:
+        frame = Rotation.random(random_state=seed).as_matrix()
+        vertex, start, ruling, up = (each @ frame.T for each in (vertex, start + 300.0, ruling, up))
+        vertex = vertex + 300.0 * frame.sum(axis=1)
+    built = Obstacles(Triangles(np.ascontiguousarray(vertex), rng.integers(1, 3, len(vertex)).astype(np.int32), 0.0, ()))
+    own = OneFace(built.tree, built.faces, 1)
+    low, high = np.empty((2, 20))
+    extents(*map(np.ascontiguousarray, (start, ruling, up)), own, band, low, high)
+    assert np.isfinite(low).any() or band < 0.3
+    np.testing.assert_array_equal(
+        np.array([low, high]).T, [among_all(*line, own, band) for line in zip(start, ruling, up, strict=True)]
+    )
 
 
 def test_strategies_stand_in_the_operations_and_in_the_process():
@@ -152,7 +200,8 @@ def test_a_wall_is_higher_than_the_scallop(height, there):
     low, high = z - 0.5 * height, z + 0.5 * height
     band = np.array([[[x, y - 5, low], [x, y + 5, low], [x, y + 5, high]], [[x, y - 5, low], [x, y + 5, high], [x, y - 5, high]]])
     probes = Probes(samples, ready.cutters, ready.setups, ready.machinable)
-    walls = Walls(probes, {int(samples.face[row]): band}, 0.0, options.scallop, options.accuracy)
+    obstacles = Obstacles(Triangles(band, np.full(2, samples.face[row]), 0.0, ()))
+    walls = Walls(probes, obstacles, options.scallop, options.accuracy)
     (strip,) = walls.passes(0, 0, np.array([0.0, 0.0, 1.0]), np.array([row])).strip
     assert np.isfinite(strip) == there
     assert not there or strip == pytest.approx(height)

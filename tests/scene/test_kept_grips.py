@@ -24,6 +24,7 @@ from plan_cutters.setups.vise_places import vise_places
 from plan_cutters.setups.workpiece import Workpiece
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import said_by
+from tests.support.vises import stands_in
 
 UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8)
 
@@ -161,7 +162,7 @@ def test_what_lies_at_jaws(keeps):
                 for some in (1, 2, 3, 4)
                 for slack in (0.0, 0.02, 0.3)
             ],
-            "entered": [solids.entered(clamping, rng.uniform(-30, 30, (50, 3)) * [1, 1, 0.7], deep) for deep in (0.01, 2.0, 9.0)],
+            "entered": [stands_in(clamping, rng.uniform(-30, 30, (50, 3)) * [1, 1, 0.7], deep) for deep in (0.01, 2.0, 9.0)],
             "triangles": [
                 solids.triangles_of(clamping, chord, shown=shown, above=above)
                 for chord, shown, above in (

@@ -31,12 +31,13 @@ from plan_cutters.scene.covering import coverings, sheets
 from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
 from plan_cutters.scene.fixtures import joined
 from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
-from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
 from plan_cutters.scene.setups import for_another_setup, stood_on
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.scene.thickened import thickened
 from plan_cutters.scene.threads import in_chunks, with_company
+from plan_cutters.scene.triangles import divided
 from plan_cutters.setups import solids
 from plan_cutters.setups.workpiece import clipped, stands
 from tests.support.cad_parts import box, compound, cut, rod

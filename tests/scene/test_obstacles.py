@@ -10,8 +10,9 @@ from cad_io.arrays import LostFace, Triangles
 from cad_io.part.bodies import Body
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.inside_material import cover
-from plan_cutters.scene.obstacles import Obstacles, divided, halved, weights
+from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.surroundings import surroundings
+from plan_cutters.scene.triangles import divided, halved
 from plan_cutters.setups import solids
 from tests.support import shapes
 from tests.support.cad_parts import box, compound

@@ -8,7 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.clamping import Block, Chuck, Disc, Vise
-from plan_cutters.setups.solids import box, cylinder, entered, sides_of, strip, triangles_of
+from plan_cutters.setups.solids import box, cylinder, sides_of, strip, triangles_of
+from tests.support.vises import stands_in
 
 lengths = st.floats(0.1, 500.0)
 chords = st.floats(1e-4, 1.0)
@@ -147,5 +148,7 @@ def test_a_point_is_seen_in_a_vise_or_chuck_where_it_lies_deeper_than_asked(clam
     points = np.concatenate(points)
     truth = np.any([inside(each, points, deep) for each in solids], axis=0)
     # Jaws of a chuck are not looked at: no is no answer there.
-    assert [entered(clamping, each[None], deep) for each in points] == truth.tolist()
-    assert entered(clamping, points, deep) == truth.any()
+    assert [stands_in(clamping, each[None], deep) for each in points] == truth.tolist()
+    turned = (*rng.uniform(-90.0, 90.0, 3), *rng.uniform(-180.0, 180.0, 3))
+    assert stands_in(clamping, points, deep, turned) == truth.any()
+    assert truth.all() or not stands_in(clamping, points[~truth], deep, turned)

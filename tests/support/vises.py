@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from cad_io.arrays import Triangles
 from plan_cutters import Scene
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.scene.obstacles import divided
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.overlap import entered
+from plan_cutters.scene.triangles import divided
 from plan_cutters.setups.solids import box
 
 
@@ -29,3 +32,10 @@ def hold_of(part, word, setup=(0.0, 0.0, 1.0), targets=()):
     scene = Scene.of(part).for_targets(targets)
     scene.surround()
     return scene.hold(Fixture.parse(word), setup)
+
+
+def stands_in(clamping, points, deep, place=(0.0,) * 6):
+    """Whether some of points (n, 3) in the frame of a vise or chuck is seen deeper in it than asked, wherever it stands."""
+    fixture = Fixture(clamping.word, place)
+    vertex = np.repeat(fixture.placed(points)[:, None], 3, axis=1)
+    return entered(Obstacles(Triangles(vertex, np.ones(len(points), np.int32), 0.0, ())), fixture, clamping, deep)

@@ -56,8 +56,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
 
 def highest(ready: Prepared, cutter: Cutter) -> float:
     """Give a stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
-    each = [conditions.obstacles.triangles.vertex for conditions in ready.setups]
-    size = max(float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1)))) for vertex in each)
+    size = max(float(np.linalg.norm(np.ptp(conditions.obstacles.corners, axis=0))) for conditions in ready.setups)
     return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
 
 

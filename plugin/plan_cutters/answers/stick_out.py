@@ -78,7 +78,7 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: Stic
         outer_tool = Context.of(held(cutter, beyond), ready.conditions).outer_tool
         face = obstacles.face(triangle)
         point = deepest_on(
-            obstacles.tree.vertex[triangle],
+            obstacles.tree.corners(triangle),
             lambda at: outer_tool.depth(
                 at, posture.contact(ready.samples.point)[row], normal, posture.tilt_direction[row], float(posture.tilt[row])
             ),

@@ -20,7 +20,8 @@ from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import Context, contacts_of, tool_of
 from plan_cutters.scene.flats_and_flanks import on_the_flank, on_the_flat
-from plan_cutters.scene.obstacles import Obstacles, halved
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.triangles import halved
 
 #: Ends that move by no more, rad, have settled.
 SETTLED = np.radians(0.01)

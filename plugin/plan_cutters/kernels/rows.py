@@ -2,13 +2,29 @@
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from cad_io.arrays import Floats
+
 
 class Tree(NamedTuple):
-    """Triangles in tree order, vertex (n, 3, 3), and the tree, box (nodes, 16) and depth, as `tree.build` gives it."""
+    """Triangles in tree order, vertex (n, 3, 3), and the tree, box (nodes, 16) and depth, as `tree.build` gives it.
+
+    What is added to them, such as fixtures to a part, has a second tree of the same form; its triangles are counted on from n. So
+    many can share the first one.
+    """
 
     vertex: Any
     box: Any
     depth: int
+    more_vertex: Any = np.zeros((0, 3, 3))
+    more_box: Any = np.zeros((0, 16))
+    more_depth: int = 0
+
+    def corners(self, triangle: int) -> Floats:
+        """Corners (3, 3) of a triangle by its number in tree order."""
+        first = len(self.vertex)
+        return np.asarray(self.vertex[triangle] if triangle < first else self.more_vertex[triangle - first])
 
 
 class Contacts(NamedTuple):

@@ -57,7 +57,21 @@ class _Times:
 
     def total(self, some: Sequence[int]) -> tuple[float, float]:
         """The time of some columns, numbers, with simultaneous motion for what they leave; and that of cutting alone."""
-        own = self.cost[:, some].min(axis=1, initial=np.inf)
+        return self._with(some, self.cost[:, some].min(axis=1, initial=np.inf))
+
+    def without_one(self, some: list[int]) -> list[tuple[list[int], tuple[float, float]]]:
+        """Some columns without each of them in turn, and the `total` of the others."""
+        cost, rows = self.cost[:, some], np.arange(len(self.cost))
+        quickest = cost.argmin(axis=1)
+        least = cost[rows, quickest]
+        cost[rows, quickest] = np.inf
+        # Each sample goes to the column that is quickest there, or to the next one where that is gone.
+        following = cost.min(axis=1)
+        others = [[each for each in some if each != gone] for gone in some]
+        return [(each, self._with(each, np.where(quickest == k, following, least))) for k, each in enumerate(others)]
+
+    def _with(self, some: Sequence[int], own: Floats) -> tuple[float, float]:
+        """The `total` of columns that take so long at each sample (r,), infinite where none serves."""
         left = ~np.isfinite(own)
         cutting = float(np.where(left, self.moving, own).sum())
         options, columns = self.task.ready.options, self.columns.of(np.array(some, np.int64))
@@ -89,15 +103,12 @@ def recommended(task: Task, columns: Columns) -> Columns:
     times, stay = _Times.of(task, columns), list(range(len(columns)))
     (now, cutting), whole = times.total(stay), len(columns)
     while stay:
-        tried = [[each for each in stay if each != gone] for gone in stay]
-        totals = [times.total(each) for each in tried]
-        best = min(range(len(tried)), key=lambda k: totals[k][0])
-        total, cut = totals[best]
+        others, (total, cut) = min(times.without_one(stay), key=lambda each: each[1][0])
         # Turns alone are no reason: what the axes take on the way is in no time of simultaneous motion.
         worth = total < (1.0 - _WORTH) * now and cut < cutting
         if len(stay) <= options.max_orientations and not worth:
             break
-        stay, now, cutting = tried[best], total, cut
+        stay, now, cutting = others, total, cut
     return columns if len(stay) == whole else columns.of(np.array(stay, np.int64))
 
 
@@ -110,7 +121,7 @@ def fewer(task: Task, columns: Columns) -> list[tuple[Columns, float]]:
     choices = list[tuple[Columns, float]]()
     while stay:
         choices.append((columns.of(np.array(stay, np.int64)), times.total(stay)[0]))
-        stay = min(([each for each in stay if each != gone] for gone in stay), key=lambda each: times.total(each)[0])
+        stay, _ = min(times.without_one(stay), key=lambda each: each[1][0])
     return choices
 
 

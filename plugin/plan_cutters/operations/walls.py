@@ -7,18 +7,18 @@ scallop height. Nothing is concluded from the kind of a surface: a face that ben
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, rows_by_face
+from cad_io.arrays import Floats, Record
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.fixed_axis import leaning
+from plan_cutters.scene.obstacles import Obstacles
 
 Rows = NDArray[np.int64]
 #: Lengths that count as nothing, mm.
@@ -98,18 +98,16 @@ class Walls:
     Parameters
     ----------
     probes : Probes
-    triangles : mapping
-        Of the part, (t, 3, 3), mm, by face number.
-    chord : float
-        How far these may be off the face, mm.
+    obstacles : Obstacles
+        With the triangles of the part.
     scallop : float
         mm.
     accuracy : float
         How far an axis may be off the ruling, rad: the accuracy of the rotary axes.
     """
 
-    def __init__(self, probes: Probes, triangles: Mapping[int, Floats], chord: float, scallop: float, accuracy: float) -> None:
-        self._probes, self._triangles, self._band = probes, triangles, chord + scallop
+    def __init__(self, probes: Probes, obstacles: Obstacles, scallop: float, accuracy: float) -> None:
+        self._probes, self._obstacles, self._band = probes, obstacles, obstacles.triangles.chord_error + scallop
         self._scallop, self._accuracy = scallop, accuracy
         self._upright: dict[int, NDArray[np.bool_]] = {}
         self._known: dict[str, Floats] = {}
@@ -118,11 +116,7 @@ class Walls:
     @classmethod
     def of(cls, probes: Probes, scallop: float, accuracy: float) -> "Walls":
         """Those of the faces that samples lie on."""
-        obstacles = probes.setups[0].obstacles.triangles
-        wanted = np.unique(probes.samples.face)
-        rows = rows_by_face(obstacles.face)
-        triangles = {face: obstacles.vertex[rows[face]] for face in wanted.tolist() if face in rows}
-        return cls(probes, triangles, obstacles.chord_error, scallop, accuracy)
+        return cls(probes, probes.setups[0].obstacles, scallop, accuracy)
 
     def of_probes(self, probes: Probes) -> "Walls":
         """The same with probes of the same tools at the same samples: what is cut along the setup axis is known already."""
@@ -225,18 +219,16 @@ class Walls:
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""
-        from plan_cutters.kernels.linear.rulings import extents
+        from plan_cutters.kernels.linear.rulings import OneFace, extents
 
         samples, (low, high) = self._probes.samples, np.full((2, len(rows)), np.nan)
         tangent = axis - (normal @ axis)[:, None] * normal
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-        face = samples.face[rows]
+        face, obstacles = samples.face[rows], self._obstacles
         for number in np.unique(face).tolist():
-            vertex, mine = self._triangles.get(number), np.flatnonzero(face == number)
-            if vertex is None:
-                continue
+            mine, own = np.flatnonzero(face == number), OneFace(obstacles.tree, obstacles.faces, number)
             first, last = np.empty((2, len(mine)))
-            extents(samples.point[rows[mine]], tangent[mine], normal[mine], vertex, self._band, first, last)
+            extents(samples.point[rows[mine]], tangent[mine], normal[mine], own, self._band, first, last)
             low[mine], high[mine] = first, last
         return low, high
 

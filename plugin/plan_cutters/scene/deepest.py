@@ -115,13 +115,13 @@ def deepest(
     deepest_triangle = triangle
     while deepest_triangle >= 0:
         triangle, reached = deepest_triangle, depth
-        point = deepest_on(obstacles.tree.vertex[triangle], partial(beyond, depth=reached))
+        point = deepest_on(obstacles.tree.corners(triangle), partial(beyond, depth=reached))
         depth = max(depth_of(point, reached), reached)
         deepest_triangle = met(depth * (1.0 + _EXACT) + 1e-9) if depth < most else -1
         depth = depth * (1.0 + _EXACT) + 1e-9 if deepest_triangle >= 0 else depth
     face = obstacles.face(triangle)
     if part is not None and 0 < face <= len(part.faces):
-        corner = obstacles.tree.vertex[triangle]
+        corner = obstacles.tree.corners(triangle)
         side = float(np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1).max())
         shallow = max(depth - 2.0 * error, 0.5 * depth)
         foot = _foot(part, face, point, side, 4.0 * error + 1e-6, partial(beyond, depth=shallow))

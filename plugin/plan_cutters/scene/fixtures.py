@@ -26,6 +26,7 @@ from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
+from plan_cutters.scene.triangles import AddedTriangles, pieces
 from plan_cutters.setups.gripped import material_bodies, unheld_bodies
 from plan_cutters.setups.holds import Hold
 from plan_cutters.setups.solids import box, cylinder, sides_of, triangles_of
@@ -129,8 +130,7 @@ def joined(
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
         return surroundings
-    vertex = surroundings.possible.triangles.vertex
-    near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
+    near = np.array(surroundings.possible.corners)
     placed_fixtures, bodies = [], []
     for number, (requested, across) in enumerate(placed, 1):
         held = None if hold is None or not requested.to_place else hold(requested, across)
@@ -175,8 +175,10 @@ def _placed(
 
 
 def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
-    """One set of obstacles, with one tree."""
-    vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
+    """One set of obstacles: what is added to the part has a tree of its own."""
+    first = len(own.triangles) if own.first is None else own.first
+    shared, more = pieces(own.triangles, first)
+    vertex, face, weight = list[Floats](), [own.triangles.face[:first]], [own.weight[:first]]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
     measured = list(own.triangles.measured)
     for each, body in zip(placed_fixtures, bodies, strict=True):
@@ -190,11 +192,12 @@ def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: 
             corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
             placed = each.fixture.placed(corners)
             boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
-    triangles = Triangles(
-        np.concatenate(vertex), np.concatenate(face), max(errors), own.triangles.missing, tuple(measured),
-        own.triangles.loose, own.triangles.errors,
+    face, weight = [*face, own.triangles.face[first:]], [*weight, own.weight[first:]]
+    triangles = AddedTriangles(
+        shared, np.concatenate([*vertex, more]), np.concatenate(face), chord_error=max(errors), missing=own.triangles.missing,
+        measured=tuple(measured), loose=own.triangles.loose, errors=own.triangles.errors,
     )  # fmt: skip
-    return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
+    return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near, first).among(own)
 
 
 def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
@@ -214,7 +217,8 @@ def body_near(clamping: Clamping, fixture: Fixture, chord: float, part: Obstacle
 
     `chord`: the chord error to ask for, mm.
     """
-    lowest = float(((part.triangles.vertex - fixture.shift) @ fixture.rotation[:, 2]).min())
+    up = fixture.rotation[:, 2]
+    lowest = float(((part.lowest(up) - fixture.shift) @ up).min())
     vertex, error = triangles_of(clamping, chord, above=lowest)
     return _solid(fixture.placed(vertex), error).certain
 
@@ -260,8 +264,7 @@ def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], n
         (top,) = fixture.sizes
     else:
         # What surely is the part: what only stands for something missing may reach lower than anything does.
-        part = surroundings.certain.triangles.vertex
-        part = part if len(part) else surroundings.possible.triangles.vertex
+        part = surroundings.certain.lowest((fixture.rotation @ frame.T)[:, 2])
         # Its shift comes on top, as for any fixture.
         top = float(heights(part + fixture.shift)[..., 2].min())
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -274,21 +274,19 @@ def _wholly_along(
 
     Of a face that is higher than flutes under a narrower neck, as much lies along them as they are long.
     """
-    from plan_cutters.kernels.linear.rulings import extents
+    from plan_cutters.kernels.linear.rulings import OneFace, extents
 
     whole = off <= _WHOLE
     open_ = np.flatnonzero(~whole)
-    triangles = conditions.obstacles.triangles
+    obstacles = conditions.obstacles
     for number in np.unique(face[open_]).tolist():
-        mine, own = open_[face[open_] == number], conditions.obstacles.rows_of([number])
-        if not len(own):
-            continue
+        mine, own = open_[face[open_] == number], OneFace(obstacles.tree, obstacles.faces, number)
         n = contacts.normal[rows[mine]]
         ruling = axis - (n @ axis)[:, None] * n
         ruling /= np.linalg.norm(ruling, axis=1)[:, None]
         low, high = np.empty((2, len(mine)))
-        band = triangles.chord_error + conditions.tolerance
-        extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[own], band, low, high)
+        band = obstacles.triangles.chord_error + conditions.tolerance
+        extents(contacts.point[rows[mine]], ruling, n, own, band, low, high)
         long = np.minimum(high - low, flank.length or np.inf)
         whole[mine] = long * np.sin(off[mine]) <= conditions.tolerance
     return whole

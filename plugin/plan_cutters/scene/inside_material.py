@@ -179,7 +179,7 @@ def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None =
             # A fixture is one body whatever it consists of, and its triangles know what they count.
             sign = dict(zip(body.faces, body.sign, strict=True))
             weight = np.array([sign[n] for n in face.tolist()], np.int8)
-    vertex = certain.tree.vertex[rows]
+    vertex = certain.triangles.vertex[certain.order[rows]]
     a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
     # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.
     sides = np.stack([np.cross(q, r) @ normal for q, r in ((a, b), (b, c), (c, a))])
@@ -196,9 +196,22 @@ def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None =
 
 def _met(point: Floats, normal: Floats, certain: Obstacles) -> NDArray[np.int64]:
     """Triangles, in tree order, in whose leaves' boxes a ray comes."""
-    tree, node = certain.tree, np.zeros(1, np.int64)
-    for level in range(tree.depth + 1):
-        box = tree.box[node]
+    tree, met = certain.tree, [np.zeros(0, np.int64)]
+    for first, count, boxes, depth in (
+        (0, len(tree.vertex), tree.box, tree.depth),
+        (len(tree.vertex), len(tree.more_vertex), tree.more_box, tree.more_depth),
+    ):
+        if count:
+            leaf = _leaves_met(point, normal, boxes, depth)
+            met += [first + np.arange((count * i) >> depth, (count * (i + 1)) >> depth) for i in leaf.tolist()]
+    return np.concatenate(met)
+
+
+def _leaves_met(point: Floats, normal: Floats, boxes: Floats, depth: int) -> NDArray[np.int64]:
+    """Leaves of a tree, ascending, in whose boxes a ray comes."""
+    node = np.zeros(1, np.int64)
+    for level in range(depth + 1):
+        box = boxes[node]
         axes, half = box[:, 3:12].reshape(-1, 3, 3), box[:, 12:15]
         start, step = np.einsum("nki,ni->nk", axes, point - box[:, :3]), axes @ normal
         with np.errstate(all="ignore"):
@@ -209,8 +222,6 @@ def _met(point: Floats, normal: Floats, certain: Obstacles) -> NDArray[np.int64]
         high = np.where(adjacent, np.inf, ends.max(axis=0)).min(axis=1)
         hit = ~(adjacent & (np.abs(start) > half)).any(axis=1) & (high >= np.maximum(low, 0.0) - 1e-9)
         node = node[hit]
-        if level < tree.depth:
+        if level < depth:
             node = np.concatenate([2 * node + 1, 2 * node + 2])
-    count, leaf = len(tree.vertex), np.sort(node) - ((1 << tree.depth) - 1)
-    runs = [np.arange((count * i) >> tree.depth, (count * (i + 1)) >> tree.depth) for i in leaf.tolist()]
-    return np.concatenate([np.zeros(0, np.int64), *runs])
+    return np.sort(node) - ((1 << depth) - 1)

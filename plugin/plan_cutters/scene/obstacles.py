@@ -1,7 +1,7 @@
 """Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
+from plan_cutters.scene.triangles import divided, pieces
 from plan_cutters.scene.work import METER
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
@@ -29,8 +30,9 @@ _BUILT = 15.0
 _CELLS = 64
 #: Numbers of what encloses something, each once in a process; 0 is that of nothing.
 _KEYS = count(1)
-#: In place of a tree that is made anew.
-_NO_TREE = Tree(np.zeros((0, 3, 3)), np.zeros((0, 0)), 0)
+#: In place of a tree that is made anew; and one of no triangles, with its order.
+_NOTHING = Tree(np.zeros((0, 3, 3)), np.zeros((0, 16)), 0)
+_NO_TREE = (np.zeros(0, np.int32), _NOTHING.box, 0)
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
 
@@ -51,6 +53,8 @@ class Obstacles(Record):
         Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
     near : (2, 3) float, optional
         Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
+    first : int, optional
+        So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
 
     Raises
     ------
@@ -63,11 +67,12 @@ class Obstacles(Record):
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
     gap: float = 0.0
     near: Floats | None = None
+    first: int | None = None
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
             raise UnjudgeableError("there is nothing that could be in the way: no face has triangles")
-        if not (np.isfinite(self.triangles.vertex).all() and np.isfinite(self.triangles.chord_error)):
+        if not (all(np.isfinite(each).all() for each in self._pieces) and np.isfinite(self.triangles.chord_error)):
             raise UnjudgeableError("the part's triangles have corners that are no points: export it again")
         if not len(self.weight):
             object.__setattr__(self, "weight", np.zeros(len(self.triangles), np.int8))
@@ -76,26 +81,58 @@ class Obstacles(Record):
         # Trees are built again where they are needed.
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
+    @property
+    def _pieces(self) -> list[Floats]:
+        """Triangles of the first tree, and of the second."""
+        return pieces(self.triangles, self.first)
+
+    def among(self, own: "Obstacles") -> "Obstacles":
+        """The same, which take the tree of their first triangles from others: those alone, or with more of their own."""
+        own = own._own or own
+        if own.first is None and self.first == len(own.triangles):
+            self.__dict__["_shared"] = own
+        return self
+
+    @property
+    def _own(self) -> "Obstacles | None":
+        """Those that share the tree of their triangles."""
+        shared: Obstacles | None = self.__dict__.get("_shared")
+        return shared
+
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
-        from plan_cutters.kernels.linear.tree import build, build_apart
+        """Order, boxes and depth of the first tree."""
+        return _tree_of(self._pieces[0]) if self._own is None else self._own._built
 
-        vertex = np.ascontiguousarray(self.triangles.vertex)
-        if self.near is None:
-            order, box, depth = build(vertex)
-        else:
-            # Near the part a search looks at its own triangles nearly alone.
-            own, away = int((self.triangles.face >= 0).sum()), 10.0 * float(np.ptp(vertex, axis=(0, 1)).max())
-            order, box, depth = build_apart(vertex, own, away)
-        return order, box, int(depth)
+    @cached_property
+    def _more(self) -> tuple[Ints, Floats, int]:
+        """The same of the second tree."""
+        return _tree_of(self._pieces[1])
+
+    @cached_property
+    def _first_vertex(self) -> Floats:
+        """Triangles of the first tree in its order."""
+        return self._pieces[0].take(self._built[0], axis=0) if self._own is None else self._own._first_vertex
 
     @cached_property
     def tree(self) -> Tree:
         """The triangles in tree order, and the tree, as the kernels take it."""
-        order, box, depth = self._built
+        (_, box, depth), (more, more_box, more_depth) = self._built, self._more
         # As much in a budget whether it was made now or kept.
-        METER.add(int(_BUILT * len(order)))
-        return Tree(self.triangles.vertex.take(order, axis=0), box, depth)
+        METER.add(int(_BUILT * len(self.triangles)))
+        return Tree(self._first_vertex, box, depth, self._pieces[1].take(more, axis=0), more_box, more_depth)
+
+    @cached_property
+    def _moment(self) -> Floats:
+        """Moments of the triangles of the first tree."""
+        from plan_cutters.kernels.material import MOMENTS, moments
+
+        (order, box, depth), own, weight = self._built, self._own, self.weight[: self.first]
+        if not weight.any():
+            return np.zeros((len(box), MOMENTS))
+        if own is not None and (weight == own.weight).all():
+            return own._moment
+        return moments(self._first_vertex, np.ascontiguousarray(weight[order]), depth)
 
     @cached_property
     def solids(self) -> "Solids":
@@ -108,30 +145,48 @@ class Obstacles(Record):
         """Make the tree and `solids`, or take them from a cache: those of the same triangles are the same."""
         if "solids" in self.__dict__:
             return
+        if self._own is not None:
+            self._own.build(cache)
         triangles = self.triangles
         own = None if self.near is None else triangles.face >= 0
-        built, solids = cache.cached(
+        built, more, solids = cache.cached(
             "tree",
-            (triangles.vertex, triangles.chord_error, self.weight, self.open_boxes, self.gap, self.near, own),
-            # The triangles are known, and numbers hold in one process.
-            lambda: (self._built, self.solids._replace(tree=_NO_TREE, key=0)),
+            (triangles.vertex, triangles.chord_error, self.weight, self.open_boxes, self.gap, self.near, own, self.first),
+            # The triangles are known, moments soon made, and numbers hold in one process.
+            lambda: (
+                None if self._own else self._built,
+                self._more,
+                self.solids._replace(tree=_NOTHING, moment=_NOTHING.box, key=0),
+            ),
         )
         if "solids" not in self.__dict__:
-            self.__dict__["_built"] = built
-            self.__dict__["solids"] = solids._replace(tree=self.tree, key=next(_KEYS) if self.weight.any() else 0)
+            if built is not None:
+                self.__dict__["_built"] = built
+            self.__dict__["_more"] = more
+            key = next(_KEYS) if self.weight.any() else 0
+            self.__dict__["solids"] = solids._replace(tree=self.tree, moment=self._moment if key else solids.more_moment, key=key)
 
     def _filled(self, cells: tuple[NDArray[np.uint8], Floats, float, bool], end: Floats) -> "Solids":
         from plan_cutters.kernels.material import Solids, moments
 
-        weight = np.ascontiguousarray(self.weight[self._built[0]])
+        tree, weight = self.tree, np.ascontiguousarray(self.weight[self.order])
         grow = np.nan if len(self.open_boxes) else self._extent[2]
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end, grow, next(_KEYS))
+        mine, more = np.split(weight, [len(tree.vertex)])
+        more_moment = moments(tree.more_vertex, more, tree.more_depth)
+        return Solids(tree, mine, self._moment, *cells, end, grow, next(_KEYS), more, more_moment)
+
+    @cached_property
+    def corners(self) -> tuple[Floats, Floats]:
+        """Least and largest corner (3,) of the box around all triangles."""
+        own, vertex = self._own, self._pieces
+        each = [] if own is None else [own.corners]
+        each += [(some.min(axis=(0, 1)), some.max(axis=(0, 1))) for some in (vertex if own is None else vertex[1:]) if len(some)]
+        return np.min([low for low, _ in each], axis=0), np.max([high for _, high in each], axis=0)
 
     @property
     def _extent(self) -> tuple[Floats, Floats, float]:
         """Corners (3,) of the box around all triangles, and how far skins may be off and open, mm."""
-        vertex = self.triangles.vertex
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        low, high = self.corners
         return low, high, self.triangles.chord_error + self.gap + 1e-9 * float(np.abs([low, high]).max())
 
     @property
@@ -144,9 +199,9 @@ class Obstacles(Record):
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
         lies beyond the grid."""
-        from plan_cutters.kernels.material import mark_shell
+        from plan_cutters.kernels.cells import mark_shell, mark_small
 
-        vertex, (low, high, grow) = self.tree.vertex, self._extent
+        low, high, grow = self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
@@ -160,10 +215,15 @@ class Obstacles(Record):
         size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
-        if self.near is not None:
+        first, last, longest = low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size
+        for vertex in map(np.ascontiguousarray, self._pieces):
+            if self.near is None:
+                mark_shell(vertex, grow, origin, size, cell)
+                continue
             # Of a large one that stands askew, the kernel would look at every cell of the box around it.
-            vertex = divided(vertex, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
-        mark_shell(vertex, grow, origin, size, cell)
+            large = np.zeros(len(vertex), bool)
+            mark_small(vertex, (first, last), longest, grow, origin, size, cell, large)
+            mark_shell(divided(vertex[large], first, last, longest), grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
         outside = region == region[0, 0, 0] if whole else self._open_air(region, origin, size)
@@ -184,9 +244,7 @@ class Obstacles(Record):
         numbers, first = np.unique(np.where(rim, region, 0), return_index=True)
         point = origin + (np.stack(np.unravel_index(first, region.shape), axis=1) + 0.5) * size
         mine = self.triangles.face < 0
-        fixtures = Obstacles(
-            replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]), self.weight[mine]
-        )
+        fixtures = Obstacles(self.triangles.take(mine), self.weight[mine])
         distance = np.zeros(len(point))
         if fixtures.weight.any():
             windings(np.ascontiguousarray(point), fixtures._everywhere, distance)
@@ -200,20 +258,29 @@ class Obstacles(Record):
 
     @cached_property
     def wide_tree(self) -> "WideTree":
-        """The tree as posture maps take it, eight boxes at a time."""
+        """All triangles in one tree, as posture maps take it, eight boxes at a time."""
         from plan_cutters.kernels.linear.lanes import WideTree, wide_tree
+        from plan_cutters.kernels.linear.tree import build_apart
 
-        return WideTree(*wide_tree(self.tree))
+        if self.first is None:
+            return WideTree(*wide_tree(self.tree))
+        # Near the part a search looks at its own triangles nearly alone.
+        apart = self.near is not None and self.triangles.face < 0
+        rows = np.argsort(np.broadcast_to(apart, len(self.triangles)), kind="stable")
+        vertex, (low, high) = self.triangles.vertex[rows], self.corners
+        order, box, depth = build_apart(vertex, len(rows) - int(np.sum(apart)), 10.0 * float((high - low).max()))
+        return WideTree(*wide_tree(Tree(vertex[order], box, depth)))
 
     @cached_property
     def faces(self) -> Ints:
         """Face numbers (n,) in tree order."""
-        return np.ascontiguousarray(self.triangles.face[self._built[0]])
+        return np.ascontiguousarray(self.triangles.face[self.order])
 
     @property
     def order(self) -> Ints:
         """Rows (n,) of `triangles` in tree order."""
-        return self._built[0]
+        first, more = self._built[0], self._more[0]
+        return np.concatenate([first, len(first) + more]) if len(more) else first
 
     def face(self, triangle: int) -> int:
         """Face number of a triangle in tree order."""
@@ -223,11 +290,25 @@ class Obstacles(Record):
         """Depths that are safe and that are blocked among these triangles, mm (`tolerance.depths`)."""
         return depths(tolerance, self.triangles.chord_error)
 
+    def rows_in(self, low: Floats, high: Floats) -> NDArray[np.int64]:
+        """Rows of `triangles`, ascending, of those whose boxes meet a box (3,), (3,)."""
+        from plan_cutters.kernels.linear.within import Space, in_box
+
+        met = np.zeros(len(self.triangles), bool)
+        in_box(self.tree, Space(np.zeros(3), np.eye(3), low, high, np.inf), met)
+        return np.sort(self.order[met])
+
+    def lowest(self, direction: Floats) -> Floats:
+        """Triangles (k, 3, 3) of which one is the lowest along a direction: no other may be."""
+        each = [(some, (some.reshape(-1, 3) @ direction).reshape(-1, 3).min(axis=1)) for some in self._pieces if len(some)]
+        most = min(float(height.min()) for _, height in each) + 1e-9 * (1.0 + float(np.abs(self.corners).max()))
+        return np.concatenate([some[height <= most] for some, height in each])
+
     @cached_property
     def skin(self) -> "Obstacles":
         """The same triangles, which enclose nothing."""
-        bare = Obstacles(self.triangles)
-        bare.__dict__.update(_built=self._built, tree=self.tree)
+        bare = Obstacles(self.triangles, first=self.first)
+        bare.__dict__.update(_built=self._built, _more=self._more, _first_vertex=self._first_vertex, tree=self.tree)
         return bare
 
     def skin_of(self, body: Body) -> "Obstacles":
@@ -252,8 +333,11 @@ class Obstacles(Record):
         return np.sort(np.concatenate([none, *(self._rows.get(number, none) for number in set(faces))]))
 
     def _skin_of(self, body: Body) -> "Obstacles":
+        own = self._own
+        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
+            return own.skin_of(body)
         mine = self.rows_of(body.faces)
-        triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
+        triangles = self.triangles.take(mine)
         # A fixture is one body whatever it consists of, and its triangles know what they count.
         weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
         if len(mine) == len(self.triangles) and (weight == self.weight).all():
@@ -282,31 +366,14 @@ class Obstacles(Record):
         return np.asarray(out >= SURELY_INSIDE if certain else ~(out < MAYBE_INSIDE))
 
 
-def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:
-    """Triangles (n, 3, 3) halved until no side is longer than asked, mm, without those whose box misses a box.
+def _tree_of(vertex: Floats) -> tuple[Ints, Floats, int]:
+    """Order, boxes and depth of the tree of triangles."""
+    from plan_cutters.kernels.linear.tree import build
 
-    Where there are already more than `most`, they stay as they are.
-    """
-    done = []
-    while len(vertex):
-        vertex = vertex[((vertex.max(axis=1) >= low) & (vertex.min(axis=1) <= high)).all(axis=1)]
-        side = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2)
-        small = side.max(axis=1) <= longest
-        if most is not None and len(vertex) > most:
-            small[:] = True
-        done.append(vertex[small])
-        vertex = halved(vertex[~small], side[~small])
-    return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
-
-
-def halved(vertex: Floats, side: Floats) -> Floats:
-    """Halve triangles (n, 3, 3) at the middle of the longest of their sides (n, 3): long thin ones come out compact.
-
-    All first halves come before all second ones. A side goes from the corner of its number to the next one.
-    """
-    a, b, c = (vertex[np.arange(len(vertex)), (side.argmax(axis=1) + k) % 3] for k in range(3))
-    middle = 0.5 * (a + b)
-    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    if not len(vertex):
+        return _NO_TREE
+    order, box, depth = build(np.ascontiguousarray(vertex))
+    return order, box, int(depth)
 
 
 def weights(triangles: Triangles, bodies: Sequence[Body]) -> NDArray[np.int8]:

@@ -6,10 +6,14 @@ from functools import partial
 import numpy as np
 
 from cad_io.arrays import Floats, Record
+from plan_cutters.domain.clamping import Clamping
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.scene.fixtures import body_near
-from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.triangles import divided
+from plan_cutters.setups.solids import insides
 
 #: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
 _APART, _MOST = 1 / 64, 200_000
@@ -82,11 +86,22 @@ def overlaps(part: Obstacles, fixture: Obstacles, tolerance: float) -> bool:
     )
 
 
+def entered(part: Obstacles, fixture: Fixture, clamping: Clamping, deep: float) -> bool:
+    """Whether some point of a part's faces surely lies deeper in a vise or chuck in its place than a length, mm.
+
+    Corners and middles of triangles are looked at: no does not mean that nothing lies in it.
+    """
+    from plan_cutters.kernels.linear.within import Space, any_within
+
+    spaces = (Space(fixture.shift, fixture.rotation, *each) for each in insides(clamping, deep))
+    return any(any_within(part.tree, part.faces, each) for each in spaces)
+
+
 def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[float, list[tuple[Floats, Obstacles]]]:
     """Depth that is no fault, mm, and points of each of two with the other in which they are searched; none where these are
     apart."""
     deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
-    ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
+    ends = [o.corners for o in (part, fixture)]
     low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
     if (high - low < 0).any():
         return deep, []
@@ -96,7 +111,7 @@ def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[fl
 
 def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
     """Points (n, 3) of triangles within a box, no farther apart than asked, if they are not too many."""
-    small = divided(obstacles.triangles.vertex, low, high, apart, _MOST)
+    small = divided(obstacles.triangles.vertex[obstacles.rows_in(low, high)], low, high, apart, _MOST)
     points = np.concatenate([*np.moveaxis(small, 1, 0), small.mean(axis=1)])
     return points[((points >= low) & (points <= high)).all(axis=1)]
 

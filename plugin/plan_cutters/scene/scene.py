@@ -23,18 +23,15 @@ from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
-from plan_cutters.scene.overlap import overlaps, refuse_overlaps
+from plan_cutters.scene.overlap import entered, overlaps, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 from plan_cutters.setups.clamping import Workpiece, held
 from plan_cutters.setups.gripped import material_bodies
 from plan_cutters.setups.holds import Hold
-from plan_cutters.setups.solids import entered
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
 _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
-#: Points of a part that are looked at at once for what is in the way of jaws.
-_AT_ONCE = 100_000
 
 
 @dataclass(slots=True)
@@ -235,7 +232,7 @@ class Scene(Record):
                     lambda: surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at),
                     # What is missing may be so for a limit of time.
                     lambda made: not made.missing,
-                )
+                ).sharing()
             obstacles = joined(
                 memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign
             )
@@ -315,21 +312,16 @@ class Scene(Record):
             obstacles = alone.certain if len(alone.certain.triangles) else alone.possible
             triangles, tolerance = obstacles.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
-            own = triangles.face > 0
+            of_part = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
             piece = Workpiece.of(
-                triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup),
+                of_part.vertex, of_part.face, self.orientation.sign, planes, self.targets, tuple(setup),
                 material_bodies(alone.bodies, self.orientation.sign),
             )  # fmt: skip
             chord = CHORD_REQUESTED * self.asked
-            # What the full search would find as well, for most places where the part is in the way, at once.
-            corner, edge = triangles.vertex[own], np.roll(triangles.vertex[own], -1, axis=1)
-            points = np.concatenate([corner.reshape(-1, 3), 0.5 * (corner + edge).reshape(-1, 3), corner.mean(axis=1)])
-            # Every so-manieth first, for a few of those that are in the way are enough, then the next ones.
-            deep, step = tolerance + triangles.chord_error, 1 + len(points) // _AT_ONCE
-            spread = [points[k::step] for k in range(step)]
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
-                return any(entered(clamping, (some - placed.shift) @ placed.rotation, deep) for some in spread)
+                # What the full search would find as well, for most places where the part is in the way, at once.
+                return entered(obstacles, placed, clamping, tolerance + triangles.chord_error)
 
             def searched(placed: Fixture, clamping: Clamping) -> bool:
                 return overlaps(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance)

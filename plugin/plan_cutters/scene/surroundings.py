@@ -147,8 +147,16 @@ class Surroundings(Record):
         """Obstacles that are surely in the way and enclose nothing."""
         return cls(obstacles, obstacles, (), ())
 
+    def sharing(self) -> "Surroundings":
+        """The same, with one tree of the triangles that may be and that surely are in the way."""
+        if self.possible is not self.certain:
+            self.possible.among(self.certain)
+        return self
+
     def build(self, jobs: int, cache: Cache = NO_CACHE) -> None:
         """Build the trees of what may be and of what surely is in the way, where they are not one, side by side."""
+        # Those of the part alone, which both share, first.
+        (self.alone or self).certain.build(cache)
         with ThreadPoolExecutor(min(jobs, 2)) as pool:
             for _ in pool.map(lambda each: each.build(cache), {id(o): o for o in (self.possible, self.certain)}.values()):
                 pass
@@ -200,9 +208,11 @@ def surroundings(
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     unread = tuple(each for each in part.lost if each.face is None)
-    return Surroundings(
-        _possible(part, triangles, stand, result, certain), certain, result, missing, _on_bodies(certain, result), unread
-    )
+    possible = _possible(part, triangles, stand, result, certain)
+    if possible is not certain:
+        # What is the same is there once.
+        certain = replace(certain, triangles=replace(close, vertex=possible.triangles.vertex[: len(close)]))
+    return Surroundings(possible, certain, result, missing, _on_bodies(certain, result), unread).sharing()
 
 
 def _possible(part: Part, triangles: Triangles, stand: StandIns, result: Sequence[Body], certain: Obstacles) -> Obstacles:
@@ -216,18 +226,21 @@ def _possible(part: Part, triangles: Triangles, stand: StandIns, result: Sequenc
     shells = [(n, _shell(part, n, triangles.vertex[rows.get(n, [])], error)) for n, error in loose.items()]
     shell = np.concatenate([np.zeros((0, 3, 3)), *(made for _, made in shells)])
     of_shell = np.repeat(np.array([n for n, _ in shells], np.int32), [len(made) for _, made in shells])
+    # Those that are certain come first.
+    order = np.argsort(np.isin(triangles.face, list(loose)), kind="stable") if loose else slice(None)
     all_triangles = replace(
         triangles,
-        vertex=np.concatenate([triangles.vertex, stand.vertex, caps, shell]),
-        face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32), of_shell]),
+        vertex=np.concatenate([triangles.vertex[order], stand.vertex, caps, shell]),
+        face=np.concatenate([triangles.face[order], stand.face, np.zeros(len(caps), np.int32), of_shell]),
     )
     open_boxes = [_box(triangles, body) for body in result if not body.closed]
     filled = np.ones(len(caps) + len(shell), np.int8)
     return Obstacles(
         all_triangles,
-        np.concatenate([everything, stand.weight, filled]),
+        np.concatenate([everything[order], stand.weight, filled]),
         np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
         part.looseness,
+        first=len(certain.triangles),
     )
 
 

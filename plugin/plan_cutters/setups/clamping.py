@@ -63,13 +63,17 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
             return _hold(requested, placed, part, place)
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched += 1
-    why = min(refused, key=lambda each: each.rank).why
+    raise _nothing(fixture, requested, part, min(refused, key=lambda each: each.rank).why)
+
+
+def _nothing(fixture: Fixture, requested: Requested, part: Workpiece, why: str) -> NothingToGripError:
+    # Made here: an error that knows where it was raised, and is known there, would keep the part's triangles for long.
     error = NothingToGripError(
         f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
         f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
     )
     error.why = why
-    raise error
+    return error
 
 
 def _fixture(fixture: Fixture, part: Workpiece, place: Place) -> Fixture:

@@ -1,6 +1,7 @@
 """Boxes, cylinders, and the bodies of vises and chucks as triangles."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -46,25 +47,23 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above
     return np.concatenate([_of(each, chord) for each in solids]), max(off)
 
 
-def entered(clamping: Clamping, points: Floats, deep: float) -> bool:
-    """Whether any of some points (n, 3) of its own frame surely lies deeper in a vise or chuck than a length, mm.
+def insides(clamping: Clamping, deep: float) -> Iterator[tuple[Floats, Floats, float]]:
+    """Yield what surely lies deeper in a vise or chuck than a length, mm, in its own frame.
 
-    Boxes and discs are looked at, not the jaws of a chuck: no does not mean that nothing lies in it.
+    That is the corners (3,) of boxes, and for each the radius of a cylinder about z, infinite for a box.
+
+    Boxes and discs are yielded, not the jaws of a chuck: what lies in none of them may lie in the vise or chuck all the same.
     """
     for solid in clamping.solids(deep):
-        height = points[:, 2]
-        x, y = points[(height > solid.low + deep) & (height < solid.high - deep), :2].T
         if isinstance(solid, Disc):
-            within = np.hypot(x, y) < solid.radius - deep
+            radius = solid.radius - deep
+            low, high = np.full(2, -radius), np.full(2, radius)
         elif len(solid.inner) == 2:
             corners = np.array([*solid.inner, *solid.outer])
-            low, high = corners.min(axis=0) + deep, corners.max(axis=0) - deep
-            within = (x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1])
+            radius, low, high = np.inf, corners.min(axis=0) + deep, corners.max(axis=0) - deep
         else:
             continue
-        if within.any():
-            return True
-    return False
+        yield np.append(low, solid.low + deep), np.append(high, solid.high - deep), radius
 
 
 def _off(solid: Solid, chord: float) -> float:

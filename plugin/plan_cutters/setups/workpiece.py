@@ -78,7 +78,7 @@ class Workpiece(Record):
         frame = frame_of(np.asarray(setup, float))
         local = vertex @ frame.T
         lowest = float(local[..., 2].min())
-        local = local - np.array([0.0, 0.0, lowest])
+        local[..., 2] -= lowest
         normal = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) * sign[face - 1][:, None]
         flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6
         wanted = frozenset(targets) or frozenset(np.unique(face).tolist())

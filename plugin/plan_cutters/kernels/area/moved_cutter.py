@@ -9,6 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.area.zone import near_by
 from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, CONE, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP, WIDE
+from plan_cutters.kernels.halves import half, half_of
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool import hit
@@ -121,11 +122,11 @@ def extruded(body, piece, frame, h, pose, slides, grow, workspace, finest):
 def _reaches(vertex, i, mask, workspace):
     """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
     bodies, pieces, scratch = workspace.bodies, workspace.pieces, workspace.scratch
-    for half in range(2):
+    for one in range(2):
         scratch.looked[0] += _TRIANGLE
-        if not extruded_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
+        if not extruded_hit(vertex, i, bodies[1 + one], pieces[1 + one], mask, scratch):
             continue
-        for sixth in range(3 * half, 3 * half + 3):
+        for sixth in range(3 * one, 3 * one + 3):
             scratch.looked[0] += _TRIANGLE
             if not extruded_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
                 continue
@@ -149,9 +150,8 @@ def _below(vertex, i, frame, near):
 
 
 @kernel
-def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
+def _blocks(i, mask, nose, flutes, whole, frame, face, vertex, triangle_face, workspace):
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
-    vertex = tree.vertex
     workspace.scratch.looked[0] += _TRIANGLE
     hit = extruded_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
     if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
@@ -164,26 +164,31 @@ def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, work
 @kernel
 def first_in_the_way(hint, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
     """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
-    vertex, box, depth = tree.vertex, tree.box, tree.depth
-    stack, masks, count, first, top = workspace.scratch.stack, workspace.scratch.masks, len(vertex), (1 << depth) - 1, 1
+    stack, masks = workspace.scratch.stack, workspace.scratch.masks
     every = hit.everything(workspace.pieces[0])
-    if hint >= 0 and _blocks(hint, every, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-        return hint
-    stack[0], masks[0] = 0, every
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        workspace.scratch.looked[0] += 1
-        mask = alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
-        if mask == 0:
-            continue
-        if node < first:
-            stack[top], masks[top] = 2 * node + 2, mask
-            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
-            top += 2
-            continue
-        leaf = node - first
-        for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-                return i
+    if hint >= 0:
+        vertex, row = half_of(tree, hint)
+        if _blocks(row, every, nose, flutes, whole, frame, face, vertex, triangle_face[hint - row :], workspace):
+            return hint
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        count, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        faces = triangle_face[begin:]
+        stack[0], masks[0] = 0, every
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            workspace.scratch.looked[0] += 1
+            mask = alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
+            if mask == 0:
+                continue
+            if node < first:
+                stack[top], masks[top] = 2 * node + 2, mask
+                stack[top + 1], masks[top + 1] = 2 * node + 1, mask
+                top += 2
+                continue
+            leaf = node - first
+            for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
+                if _blocks(i, mask, nose, flutes, whole, frame, face, vertex, faces, workspace):
+                    return begin + i
     return -1

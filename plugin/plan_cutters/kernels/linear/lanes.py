@@ -27,6 +27,7 @@ def wide_tree(tree):
     Parameters
     ----------
     tree : Tree
+        With all triangles in the first of its two.
 
     Returns
     -------
@@ -40,7 +41,7 @@ def wide_tree(tree):
     bottom : int
         Level of the tree that the last blocks hold: no box there has more than LANES triangles.
     """
-    vertex, box, depth = tree
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
     bottom = depth
     while bottom > 0 and (len(vertex) + (1 << (bottom - 1)) - 1) >> (bottom - 1) <= LANES:
         bottom -= 1

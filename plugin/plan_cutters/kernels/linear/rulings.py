@@ -1,7 +1,11 @@
 """How far a face goes along straight lines on it: where a wall ends."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
+from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
+from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot
 
@@ -59,24 +63,71 @@ def _clipped(ends, band, limit):
 
 
 @kernel
-def _balls(vertex, centre, reach):
-    """Write balls about triangles (t, 3, 3), mm: centres (t, 3), and radii (t,) with what rounding may do."""
-    for t in range(len(vertex)):
-        size = 0.0
-        for k in range(3):
-            centre[t, k] = (vertex[t, 0, k] + vertex[t, 1, k] + vertex[t, 2, k]) / 3.0
-            size += abs(centre[t, k])
-        square = 0.0
-        for i in range(3):
-            far = 0.0
-            for k in range(3):
-                far += (vertex[t, i, k] - centre[t, k]) ** 2
-            square = max(square, far)
-        reach[t] = np.sqrt(square) * (1.0 + 1e-9) + 2.0 * _IN_PLANE + 1e-12 * size
+def _apart(box, node, along, offset, most):
+    """Whether a box lies wholly farther than `most` from a plane with the unit normal `along`, on one side of it.
+
+    `offset`: of the plane along its normal. What rounding may do is on the side of not being apart.
+    """
+    at, half, size = -offset, 2.0 * _IN_PLANE + 1e-9 * box[node, DIAGONAL] + most, abs(offset)
+    for k in range(3):
+        at += along[k] * box[node, CENTRE + k]
+        size += abs(box[node, CENTRE + k])
+        side = 0.0
+        for j in range(3):
+            side += along[j] * box[node, SIDES + 3 * k + j]
+        half += box[node, HALVES + k] * abs(side)
+    return abs(at) > half + 1e-12 * size
+
+
+class OneFace(NamedTuple):
+    """The triangles of one face among others: their tree, the face numbers (n,) in tree order, and the number of the one."""
+
+    tree: Any
+    faces: Any
+    number: int
+
+
+class _Workspace(NamedTuple):
+    """This is a workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64."""
+
+    side: Any
+    ends: Any
+    limit: Any
+    stack: Any
+
+
+@kernel
+def _among(point, ruling, normal, own, band, workspace):
+    """The least and the largest place along a line at which a face is met; where it leaves the line is written as its limit."""
+    side, ends, limit, stack = workspace
+    limit[0], limit[1] = -np.inf, np.inf
+    first, last = np.inf, -np.inf
+    through, over = dot(side, point), dot(normal, point)
+    for k in range(2):
+        vertex, box, depth, begin = half(own.tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            # What the plane through the line does not cross within the band changes nothing.
+            if _apart(box, node, side, through, 0.0) or _apart(box, node, normal, over, band):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if own.faces[begin + t] != own.number:
+                    continue
+                if _piece(vertex[t], point, ruling, normal, side, ends) and _clipped(ends, band, limit):
+                    first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+    return first, last
 
 
 @entry
-def extents(point, ruling, normal, vertex, band, low, high):
+def extents(point, ruling, normal, own, band, low, high):
     """Find how far a face goes along lines that lie on it.
 
     Gaps in the face, such as holes, count as the face itself; where it leaves the line by more than the band, it ends.
@@ -87,27 +138,19 @@ def extents(point, ruling, normal, vertex, band, low, high):
         On the face, mm.
     ruling, normal : (p, 3) float64
         Unit directions of the line and of the face there, at right angles.
-    vertex : (t, 3, 3) float64
-        Triangles of the face, mm.
+    own : OneFace
+        The face.
     band : float
         How far the face may be off the line along the normal, mm.
     low, high : (p,) float64, written
         Ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no triangle is near the line.
     """
-    side, ends, limit = np.empty(3), np.empty((2, 2)), np.empty(2)
-    centre, reach = np.empty((len(vertex), 3)), np.empty(len(vertex))
-    _balls(vertex, centre, reach)
+    workspace = _Workspace(np.empty(3), np.empty((2, 2)), np.empty(2), np.empty(64, np.int64))
     for i in range(len(point)):
-        cross(ruling[i], normal[i], side)
-        limit[0], limit[1] = -np.inf, np.inf
-        first, last = np.inf, -np.inf
-        through = dot(side, point[i])
-        for t in range(len(vertex)):
-            # Most triangles lie on one side of the plane as a whole.
-            if abs(dot(side, centre[t]) - through) > reach[t]:
-                continue
-            if _piece(vertex[t], point[i], ruling[i], normal[i], side, ends) and _clipped(ends, band, limit):
-                first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+        cross(ruling[i], normal[i], workspace.side)
         low[i] = high[i] = np.nan
-        if first <= last and dot(side, side) > 0.5:
-            low[i], high[i] = min(0.0, max(first, limit[0])), max(0.0, min(last, limit[1]))
+        if not dot(workspace.side, workspace.side) > 0.5:
+            continue
+        first, last = _among(point[i], ruling[i], normal[i], own, band, workspace)
+        if first <= last:
+            low[i], high[i] = min(0.0, max(first, workspace.limit[0])), max(0.0, min(last, workspace.limit[1]))

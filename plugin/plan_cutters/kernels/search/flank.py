@@ -26,6 +26,7 @@ from plan_cutters.kernels.codes import (
     ROUND,
     SLOPE,
 )
+from plan_cutters.kernels.halves import half_of
 from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot
@@ -92,7 +93,8 @@ def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals
             body[P + k] -= slide * frame.f[k]
         triangle, which, height, x, y = hint, -1, 0.0, 0.0, 0.0
         if hint >= 0:
-            which, height, x, y = triangle_hit(solids.tree.vertex, hint, body, piece, everything(piece), 0.0, scratch)
+            vertex, row = half_of(solids.tree, hint)
+            which, height, x, y = triangle_hit(vertex, row, body, piece, everything(piece), 0.0, scratch)
         if which < 0:
             hint = -1
             triangle, which, height, x, y = deep_hit(solids.tree, body, piece, scratch)

@@ -28,7 +28,16 @@ from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
-from plan_cutters.kernels.material import SURELY_INSIDE, in_known_ball, keep_ball, outside, touches, way_out, winding
+from plan_cutters.kernels.material import (
+    SURELY_INSIDE,
+    in_known_ball,
+    keep_ball,
+    outside,
+    plainly_outside,
+    touches,
+    way_out,
+    winding,
+)
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X
 from plan_cutters.kernels.tool.arcs import local_gouge
@@ -79,6 +88,8 @@ def lies_within(x, y, z, solids, within, scratch):
     """Whether the winding number of the bodies about a point is `within` or more; where one is, others near it need no sum."""
     if in_known_ball(x, y, z, solids, within, scratch.balls, scratch.stored):
         return True
+    if plainly_outside(x, y, z, solids, scratch.stack):
+        return False
     number = winding(x, y, z, solids, scratch.stack)
     if number < within:
         return False

@@ -9,6 +9,7 @@ at height w and distance q is cleared if the nose is no lower than w - v(q): lem
 import numpy as np
 
 from plan_cutters.kernels.codes import OFFSET_OF, OVER_TIP, RISE
+from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
@@ -140,34 +141,36 @@ def _at_most(box, i, body, outline):
 def _cleared(tree, body, outline, floor, stack, bound, corner):
     """Least height of the nose, from the centre, no less than `floor`, that clears all triangles; the one that asks for it, or
     -1."""
-    vertex, box, depth = tree.vertex, tree.box, tree.depth
-    best, which, n, first, top = floor, -1, len(vertex), (1 << depth) - 1, 1
-    stack[0], bound[0] = 0, np.inf
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        if bound[top] <= best:
-            continue
-        if node >= first:
-            leaf = node - first
-            for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-                _, _, most, _ = into_frame(vertex, i, body, 0.0, corner)
-                if most - outline[0, V0] > best:
-                    height = needed(corner, outline)
-                    if height > best:
-                        best, which = height, i
-            continue
-        left, right = 2 * node + 1, 2 * node + 2
-        a, b = _at_most(box, left, body, outline), _at_most(box, right, body, outline)
-        if a > b:
-            left, right, a, b = right, left, b, a
-        # The one that may ask for more comes off the stack first.
-        if a > best:
-            stack[top], bound[top] = left, a
-            top += 1
-        if b > best:
-            stack[top], bound[top] = right, b
-            top += 1
+    best, which = floor, -1
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0], bound[0] = 0, np.inf
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if bound[top] <= best:
+                continue
+            if node >= first:
+                leaf = node - first
+                for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                    _, _, most, _ = into_frame(vertex, i, body, 0.0, corner)
+                    if most - outline[0, V0] > best:
+                        height = needed(corner, outline)
+                        if height > best:
+                            best, which = height, begin + i
+                continue
+            left, right = 2 * node + 1, 2 * node + 2
+            a, b = _at_most(box, left, body, outline), _at_most(box, right, body, outline)
+            if a > b:
+                left, right, a, b = right, left, b, a
+            # The one that may ask for more comes off the stack first.
+            if a > best:
+                stack[top], bound[top] = left, a
+                top += 1
+            if b > best:
+                stack[top], bound[top] = right, b
+                top += 1
     return best, which
 
 

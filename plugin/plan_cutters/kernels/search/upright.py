@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import ARC, CYLINDER, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SLOPE
+from plan_cutters.kernels.halves import half_of
 from plan_cutters.kernels.jit import entry, kernel, maker
 from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.rows import Scratch
@@ -335,7 +336,8 @@ def find_place(p, axis, x, tool, mode, rise, most, solids, within, apart, flat, 
         last = triangle
         if counts[0] == len(flat.corner):
             return NONE, last
-        many, radius = _met(solids.tree.vertex, triangle, tool.piece[mode], which, (height, px, py), u, v, flat)
+        vertex, triangle = half_of(solids.tree, triangle)
+        many, radius = _met(vertex, triangle, tool.piece[mode], which, (height, px, py), u, v, flat)
         proved = _forbid(flat, many, radius, apart, most) and proved
         if flat.open_[best]:
             # By rounding: it was tried, and is not tried again.

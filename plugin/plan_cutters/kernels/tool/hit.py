@@ -16,6 +16,7 @@ turns the tool about that line, and turning by at most `rate` moves Q by no more
 import numpy as np
 
 from plan_cutters.kernels.codes import BOTTOM, CENTRE, HIGH, LOW, TOP
+from plan_cutters.kernels.halves import half, half_of
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import HALF, OFFSET, A, P, X, Y, alive, stays
@@ -183,31 +184,33 @@ def tree_hit(tree, body, piece, rate, hint, scratch):
     height, px, py : float
         Its point, as `triangle_hit` gives it.
     """
-    vertex, box, depth = tree.vertex, tree.box, tree.depth
     stack, masks, whole = scratch.stack, scratch.masks, everything(piece)
     if hint >= 0:
-        which, height, px, py = triangle_hit(vertex, hint, body, piece, whole, rate, scratch)
-        if which >= 0 and (rate == 0.0 or _swept_hit(vertex, hint, body, piece, whole, rate, scratch)):
+        vertex, row = half_of(tree, hint)
+        which, height, px, py = triangle_hit(vertex, row, body, piece, whole, rate, scratch)
+        if which >= 0 and (rate == 0.0 or _swept_hit(vertex, row, body, piece, whole, rate, scratch)):
             return hint, which, height, px, py
-    n, first, top = len(vertex), (1 << depth) - 1, 1
-    stack[0], masks[0] = 0, whole
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        scratch.looked[0] += 1
-        mask = alive(box, node, body, piece, masks[top], rate)
-        if mask == 0:
-            continue
-        if node < first:
-            stack[top], masks[top] = 2 * node + 2, mask
-            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
-            top += 2
-            continue
-        leaf = node - first
-        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            which, height, px, py = triangle_hit(vertex, i, body, piece, mask, rate, scratch)
-            if which >= 0 and (rate == 0.0 or _swept_hit(vertex, i, body, piece, mask, rate, scratch)):
-                return i, which, height, px, py
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0], masks[0] = 0, whole
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            scratch.looked[0] += 1
+            mask = alive(box, node, body, piece, masks[top], rate)
+            if mask == 0:
+                continue
+            if node < first:
+                stack[top], masks[top] = 2 * node + 2, mask
+                stack[top + 1], masks[top + 1] = 2 * node + 1, mask
+                top += 2
+                continue
+            leaf = node - first
+            for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                which, height, px, py = triangle_hit(vertex, i, body, piece, mask, rate, scratch)
+                if which >= 0 and (rate == 0.0 or _swept_hit(vertex, i, body, piece, mask, rate, scratch)):
+                    return begin + i, which, height, px, py
     return -1, -1, 0.0, 0.0, 0.0
 
 
@@ -228,26 +231,28 @@ def _depth_of(box, i, body, piece, mask):
 @kernel
 def deep_hit(tree, body, piece, scratch):
     """`tree_hit` with `rate` 0, of two boxes the one that lies deeper first: where something is in the way, sooner there."""
-    vertex, box, depth = tree.vertex, tree.box, tree.depth
-    stack, masks, n, first, top = scratch.stack, scratch.masks, len(vertex), (1 << depth) - 1, 1
-    stack[0], masks[0] = 0, everything(piece)
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        scratch.looked[0] += 1
-        mask = alive(box, node, body, piece, masks[top], 0.0)
-        if mask == 0:
-            continue
-        if node < first:
-            deeper = _depth_of(box, 2 * node + 1, body, piece, mask) >= _depth_of(box, 2 * node + 2, body, piece, mask)
-            deeper_left = 1 if deeper else 0
-            stack[top], masks[top] = 2 * node + 1 + deeper_left, mask
-            stack[top + 1], masks[top + 1] = 2 * node + 2 - deeper_left, mask
-            top += 2
-            continue
-        leaf = node - first
-        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            which, height, px, py = triangle_hit(vertex, i, body, piece, mask, 0.0, scratch)
-            if which >= 0:
-                return i, which, height, px, py
+    stack, masks = scratch.stack, scratch.masks
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0], masks[0] = 0, everything(piece)
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            scratch.looked[0] += 1
+            mask = alive(box, node, body, piece, masks[top], 0.0)
+            if mask == 0:
+                continue
+            if node < first:
+                deeper = _depth_of(box, 2 * node + 1, body, piece, mask) >= _depth_of(box, 2 * node + 2, body, piece, mask)
+                deeper_left = 1 if deeper else 0
+                stack[top], masks[top] = 2 * node + 1 + deeper_left, mask
+                stack[top + 1], masks[top + 1] = 2 * node + 2 - deeper_left, mask
+                top += 2
+                continue
+            leaf = node - first
+            for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                which, height, px, py = triangle_hit(vertex, i, body, piece, mask, 0.0, scratch)
+                if which >= 0:
+                    return begin + i, which, height, px, py
     return -1, -1, 0.0, 0.0, 0.0

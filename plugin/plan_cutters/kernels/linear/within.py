@@ -1,0 +1,138 @@
+"""Which triangles, or points of them, lie in a box or cylinder? Only what a tree has near it is looked at."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
+from plan_cutters.kernels.halves import half
+from plan_cutters.kernels.jit import entry, kernel
+
+
+class Space(NamedTuple):
+    """The inside of a box or cylinder: its frame's origin (3,) and axes (3, 3), as columns; corners (3,) of the box in it, and
+    about z the radius of the cylinder, infinite for a box; mm."""
+
+    origin: Any
+    axes: Any
+    low: Any
+    high: Any
+    radius: float
+
+
+@kernel
+def _misses(box, node, space):
+    """Whether a box of a tree lies wholly beside a space; what rounding may do is on the side of not."""
+    for k in range(3):
+        at, half, size = 0.0, 1e-9 * box[node, DIAGONAL], 0.0
+        for j in range(3):
+            at += (box[node, CENTRE + j] - space.origin[j]) * space.axes[j, k]
+            size += abs(box[node, CENTRE + j]) + abs(space.origin[j])
+            along = 0.0
+            for i in range(3):
+                along += box[node, SIDES + 3 * j + i] * space.axes[i, k]
+            half += box[node, HALVES + j] * abs(along)
+        half += 1e-12 * size
+        if at + half < space.low[k] or at - half > space.high[k]:
+            return True
+    return False
+
+
+@kernel
+def _holds(x, y, z, space, local):
+    """Whether a point lies in a space; scratch: local (3,)."""
+    x, y, z = x - space.origin[0], y - space.origin[1], z - space.origin[2]
+    for k in range(3):
+        local[k] = x * space.axes[0, k] + y * space.axes[1, k] + z * space.axes[2, k]
+        if not (local[k] > space.low[k] and local[k] < space.high[k]):
+            return False
+    return np.hypot(local[0], local[1]) < space.radius
+
+
+@kernel
+def _any(tree, faces, space, stack, local):
+    """As `any_within`; scratch: stack (64,) int64, local (3,)."""
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if _misses(box, node, space):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if faces[begin + t] <= 0:
+                    continue
+                a, b, c = vertex[t, 0], vertex[t, 1], vertex[t, 2]
+                if _holds((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0, space, local):
+                    return True
+                for i in range(3):
+                    p, q = vertex[t, i], vertex[t, i + 1 if i < 2 else 0]
+                    if _holds(p[0], p[1], p[2], space, local):
+                        return True
+                    if _holds(0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]), space, local):
+                        return True
+    return False
+
+
+@entry
+def any_within(tree, faces, space):
+    """Whether a corner, the middle of a side or the middle of any triangle of a face lies in a space.
+
+    Parameters
+    ----------
+    tree : Tree
+    faces : (n,) int32
+        Face numbers in tree order: triangles with 0 or less are of no face of the part and do not count.
+    space : Space
+
+    Returns
+    -------
+    bool
+    """
+    return _any(tree, faces, space, np.empty(64, np.int64), np.empty(3))
+
+
+@kernel
+def _mark(tree, space, stack, marked):
+    """As `in_box`; scratch: stack (64,) int64."""
+    for k in range(2):
+        vertex, box, depth, begin = half(tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            if _misses(box, node, space):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                v, meets = vertex[t], True
+                for j in range(3):
+                    low, high = min(v[0, j], min(v[1, j], v[2, j])), max(v[0, j], max(v[1, j], v[2, j]))
+                    meets = meets and high >= space.low[j] and low <= space.high[j]
+                marked[begin + t] = meets
+
+
+@entry
+def in_box(tree, space, marked):
+    """Write for triangles (n,) in tree order whether the box around each, along x, y and z, meets a box along them.
+
+    Parameters
+    ----------
+    tree : Tree
+    space : Space
+        The box, in the frame of the triangles.
+    marked : (n,) bool, written where it is true
+    """
+    _mark(tree, space, np.empty(64, np.int64), marked)
