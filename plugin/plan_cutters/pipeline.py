@@ -282,7 +282,7 @@ def prepare(
         raise OptionError("setup auto is for a whole plan: name the setup")
     clock = clock or Clock()
     with clock.stage("read"):
-        stands = _read(part, options, read_timeout)
+        stands = _read(part, options, read_timeout, cache or NO_CACHE)
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
     whole = stands.part if isinstance(stands, Scene) else stands
@@ -387,10 +387,10 @@ def prepare(
     return ready
 
 
-def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
+def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:
     read = part.part if isinstance(part, Scene) else part
     if isinstance(read, Part) and options.unit is not None:
         raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
     if isinstance(part, Part | Scene):
         return part
-    return read_part(part, unit=options.unit, timeout=timeout)
+    return read_part(part, unit=options.unit, timeout=timeout, cache=cache)
