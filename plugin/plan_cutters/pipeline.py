@@ -288,7 +288,7 @@ def prepare(
     whole = stands.part if isinstance(stands, Scene) else stands
     stages = NO_CACHE if cache is None or whole.key is None else cache
     with clock.stage("measure"):
-        whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"))))
+        whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):
         _ = whole.sewn
         whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
