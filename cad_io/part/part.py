@@ -220,7 +220,7 @@ class Part:
             far = range(2, count + 1, 2) if jobs > 1 and count >= _MANY_FACES else range(0)
             _ = self.size  # which all of them ask
             with SideProcess(partial(self._described, far), _MEASURING, worth=bool(far)) as side:
-                infos = {number: self._told(number, at) for number in range(1, count + 1) if number not in far}
+                infos = {number: self._describe_at(number, at) for number in range(1, count + 1) if number not in far}
                 if far:
                     described, measures, trims = side.result(partial(self._described, far, at))
                     infos |= described
@@ -229,7 +229,7 @@ class Part:
             self._infos = tuple(infos[number] for number in range(1, count + 1))
         return self._infos
 
-    def _told(self, number: int, at: Callable[[int], None]) -> FaceInfo:
+    def _describe_at(self, number: int, at: Callable[[int], None]) -> FaceInfo:
         at(number)
         return self._describe(number)
 
@@ -237,7 +237,7 @@ class Part:
         self, numbers: Sequence[int], at: Callable[[int], None] = lambda face: None
     ) -> tuple[dict[int, FaceInfo], dict[int, Measure | None], dict[int, Trim | None]]:
         """What measuring tells of some faces, without anything of the kernel's."""
-        infos = {number: self._told(number, at) for number in numbers}
+        infos = {number: self._describe_at(number, at) for number in numbers}
         mine = {number: each for number, each in self._measures.items() if number in infos}
         return infos, mine, {number: trim for number, trim in self._without_faces().items() if number in infos}
 

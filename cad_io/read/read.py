@@ -140,23 +140,20 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
     loaded: Any = None
 
     def transferred() -> PartContent | None:
-        """What the kernel makes of the file; None where that may harm it."""
+        """Return what the kernel makes of the file; None where that may harm it."""
         nonlocal loaded
         with translated("reading the file", error=ReadError, file=file):
             loaded = loader()
             return None if loaded.risky or others.risky else _transferred(lambda: loaded, others)
 
-    if cache is NO_CACHE or "references" in known:
-        content = transferred()
-    else:
-        kept = cache.cached(
-            "read", (kind, known["sha256"], unit), lambda: (made := transferred()) and packed(made),
-            # The kernel opens the file itself: what was written there meanwhile is not of this checksum.
-            lambda made: made is not None and loaded.alone and checksum(load(file)[1]) == known["sha256"],
-        )  # fmt: skip
-        content = kept and unpacked(kept)
-    if content is not None:
-        return known | content
+    stored = (NO_CACHE if "references" in known else cache).cached(
+        "read", (kind, known["sha256"], unit), lambda: (made := transferred()) and packed(made),
+        # The kernel opens the file itself: what was written there meanwhile is not of this checksum.
+        lambda made: made is not None and loaded.alone and checksum(load(file)[1]) == known["sha256"],
+    )  # fmt: skip
+    if stored is not None:
+        # Its own form tells directions to the last bit but one: a part is the same whether it was kept or not.
+        return known | unpacked(stored)
     # A crash costs no more than a copy: try with less and less.
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):
