@@ -28,7 +28,7 @@ from cad_io.kernel.natural import ENDLESS, endless
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
-from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
+from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.part.unjudged import NO_AREA, UNMEASURED, why_unjudged
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
@@ -264,6 +264,8 @@ class Part:
         """Take what another process knows of the same part."""
         if "_trims" in facts:
             facts["_trims"] = self._with_faces(facts["_trims"])
+        if isinstance(facts.get("sewn"), SewnForm):
+            facts["sewn"] = facts["sewn"].sewn()
         self.__dict__.update(facts)
 
     @cached_property

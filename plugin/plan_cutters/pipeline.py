@@ -11,6 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.part.patterns import patterns
+from cad_io.part.sew import SewnForm
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -290,7 +291,10 @@ def prepare(
     with clock.stage("measure"):
         whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):
-        _ = whole.sewn
+        if whole.solids:
+            _ = whole.sewn  # faces that share edges with those of a solid cannot be taken from it
+        else:
+            whole.recall(sewn=stages.cached("sewn", whole.key, lambda: SewnForm.of(whole.sewn), _is_whole))
         whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
     with clock.stage("orient"):
         scene = Scene.of(
@@ -385,6 +389,10 @@ def prepare(
             file=whole.file,
         )
     return ready
+
+
+def _is_whole(sewn: SewnForm) -> bool:
+    return sewn.stopped is None
 
 
 def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:

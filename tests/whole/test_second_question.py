@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from cad_io import read_part
+from cad_io.part import part
 from cad_io.read import read, step
 from plan_cutters import plan
 from plan_cutters.document.clock import Clock
@@ -114,16 +115,17 @@ def test_a_part_with_faces_set_aside_is_another_one(tmp_path):
     assert np.array_equal(less.reaches["R3L40"].verdict, plain.reaches["R3L40"].verdict)
 
 
-def test_a_second_question_reads_no_step(monkeypatch):
-    words = {**COARSE, "cutters": ["R3L40"]}
-    plan(OWN, **words)
+def test_a_second_question_reads_no_step_and_sews_nothing(monkeypatch):
+    words, shell = {**COARSE, "cutters": ["R3L40"], "area_budget": 0}, OWN.with_name("v_groove.step")
+    plan(shell, **words)
     stage_cache.settle()
 
     def refused(*words, **more):
-        raise AssertionError("STEP is read")
+        raise AssertionError("what is kept is made again")
 
     monkeypatch.setitem(read._LOADERS, "step", refused)
-    assert plan(OWN, **{**words, "cutters": ["R2L40"], "machine": "tilt:60"}).plan.cutters[0].id == "R2L40"
+    monkeypatch.setattr(part, "sew", refused)
+    assert plan(shell, **{**words, "cutters": ["R2L40"], "machine": "tilt:60"}).plan.cutters[0].id == "R2L40"
 
 
 def test_a_file_that_changes_while_it_is_read_is_not_kept(tmp_path, monkeypatch):
