@@ -16,6 +16,20 @@ _LISTED = 4
 SIMPLE_KINDS = ("plane", "cylinder", "cone", "sphere", "torus")
 
 
+def cross(a: Floats, b: Floats) -> Floats:
+    """Cross products (n, 3) of rows (n, 3): those of numpy, which takes several times as long over a few rows.
+
+    >>> cross(np.eye(3), np.eye(3)[[1, 2, 0]])
+    array([[0., 0., 1.],
+           [1., 0., 0.],
+           [0., 1., 0.]])
+    """
+    (a0, a1, a2), (b0, b1, b2) = a.T, b.T
+    out = np.empty(a.shape)
+    out[:, 0], out[:, 1], out[:, 2] = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    return out
+
+
 class Record:
     """Base of frozen records of arrays: equal if all their numbers are (nan to nan), and printed by shape, not in full.
 

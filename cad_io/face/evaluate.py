@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cad_io.arrays import Floats, Orientation
+from cad_io.arrays import Floats, Orientation, cross
 from cad_io.face.curvature import Curvature, curvature
 
 
@@ -20,4 +20,4 @@ def evaluate(part: Any, orientation: Orientation, face: int, uv: Floats) -> tupl
 def density(part: Any, face: int, uv: Floats) -> Floats:
     """Area of the surface, mm2, per unit of area in its parameters (n, 2): (n,)."""
     derivatives = part.surface(face).first(uv[:, 0], uv[:, 1])
-    return np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
+    return np.linalg.norm(cross(derivatives[:, 1], derivatives[:, 2]), axis=1)

@@ -16,7 +16,7 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
 from OCP.GProp import GProp_GProps
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, cross
 from cad_io.face.trim import Trim
 from cad_io.kernel import interval_ends
 from cad_io.surface import Surface
@@ -130,7 +130,7 @@ def _table(surface: Surface, cell: tuple[float, float, float, float], origin: Fl
     (x, along_u), (y, along_v) = _nodes(n), _nodes(m)
     u, v = np.meshgrid(u0 + 0.5 * (x + 1) * (u1 - u0), v0 + 0.5 * (y + 1) * (v1 - v0), indexing="ij")
     d = surface.first(u.ravel(), v.ravel())
-    normal = np.cross(d[:, 1], d[:, 2])
+    normal = cross(d[:, 1], d[:, 2])
     flux = ((d[:, 0] - origin) * normal).sum(axis=1)
     density = np.column_stack([np.linalg.norm(normal, axis=1), normal, flux])
     return along_v @ (along_u @ density.reshape(n, -1)).reshape(n, m, 5)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_Line
 from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec, gp_Vec2d
 from OCP.Message import Message
 from OCP.TColStd import TColStd_Array1OfReal
@@ -154,8 +155,25 @@ def _derivatives(evaluate: Any, u: Floats, v: Floats, count: int) -> Floats:
     return np.array(flat, dtype=float).reshape(-1, count + 1, 3)
 
 
+def points_on(curve: Any, t: Floats) -> Floats:
+    """Points (n, 2) of a curve in a parameter plane at parameters (n,)."""
+    if curve.GetType() == GeomAbs_Line:
+        return _on_line(curve, t)[0]
+    return np.array([curve.Value(x).Coord() for x in t.tolist()])
+
+
+def _on_line(curve: Any, t: Floats) -> tuple[Floats, Floats]:
+    """Points (n, 2) of a line in a parameter plane, and its direction (2,): in closed form as the kernel has it, to the bit."""
+    line = curve.Line()
+    direction = np.array(line.Direction().Coord())
+    return t[:, None] * direction + np.array(line.Location().Coord()), direction
+
+
 def along(curve: Any, t: Floats, dimension: int = 2) -> Floats:
     """Points and derivatives of a curve at parameters (n,), in a parameter plane or in space: (n, 2, dimension)."""
+    if dimension == 2 and curve.GetType() == GeomAbs_Line:
+        points, direction = _on_line(curve, t)
+        return np.stack([points, np.broadcast_to(direction, points.shape)], axis=1)
     point, tangent = (gp_Pnt2d(), gp_Vec2d()) if dimension == 2 else (gp_Pnt(), gp_Vec())
     evaluate, rows = curve.D1, []
     for x in t.tolist():

@@ -11,7 +11,7 @@ import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.TopoDS import TopoDS_Edge
 
-from cad_io.arrays import Floats, Orientation, Record
+from cad_io.arrays import Floats, Orientation, Record, cross
 from cad_io.face.curvature import curvature
 from cad_io.kernel import along, may_refuse
 from cad_io.part.blends import SMOOTH
@@ -139,7 +139,7 @@ def _side(
             geometry = curvature(d, sign, float(np.linalg.norm(part.size)))
             tangent = d[:, 1] * line[:, 1, :1] + d[:, 2] * line[:, 1, 1:]
             # The face is on the left of its border, seen with the surface's own normal towards the eye.
-            inward = way * sign * np.cross(geometry.normal, tangent)
+            inward = way * sign * cross(geometry.normal, tangent)
             inward /= np.linalg.norm(inward, axis=1)[:, None]
             cosine = (inward * geometry.direction_max).sum(axis=1)
             high_, low_ = geometry.curvature.T

@@ -1,14 +1,14 @@
 """Convert the arguments that make a part to plain bytes and back: to pass them between processes, or to store them."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Builder
 from OCP.gp import gp_Pnt
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape, TopoDS_Vertex
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex
 
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import children, compound
@@ -34,6 +34,20 @@ def unpacked(packed: PartContent) -> PartContent:
     shape, *vertices = children(whole)
     places = iter([vertex.Location() for vertex in vertices])
     return packed | {"shape": shape, "tree": tuple(_placed(bare, places) for bare in packed["tree"])}
+
+
+def packed_faces(faces: Sequence[TopoDS_Face]) -> bytes:
+    """Faces with the edges that they share."""
+    stream = io.BytesIO()
+    BinTools.Write_s(compound(list(faces)), stream)
+    return stream.getvalue()
+
+
+def unpacked_faces(form: bytes) -> list[TopoDS_Face]:
+    """Return new copies of the faces that were given to `packed_faces`, in their order."""
+    whole = TopoDS_Shape()
+    BinTools.Read_s(whole, io.BytesIO(form))
+    return [TopoDS.Face_s(each) for each in children(whole)]
 
 
 def _places(tree: tuple[Node, ...]) -> Iterator[TopLoc_Location]:

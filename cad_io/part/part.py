@@ -3,8 +3,9 @@
 Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
 """
 
-from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -27,10 +28,11 @@ from cad_io.kernel.natural import ENDLESS, endless
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
-from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
+from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.part.unjudged import NO_AREA, UNMEASURED, why_unjudged
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
+from plan_cutters_base.copies import SideProcess
 from plan_cutters_base.user_files import fingerprint
 
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
@@ -39,6 +41,8 @@ FARTHEST = 1e9
 LOOSEST = 0.1
 #: A face smaller than this share of the squared diagonal has no area.
 _LEAST_AREA = 1e-12
+#: Faces from which on two processes measure them, and the processor time that the other one may take, s.
+_MANY_FACES, _MEASURING = 40, 60.0
 
 _KINDS = {
     "Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Torus": "torus",
@@ -207,15 +211,43 @@ class Part:
             return None
         return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, self._said
 
-    def measured(self, at: Callable[[int], None] = lambda face: None) -> tuple[FaceInfo, ...]:
-        """`faces`; where they are yet to be measured, `at` is told which one is."""
+    def measured(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> tuple[FaceInfo, ...]:
+        """`faces`; where they are yet to be measured, `at` is told which one is. With more `jobs` than one, a copy of the process
+        measures every other one of many faces.
+        """
         if not self._infos:
-            result = []
-            for number in range(1, len(self._faces) + 1):
-                at(number)
-                result.append(self._describe(number))
-            self._infos = tuple(result)
+            count = len(self._faces)
+            far = range(2, count + 1, 2) if jobs > 1 and count >= _MANY_FACES else range(0)
+            _ = self.size  # which all of them ask
+            with SideProcess(partial(self._described, far), _MEASURING, worth=bool(far)) as side:
+                infos = {number: self._describe_at(number, at) for number in range(1, count + 1) if number not in far}
+                if far:
+                    described, measures, trims = side.result(partial(self._described, far, at))
+                    infos |= described
+                    self._measures |= measures
+                    self._trims |= self._with_faces(trims)
+            self._infos = tuple(infos[number] for number in range(1, count + 1))
         return self._infos
+
+    def _describe_at(self, number: int, at: Callable[[int], None]) -> FaceInfo:
+        at(number)
+        return self._describe(number)
+
+    def _described(
+        self, numbers: Sequence[int], at: Callable[[int], None] = lambda face: None
+    ) -> tuple[dict[int, FaceInfo], dict[int, Measure | None], dict[int, Trim | None]]:
+        """What measuring tells of some faces, without anything of the kernel's."""
+        infos = {number: self._describe_at(number, at) for number in numbers}
+        mine = {number: each for number, each in self._measures.items() if number in infos}
+        return infos, mine, {number: trim for number, trim in self._without_faces().items() if number in infos}
+
+    def _without_faces(self) -> dict[int, Trim | None]:
+        """The borders, but for the kernel's faces in them."""
+        return {number: trim and replace(trim, face=None) for number, trim in self._trims.items()}
+
+    def _with_faces(self, trims: Mapping[int, Trim | None]) -> dict[int, Trim | None]:
+        """The borders of this part's faces, of what `_without_faces` gave."""
+        return {number: trim and replace(trim, face=self.face(number)) for number, trim in trims.items()}
 
     def without(self, excluded: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
@@ -223,12 +255,17 @@ class Part:
         part.aside = {**self.aside, **excluded}
         return part
 
-    def facts(self, at: Callable[[int], None] = lambda face: None) -> dict[str, Any]:
-        """Return what measuring tells, for `recall` in another process that reads the same part; `at` as of `measured`."""
-        return {"_infos": self.measured(at), "_measures": self._measures, "_box": self._box}
+    def facts(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> dict[str, Any]:
+        """Return what measuring tells, for `recall` in another process that reads the same part; arguments as of `measured`."""
+        infos = self.measured(at, jobs=jobs)
+        return {"_infos": infos, "_measures": self._measures, "_box": self._box, "_trims": self._without_faces()}
 
     def recall(self, **facts: Any) -> None:
         """Take what another process knows of the same part."""
+        if "_trims" in facts:
+            facts["_trims"] = self._with_faces(facts["_trims"])
+        if isinstance(facts.get("sewn"), SewnForm):
+            facts["sewn"] = facts["sewn"].sewn()
         self.__dict__.update(facts)
 
     @cached_property

@@ -23,6 +23,7 @@ from cad_io.kernel import bounding, explore, may_refuse, shape_map
 from cad_io.part.coincide import Group, Piece, TooMany, coinciding, points
 from cad_io.part.common_edges import on_common_edges
 from cad_io.part.curves import Curves
+from cad_io.part.packing import packed_faces, unpacked_faces
 
 #: Tolerances to try, as shares of the part's diagonal; in mm none below the kernel's precision nor above the most.
 RUNGS = (1e-6, 1e-5, 1e-4, 1e-3)
@@ -66,6 +67,28 @@ def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> S
     shell = join([faces[number - 1] for number in numbers], diagonal)
     open_edges, length = len(shell.left), float(sum(shell.left))
     return Sewn(dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped)
+
+
+class SewnForm(NamedTuple):
+    """A `Sewn` without anything of the kernel's: the numbers of its faces, the faces as bytes, and the rest as it stands."""
+
+    numbers: tuple[int, ...]
+    faces: bytes
+    tolerance: float | None
+    tried: float | None
+    open_edges: int
+    open_length: float
+    stopped: str | None
+
+    @classmethod
+    def of(cls, sewn: Sewn) -> "SewnForm":
+        faces = packed_faces(list(sewn.faces.values())) if sewn.faces else b""
+        return cls(tuple(sewn.faces), faces, sewn.tolerance, sewn.tried, sewn.open_edges, sewn.open_length, sewn.stopped)
+
+    def sewn(self) -> Sewn:
+        faces = unpacked_faces(self.faces) if self.numbers else []
+        by_number = dict(zip(self.numbers, faces, strict=True))
+        return Sewn(by_number, self.tolerance, self.tried, self.open_edges, self.open_length, self.stopped)
 
 
 class Join(NamedTuple):

@@ -21,6 +21,7 @@ from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import unwrapped
 from cad_io.kernel.natural import ENDLESS, bound_naturally, endless
 from cad_io.part import Part
+from cad_io.part.packing import packed, unpacked
 from cad_io.read import iges, step
 from cad_io.read.document import Read
 from cad_io.read.isolation import Crashed, PartContent
@@ -30,6 +31,7 @@ from cad_io.read.references import followed, in_folder_of, names
 from cad_io.read.referred import Referred, referred
 from cad_io.read.sniff import load
 from cad_io.units import in_mm
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 from plan_cutters_base.user_files import checksum, checksums
 
 Loaded = step.Loaded | iges.Loaded
@@ -40,7 +42,9 @@ TIMEOUT = 120.0
 _LONGEST = 1e8
 
 
-def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT) -> Part:
+def read_part(
+    source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT, cache: Cache = NO_CACHE
+) -> Part:
     """Read a part; faces are numbered from 1 in the order of the kernel's map of the shape read.
 
     Parameters
@@ -58,6 +62,9 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     timeout : float
         Seconds that a guarded reading may take. A file with faults that may harm the kernel is made into shapes in a
         copy of the process in any case.
+    cache : StageCache, optional
+        Keeps what was read of a file without faults that refers to no other one: the kernel reads its own form of a shape some
+        thirty times as fast as STEP.
 
     Returns
     -------
@@ -95,27 +102,27 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         return source
     timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part.of(_find(source, unit, timeout) | {"unit": unit})
+        return Part.of(_find(source, unit, timeout, cache) | {"unit": unit})
 
     def find() -> PartContent:
-        source_part = _find(source, unit, timeout)
+        source_part = _find(source, unit, timeout, cache)
         Part.of(source_part)  # which asks the kernel more, better here than outside
         return source_part | {"unit": unit}
 
     return Part.of(in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
-def _find(source: Any, unit: str | None, timeout: float) -> PartContent:
+def _find(source: Any, unit: str | None, timeout: float, cache: Cache) -> PartContent:
     """Return the arguments that make the part, by the names of its parameters."""
     if isinstance(source, str | os.PathLike):
-        return _read_file(os.fspath(source), unit, timeout)
+        return _read_file(os.fspath(source), unit, timeout, cache)
     shape = from_object(source)
     bound_naturally(shape["shape"])
     tree = tuple(_scaled_node(node, unit) for node in shape["tree"])
     return shape | {"shape": _scaled(shape["shape"], unit), "tree": tree}
 
 
-def _read_file(file: str, unit: str | None, timeout: float) -> PartContent:
+def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> PartContent:
     kind, data = load(file)
     known: PartContent = {"file": file, "sha256": checksum(data)}
     if kind not in _LOADERS:
@@ -130,10 +137,23 @@ def _read_file(file: str, unit: str | None, timeout: float) -> PartContent:
         others = referred(file, data, timeout)
         loader = partial(loader, foreign=others.foreign)
         known["references"] = checksums(followed(data, in_folder_of(file)))
-    with translated("reading the file", error=ReadError, file=file):
-        loaded = loader()
-        if not (loaded.risky or others.risky):
-            return known | _transferred(lambda: loaded, others)
+    loaded: Any = None
+
+    def transferred() -> PartContent | None:
+        """Return what the kernel makes of the file; None where that may harm it."""
+        nonlocal loaded
+        with translated("reading the file", error=ReadError, file=file):
+            loaded = loader()
+            return None if loaded.risky or others.risky else _transferred(lambda: loaded, others)
+
+    stored = (NO_CACHE if "references" in known else cache).cached(
+        "read", (kind, known["sha256"], unit), lambda: (made := transferred()) and packed(made),
+        # The kernel opens the file itself: what was written there meanwhile is not of this checksum.
+        lambda made: made is not None and loaded.alone and checksum(load(file)[1]) == known["sha256"],
+    )  # fmt: skip
+    if stored is not None:
+        # Its own form tells directions to the last bit but one: a part is the same whether it was kept or not.
+        return known | unpacked(stored)
     # A crash costs no more than a copy: try with less and less.
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):

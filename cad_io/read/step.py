@@ -88,6 +88,8 @@ class Loaded:
     ----------
     risky : bool
         The transfer may crash or hang: to be run in a copy of the process.
+    alone : bool
+        What it becomes follows from its own bytes, and not from what stands beside it.
 
     Raises
     ------
@@ -100,7 +102,7 @@ class Loaded:
         foreign: int = 0,
     ) -> None:  # fmt: skip
         self.file, self.unit, self.names, self.careful = file, unit, names, careful
-        self.foreign, self._written = foreign, data
+        self.foreign, self._written, self.alone = foreign, data, True
         self.data, self.encoding = readable(data)
         self._adopted = adopted(self.data) if adopt and not foreign else None
         if self._adopted:
@@ -208,6 +210,7 @@ class Loaded:
             name = (references.FileName(number) or "").replace("\\", "/")
             if not name.strip() or os.path.normpath(name) in seen:
                 continue
+            self.alone = False
             path = os.path.join(os.path.dirname(self.file), name)
             try:
                 there = files.is_there(files.permitted(path))

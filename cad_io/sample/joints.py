@@ -12,8 +12,8 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats, Ints, Orientation, rows_by_face
-from cad_io.kernel import edges_of
+from cad_io.arrays import Floats, Ints, Orientation, cross, rows_by_face
+from cad_io.kernel import edges_of, points_on
 from cad_io.part import Part
 from cad_io.surface import Surface
 
@@ -85,7 +85,7 @@ class _Curve(NamedTuple):
     def derivatives(self, share: Floats) -> Floats:
         """S, Su, Sv (k, 3, 3) at shares of the range."""
         t = self.low + (self.high - self.low) * share
-        uv = np.array([self.curve.Value(x).Coord() for x in t.tolist()])
+        uv = points_on(self.curve, t)
         return self.surface.first(uv[:, 0], uv[:, 1])
 
 
@@ -115,6 +115,6 @@ def _side(part: Part, orientation: Orientation, number: int, curve: _Curve, shar
     """Points (k, 3) along an edge and one face's normals (k, 3) there, out of the material."""
     d = curve.derivatives(share)
     with np.errstate(all="ignore"):
-        normal = np.cross(d[:, 1], d[:, 2])
+        normal = cross(d[:, 1], d[:, 2])
         normal *= orientation.sign[number - 1] / np.linalg.norm(normal, axis=1)[:, None]
     return d[:, 0], normal

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
+from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples, cross
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
@@ -20,7 +20,7 @@ from cad_io.sample.grid_lines import Lines, spaced, uniform
 from cad_io.sample.joints import smooth_joints
 from cad_io.tessellate.start import starts
 
-__all__ = ["locate", "sample"]
+__all__ = ["bends", "locate", "sample"]
 
 #: Why a sample may have no normal or curvature.
 REASONS = ("the surface has no normal or curvature there",)
@@ -92,6 +92,31 @@ def sample(
         raise SampleError("give either a grid or a spacing", file=part.file)
     if grid is not None and grid < 2:
         raise SampleError(f"a grid needs at least 2 lines each way, not {grid}", file=part.file)
+    taken, empty = _taken(part, grid, spacing, faces, at)
+    at(0)
+    return _together(part, orientation, taken, tuple(empty))
+
+
+def bends(part: Part, orientation: Orientation, faces: Sequence[int], grid: int) -> dict[int, Floats]:
+    """The larger of the two curvatures, 1/mm, at each sample of a coarse grid, by the number of each face that has samples.
+
+    Samples are not linked with those of other faces, which takes longer than to take so few.
+    """
+    size = float(np.linalg.norm(part.size))
+    return {
+        each.number: np.abs(curvature(each.derivatives, float(orientation.sign[each.number - 1]), size).curvature).max(axis=1)
+        for each in _taken(part, grid, None, faces)[0]
+    }
+
+
+def _taken(
+    part: Part,
+    grid: int | None,
+    spacing: float | Mapping[int, float] | None,
+    faces: Sequence[int],
+    at: Callable[[int], None] = lambda face: None,
+) -> tuple[list[_FaceSamples], list[tuple[int, str]]]:
+    """The samples of each face, and why others have none."""
     taken, empty = [], []
     for number in faces:
         at(number)
@@ -108,8 +133,7 @@ def sample(
             empty.append((number, "no sample lies inside its border"))
         else:
             taken.append(samples)
-    at(0)
-    return _together(part, orientation, taken, tuple(empty))
+    return taken, empty
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
@@ -291,7 +315,7 @@ def _together(
 
 
 def _density(derivatives: Floats) -> Floats:
-    return np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
+    return np.linalg.norm(cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
 
 
 def _moved(grid: FaceGrid, by: int) -> FaceGrid:

@@ -50,7 +50,7 @@ def revolved(frame: Floats, profile: Profile, u: Floats, v: Floats, count: int) 
     out = np.empty((len(u), count, 3))
     cosine, sine = np.cos(u)[:, None], np.sin(u)[:, None]
     outward, along = cosine * frame[1] + sine * frame[2], cosine * frame[2] - sine * frame[1]
-    r, r1, r2, h, h1, h2 = (np.broadcast_to(each, v.shape)[:, None] for each in profile.at(v))
+    r, r1, r2, h, h1, h2 = (each[:, None] for each in profile.at(v))
     axis = frame[3]
     out[:, 0] = frame[0] + r * outward + h * axis
     if count > 1:

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import continuing
-from cad_io.kernel import bounding, interval_ends
+from cad_io.kernel import bounding, interval_ends, points_on
 from cad_io.tessellate.planar import places
 
 #: Chords of a bent border curve, at least; how often one is halved, at most.
@@ -134,7 +134,7 @@ def cut_where_they_meet(outline: Outline) -> Outline:
         at = chord[here] - first
         t = each.parameter
         t = np.insert(t, at + 1, t[at] + share[here] * (t[at + 1] - t[at]))
-        on_curve = np.array([each.use.curve.Value(x).Coord() for x in t.tolist()])
+        on_curve = points_on(each.use.curve, t)
         cuts.append((np.insert(mine, at + 1, row[here]), Sampled(each.use, t, on_curve)))
         first += len(mine) - 1
     return Outline(nodes, tuple(mine for mine, _ in cuts), tuple(each for _, each in cuts))
@@ -144,7 +144,7 @@ def _sampled(use: Use, steps: Steps, most: int) -> Sampled:
     t = _straight(use, steps, most) if use.curve.GetType() == GeomAbs_Line else _bent(use, steps, most)
     if not use.forward:
         t = t[::-1]
-    return Sampled(use, t, np.array([use.curve.Value(each).Coord() for each in t.tolist()]))
+    return Sampled(use, t, points_on(use.curve, t))
 
 
 def _straight(use: Use, steps: Steps, most: int) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from cad_io.part.inside_edges import inside_edges
+from cad_io.part.inside_edges import InsideEdge, inside_edges
 from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
@@ -142,7 +142,7 @@ class JudgedPart:
                 by_cutter[cutter] = Explained.of_search(over), which
                 unexplained += (cutter.id,) if over.not_reached.any() else ()
             wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
-            edges = inside_edges(ready.scene.part, ready.scene.orientation, ready.scene.doubles) if wanted else ()
+            edges = _inside_edges(ready) if wanted else ()
         at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
         reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
         ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
@@ -275,6 +275,13 @@ def worded(result: Result, clock: Clock) -> Result:
     with clock.stage("plan", shown=False):
         document = with_text(result.plan)
     return replace(result, plan=clock.stamp(document))
+
+
+def _inside_edges(ready: Prepared) -> tuple[InsideEdge, ...]:
+    """The sharp inside edges of the part, which no cutter or setup changes."""
+    part, orientation, doubles = ready.scene.part, ready.scene.orientation, ready.scene.doubles
+    key = (part.key, orientation.sign, doubles)
+    return ready.cache.cached("inside_edges", key, lambda: inside_edges(part, orientation, doubles))
 
 
 def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.part.patterns import patterns
+from cad_io.part.sew import SewnForm
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -282,15 +283,18 @@ def prepare(
         raise OptionError("setup auto is for a whole plan: name the setup")
     clock = clock or Clock()
     with clock.stage("read"):
-        stands = _read(part, options, read_timeout)
+        stands = _read(part, options, read_timeout, cache or NO_CACHE)
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
     whole = stands.part if isinstance(stands, Scene) else stands
     stages = NO_CACHE if cache is None or whole.key is None else cache
     with clock.stage("measure"):
-        whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"))))
+        whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):
-        _ = whole.sewn
+        if whole.solids:
+            _ = whole.sewn  # faces that share edges with those of a solid cannot be taken from it
+        else:
+            whole.recall(sewn=stages.cached("sewn", whole.key, lambda: SewnForm.of(whole.sewn), _is_whole))
         whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
     with clock.stage("orient"):
         scene = Scene.of(
@@ -387,10 +391,14 @@ def prepare(
     return ready
 
 
-def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
+def _is_whole(sewn: SewnForm) -> bool:
+    return sewn.stopped is None
+
+
+def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:
     read = part.part if isinstance(part, Scene) else part
     if isinstance(read, Part) and options.unit is not None:
         raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
     if isinstance(part, Part | Scene):
         return part
-    return read_part(part, unit=options.unit, timeout=timeout)
+    return read_part(part, unit=options.unit, timeout=timeout, cache=cache)

@@ -236,12 +236,17 @@ def end_with(parent: int) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def _killed_by_the_system() -> bool:
-    """Ask Linux to kill this process; False where it cannot be asked."""
+def outlive() -> None:
+    """Take `end_with` back, on Linux."""
+    _killed_by_the_system(0)
+
+
+def _killed_by_the_system(number: int = signal.SIGKILL) -> bool:
+    """Ask Linux to end this process by a signal, 0 for none; False where it cannot be asked."""
     if sys.platform != "linux":
         return False
     none = ctypes.c_ulong(0)
-    return ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, ctypes.c_ulong(signal.SIGKILL), none, none, none) == 0
+    return ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, ctypes.c_ulong(number), none, none, none) == 0
 
 
 def _looked_after(parent: int) -> None:

@@ -17,7 +17,7 @@ OPENS = {"open", "fdopen", "read_text", "read_bytes", "fromfile", "loadtxt", "ge
 KNOWN = {
     "cad_io/read/step.py": {"self.reader.ReadFile": 1},
     "cad_io/read/iges.py": {"self.reader.ReadFile": 1},
-    "cad_io/read/read.py": {"BRepTools.Read_s": 1, "BinTools.Read_s": 1, "load": 1},
+    "cad_io/read/read.py": {"BRepTools.Read_s": 1, "BinTools.Read_s": 1, "load": 2},
     "cad_io/read/mesh.py": {"trimesh.load": 1},
     "plugin/plan_cutters/files/content.py": {"archive.open": 1},
     "plugin/plan_cutters/files/arrays.py": {"self._archive.open": 2},

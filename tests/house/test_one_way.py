@@ -14,6 +14,7 @@ KNOWN = {
     "plugin/plan_cutters_base/workers/child.py": {"subprocess.Popen": 1, "os.killpg": 1},
     "plugin/plan_cutters_ci/repository.py": {"subprocess.run": 1},  # git
     "plugin/plan_cutters_base/forks.py": {"os.fork": 2},
+    "plugin/plan_cutters_base/workers/prompt.py": {"os.fork": 1},  # the copy behind a prompt
     "plugin/plan_cutters_base/whole.py": {"os.replace": 1},
     # All files of a folder at once, or one that is whole already.
     "plugin/plan_cutters_batch/store.py": {"os.rename": 2},

@@ -6,6 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cad_io import read_part
+from cad_io.part import part
+from cad_io.read import read, step
 from plan_cutters import plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.options import Options
@@ -60,7 +63,7 @@ def test_the_same_question_is_read_and_has_the_same_bytes(tmp_path, part, words)
     first = answered(part, tmp_path / "first", **words)
     second = answered(part, tmp_path / "second", **words)
     assert without[2] == []
-    assert {"faces", "triangles", "samples", "tree", "bodies", "verdicts", "witnesses"} <= set(first[2])
+    assert {"read", "faces", "triangles", "samples", "tree", "bodies", "verdicts", "witnesses"} <= set(first[2])
     assert second[2] == []
     same(without, first)
     same(first, second)
@@ -110,3 +113,50 @@ def test_a_part_with_faces_set_aside_is_another_one(tmp_path):
     assert (less.samples.face != 1).all()
     assert (whole.samples.face == 1).any()
     assert np.array_equal(less.reaches["R3L40"].verdict, plain.reaches["R3L40"].verdict)
+
+
+def test_a_second_question_reads_no_step_and_sews_nothing(monkeypatch):
+    words, shell = {**COARSE, "cutters": ["R3L40"], "area_budget": 0}, OWN.with_name("v_groove.step")
+    plan(shell, **words)
+    stage_cache.settle()
+
+    def refused(*words, **more):
+        raise AssertionError("what is kept is made again")
+
+    monkeypatch.setitem(read._LOADERS, "step", refused)
+    monkeypatch.setattr(part, "sew", refused)
+    assert plan(shell, **{**words, "cutters": ["R2L40"], "machine": "tilt:60"}).plan.cutters[0].id == "R2L40"
+
+
+def test_a_file_that_changes_while_it_is_read_is_not_kept(tmp_path, monkeypatch):
+    file, loaded = tmp_path / "part.step", step.Loaded
+    file.write_bytes(OWN.read_bytes())
+    cache = stage_cache.StageCache.of_user()
+
+    def changed(name, data, *words, **more):
+        file.write_bytes(OWN.with_name("v_groove.step").read_bytes())
+        return loaded(name, data, *words, **more)
+
+    monkeypatch.setitem(read._LOADERS, "step", changed)
+    read_part(file, cache=cache)
+    stage_cache.settle()
+    monkeypatch.setitem(read._LOADERS, "step", loaded)
+    file.write_bytes(OWN.read_bytes())
+    assert len(read_part(file, cache=cache).faces) == len(read_part(OWN).faces)
+
+
+@pytest.mark.parametrize("what", ["references", "faults", "a reference that is not known"])
+def test_what_depends_on_more_than_the_file_is_read_again(tmp_path, what, monkeypatch):
+    file = tmp_path / "part.step"
+    file.write_bytes(OWN.read_bytes())
+    if what == "faults":
+        monkeypatch.setattr(step, "_has_huge", lambda data: True)
+    elif what == "a reference that is not known":
+        monkeypatch.setattr(step.STEPConstruct_ExternRefs, "NbExternRefs", lambda self: 1)
+        monkeypatch.setattr(step.STEPConstruct_ExternRefs, "FileName", lambda self, number: "other.step")
+    else:
+        monkeypatch.setattr(read, "names", lambda data: True)
+        monkeypatch.setattr(read, "referred", lambda *words: read.Referred())
+    read_part(file, cache=stage_cache.StageCache.of_user())
+    stage_cache.settle()
+    assert not list(tmp_path.glob("stages/read-*"))

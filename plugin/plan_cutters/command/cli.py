@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import BinaryIO, NoReturn
+from typing import TYPE_CHECKING, BinaryIO, NoReturn
 
 import click
 
@@ -28,7 +28,11 @@ from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
 from plan_cutters_base.workers.child import can_supervise
 from plan_cutters_base.workers.errors import Supervised, Unfinished
+from plan_cutters_base.workers.prompt import is_waited_for, let_go
 from plan_cutters_base.workers.supervise import default_memory
+
+if TYPE_CHECKING:
+    from plan_cutters.command.progress import Display
 
 #: The word for standard input.
 PIPE = "-"
@@ -178,6 +182,20 @@ def _shown(request: PlanRequest, out: Path, summarised: bool) -> None:
     show_plan(out, request, summarised=summarised)
 
 
+def _may_leave(request: PlanRequest) -> bool:
+    """Whether nobody needs more of the command than a summary before models are written."""
+    return len(request.parts) == 1 and request.json_out is None and request.case_files is None and request.timeout is None
+
+
+def _give_prompt_back(request: PlanRequest, display: "Display", code: int, out: Path) -> None:
+    """Give the prompt back: models are written behind it."""
+    display.clear()
+    if not request.quiet:
+        where = os.path.relpath(out) if request.out is None else request.out
+        terminal.say(f"Models are being written into {where} meanwhile; plan.json there names those that are done. --wait waits.")
+    let_go(code)
+
+
 def _part_cases(request: PlanRequest) -> PartCases | None:
     """What gathers test cases of the parts, where a file for them is requested."""
     return None if (files := request.case_files) is None else PartCases(files, request.parts)
@@ -243,6 +261,7 @@ def _watched(words: list[str], name: str) -> int:
             timeout=math.inf if request.timeout is None else request.timeout,
             since=began(),
             shows=partial(_shown, request),
+            leave=partial(_give_prompt_back, request, display) if is_waited_for() and _may_leave(request) else None,
         )
     except Unfinished as stopped:
         from plan_cutters.command.partial_plan import without_models

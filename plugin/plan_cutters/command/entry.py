@@ -152,7 +152,10 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
             from plan_cutters_base.workers.child import begin_early
+            from plan_cutters_base.workers.prompt import at_prompt, copy_and_wait
 
+            if not is_child() and "--wait" not in words and any(map(os.path.isfile, words)) and at_prompt():
+                copy_and_wait()
             begin_early(words)
         module_of(name).main(words, name)
     except KeyboardInterrupt:

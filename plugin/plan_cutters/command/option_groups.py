@@ -387,6 +387,11 @@ _OPTIONS = (
     ),
     _output("-v", "--verbose", brief=True, is_flag=True, help="Print all details, not only the summary."),
     _output("--quiet", brief=True, is_flag=True, help="Print no progress and no summary, only errors."),
+    _output(
+        "--wait",
+        is_flag=True,
+        help="At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
+    ),
     _answers(
         "--answers",
         brief="More questions to answer, or all.",

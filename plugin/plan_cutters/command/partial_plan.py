@@ -85,6 +85,7 @@ MOST = 5
 def supervised(
     words: Sequence[str], *, parts: Sequence[str], read_timeout: float, memory: int, timeout: float = math.inf, since: float,
     display: Display | None = None, shows: Callable[[Path, bool], None] = lambda out, summarised: None,
+    leave: Callable[[int, Path], None] | None = None,
 ) -> int:  # fmt: skip
     """`supervise`, again and again without the face at which it ended, or without the part that took too long.
 
@@ -97,7 +98,7 @@ def supervised(
     while True:
         try:
             return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, timeout=timeout,
-                                       since=began, done=done, excluded=faces))  # fmt: skip
+                                       since=began, done=done, excluded=faces, leave=leave))  # fmt: skip
         except Unfinished as stopped:
             stopped.parts += done
             stopped.code = max(code, stopped.code)

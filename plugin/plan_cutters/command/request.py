@@ -131,6 +131,7 @@ class PlanRequest(PlanningRequest, Reported):
     out: str | None
     json_out: str | None
     verbose: bool
+    wait: bool
     fail_under: float | None
     timeout: float | None
     memory: float | None

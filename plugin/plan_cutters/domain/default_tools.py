@@ -1,5 +1,7 @@
 """The built-in drawer: metric end mills of usual sizes in plain holders, for a first look. They are nobody's tools."""
 
+from functools import cache
+
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
 
@@ -23,6 +25,7 @@ _SHANK, _STUB = 3.0, 5.0
 _HOLDER = 60.0
 
 
+@cache
 def builtin() -> tuple[Cutter, ...]:
     """Flat ends, bull noses and ball ends from 2 to 24 mm across, each with flutes, neck or shank, and a plain round holder."""
     cutters = []

@@ -7,6 +7,7 @@ import re
 import shutil
 import socket
 import tempfile
+import time
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
@@ -30,6 +31,8 @@ def require_temporary() -> None:
 
 
 _LONGEST = 4096
+#: Seconds that a run waits for one which only has models left to write, and how often it looks.
+_PATIENCE, _LOOK = 120.0, 0.05
 
 
 class Lock:
@@ -38,6 +41,7 @@ class Lock:
     The system's own lock on the file ends with the process that has it, however that ends: what is left behind is taken over.
     What another machine left behind is not, for on some network folders its lock cannot be seen: the file is to be removed by
     hand if nothing runs there. Where the file system has no locks, or on Windows, that holds for what was left behind here, too.
+    An owner that has only models left to write is waited for.
 
     Parameters
     ----------
@@ -63,8 +67,15 @@ class Lock:
         if staging is not None:
             self._entry["staging"] = str(staging)
         named(self.file)
+        self._patient_until = time.monotonic() + _PATIENCE
         while not self._held:
             self._take(out)
+
+    def ends_soon(self) -> None:
+        """Say that models are all that is left to write."""
+        self._entry["models"] = True
+        with contextlib.suppress(OSError):
+            self.file.write_text(json.dumps(self._entry) + "\n", encoding="utf-8")
 
     def release(self) -> None:
         """Let others write."""
@@ -84,6 +95,9 @@ class Lock:
         try:
             alone = acquired(self._system)
             if alone is False and not self.file.exists():
+                return
+            if alone is False and _owner(self.file).get("models") is True and time.monotonic() < self._patient_until:
+                time.sleep(_LOOK)
                 return
             if alone is False or (alone is None and not made):
                 raise _busy(out, self.file, alive=alone is False)

@@ -245,6 +245,10 @@ class Staging:
         except OSError as error:
             raise _unwritable(self.out, error) from None
 
+    def models_follow(self) -> None:
+        """Say to other runs that nothing but models is left to write here."""
+        self._lock.ends_soon()
+
     def discard(self) -> None:
         """Forget what has not appeared in the output, and let others write there."""
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -335,6 +339,8 @@ def write_all(
         if listener:
             with clock.stage("show", shown=False):
                 listener.safe(written.plan)
+        if later:
+            staging.models_follow()
         split = 0
         with closing(making.files(later)) as each:
             for name, make in each:

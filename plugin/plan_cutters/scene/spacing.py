@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cad_io import Orientation, Part, SurfaceSamples
-from cad_io.sample import sample
+from cad_io.sample import bends, sample
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.errors import OptionError, TooManySamplesError
 from plan_cutters.options import Options
@@ -36,12 +36,10 @@ def default_spacing(
     all faces alike where the budget binds.
     """
     base = _SHARE * min(c.radius for c in cutters)
-    scout = sample(part, orientation, grid=9, spacing=None, faces=faces)
-    bend = np.nan_to_num(np.abs(scout.curvature).max(axis=1, initial=0.0))
+    scout = bends(part, orientation, faces, 9)
     spacing: dict[int, float] = {}
-    rows = scout.by_face()
     for number in faces:
-        here = bend[rows.get(number, [])]
+        here = np.nan_to_num(scout.get(number, np.zeros(0)))
         # A median: a point at an apex or a crease says nothing about the face.
         typical = float(np.median(here)) if len(here) else 0.0
         spacing[number] = min(base, max(base / _FINEST, _TURN / typical if typical else base))

@@ -12,7 +12,7 @@ import select
 import shutil
 import signal
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -57,7 +57,7 @@ def default_memory() -> int:
 def supervise(
     words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
     name: str = "plan-cutters", timeout: float = math.inf, since: float | None = None, done: int = 0,
-    excluded: Mapping[int, str] | None = None,
+    excluded: Mapping[int, str] | None = None, leave: Callable[[int, Path], None] | None = None,
 ) -> int:  # fmt: skip
     """Run a command in a child.
 
@@ -82,6 +82,8 @@ def supervise(
         When the first part began (`time.monotonic`); default now.
     done, excluded
         As of `Assignment`.
+    leave : callable, optional
+        Called once with the exit code and the output of the one part, when its summary was shown and models are all that is left.
 
     Returns
     -------
@@ -142,6 +144,9 @@ def supervise(
                 announced = True
                 if display is not None:
                     display.interrupted()
+            if leave is not None and not ending and watch.safe and watch.summarised and watch.stage == "write":
+                leave(*watch.safe)
+                leave = None
             if watch.late():
                 raise watch.ended(*watch.verdict())
             if display is not None:
