@@ -120,7 +120,7 @@ class Walls:
 
     def of_probes(self, probes: Probes) -> "Walls":
         """The same with probes of the same tools at the same samples: what is cut along the setup axis is known already."""
-        same = Walls(probes, self._triangles, self._band - self._scallop, self._scallop, self._accuracy)
+        same = Walls(probes, self._obstacles, self._scallop, self._accuracy)
         same._upright = self._upright
         return same
 
