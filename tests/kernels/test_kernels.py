@@ -92,7 +92,7 @@ def test_tree_finds_what_a_loop_over_all_finds(n):
 
 def test_every_box_holds_its_triangles():
     rng = np.random.default_rng(3)
-    (vertex, box, depth), _ = build(soup(rng, 777))
+    vertex, box, depth = build(soup(rng, 777))[0][:3]
     n, first = len(vertex), (1 << depth) - 1
     for node in range(len(box)):
         level = (node + 1).bit_length() - 1

@@ -10,6 +10,7 @@ from plan_cutters.answers.means_place import axis, tilt_range, tolerance
 from plan_cutters.answers.means_tool import corner, holder, other_cutters, radius, stick_out
 from plan_cutters.answers.scan import Candidate, Scan, under
 from plan_cutters.domain.machine import Machine
+from plan_cutters.scene.work import Budget
 
 #: What changes the tool alone.
 _TOOLS = (stick_out, other_cutters, corner, radius, holder)
@@ -17,12 +18,18 @@ _TOOLS = (stick_out, other_cutters, corner, radius, holder)
 _JOINED = 3
 
 
-def candidates(scan: Scan) -> list[Candidate]:
-    """Steps that gain something of a few samples, those that may leave least first."""
-    result: list[Candidate] = []
+def candidates(scan: Scan, budget: Budget) -> tuple[list[Candidate], int]:
+    """Steps that gain something of a few samples, those that may leave least first; and how many kinds were not looked at.
+
+    Once something was found, no others are looked for when the work is spent.
+    """
+    result, skipped = list[Candidate](), 0
     for each in (tolerance, tilt_range, *_TOOLS, axis):
-        result += each(scan)
-    return sorted(result, key=lambda candidate: candidate.estimate)
+        if result and not budget.left:
+            skipped += 1
+        else:
+            result += each(scan)
+    return sorted(result, key=lambda candidate: candidate.estimate), skipped
 
 
 def joined(scan: Scan) -> list[Candidate]:

@@ -33,6 +33,8 @@ _MOST = 120.0
 _UNSURE = 0.1
 #: Share of the tolerance that is tried: the triangles grow in number as it falls.
 _FINER = 0.5
+#: Triangles beside which none are made anew for a finer tolerance.
+_MANY = 400_000
 #: Directions that are compared, at most.
 _COMPARED = 6
 #: Directions closer to each other than this are one, deg.
@@ -46,8 +48,9 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
         return
     now = ready.scene.asked
-    if ready.conditions.tolerance > now * (1.0 + 1e-9):
-        # The triangles are as many as there may be: they would follow the surface no closer.
+    if ready.conditions.tolerance > now * (1.0 + 1e-9) or len(ready.conditions.obstacles.triangles) > _MANY:
+        # The triangles are as many as there may be, and would follow the surface no closer; or to make twice as many to compare
+        # them takes longer than all else. That undecided samples ask for a finer tolerance is said where they are told.
         return
     tried = float(f"{now * _FINER:.6g}")
     if tried < LEAST_TOLERANCE:

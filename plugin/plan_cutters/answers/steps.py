@@ -108,11 +108,11 @@ def steps(
     areas = patches(ready.samples, finished, open_rows)
     scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in reaches))
     # What other given cutters reach is known.
-    listed = candidates(scan)
+    budget = budget or Budget(math.inf)
+    listed, uncompared = candidates(scan, budget)
     dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
     chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
-    budget = budget or Budget(math.inf)
-    made, uncompared = list[Judged](), 0
+    made = list[Judged]()
     for each in chosen:
         # What given cutters do is known.
         if made and not budget.left and each.moves[0].means != "cutter":
@@ -205,7 +205,7 @@ def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
         after = Scan.of(first.state, rows, finished, scan.known, scan.given)
         seconds = [
             replace(second, moves=(*first.moves, *second.moves))
-            for second in candidates(after)
+            for second in candidates(after, budget)[0]
             if second.moves[0].means not in {means, *_APART.get(means, ())}
         ]
         for both in seconds[:_PAIRS]:

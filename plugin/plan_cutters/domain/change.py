@@ -89,7 +89,8 @@ class Advice:
     areas : tuple of Patch
         Connected areas that are not reached now, the largest first, and how many more there are.
     uncompared : int
-        Changes that promised less than those judged and were not judged, since the work for advice was spent.
+        Changes that promised less than those judged and were not judged, and kinds of changes that were not looked at, since the
+        work for advice was spent.
     unsure : bool
         Faces are missing from what is in the way, so that no gain is sure.
     """

@@ -41,7 +41,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import with_and_without, worths
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.thinned import standing_for, thinned
+from plan_cutters.operations.thinned import at_some, thinned
 from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan, Operations
@@ -56,7 +56,7 @@ _PARTS = 4
 #: Samples by which all candidates for the fastest are compared; those that are not dropped then are compared by more.
 _PRICED = 200
 #: How often canonical orientations are sought by some samples, with so many more of what they leave, before it is by all.
-_AGAIN, _LEFT = 4, 200
+_AGAIN, _AT_ONCE = 4, 200
 #: No columns.
 _NONE = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
 
@@ -326,10 +326,10 @@ def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Colu
     for k in range(_AGAIN if some is not task else 0):
         tried = canonical(some, columns, progress=part_of(tell, k, _AGAIN + 1))
         rest = task.rows[~np.isfinite(costs_with(task, tried)[1]).any(axis=1)]
-        left = rest[np.isfinite(costs_with(standing_for(task, rest), columns)[1]).any(axis=1)]
-        if not len(left):
+        unserved = rest[np.isfinite(costs_with(at_some(task, rest), columns)[1]).any(axis=1)]
+        if not len(unserved):
             return tried
-        some = standing_for(task, np.union1d(some.rows, left[:: 1 + len(left) // _LEFT]))
+        some = at_some(task, np.union1d(some.rows, unserved[:: 1 + len(unserved) // _AT_ONCE]))
     return canonical(task, columns, progress=part_of(tell, _AGAIN, _AGAIN + 1))
 
 

@@ -22,7 +22,7 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
 #: The work of a plan unless a budget was requested: boxes in any case, and this share of those of the searches for verdicts.
-_WORK_LEAST, _WORK_SHARE = 5e6, 0.12
+_WORK_LEAST, _WORK_SHARE = 5e6, 0.125
 #: Contacts for each sample, where that is more than a plan may add between samples.
 _CONTACTS = 4
 

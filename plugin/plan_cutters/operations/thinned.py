@@ -28,10 +28,10 @@ def thinned(task: Task, most: int = SOME) -> Task:
         Its plans reckon what the plans of all samples take; where it is served, others need not be.
     """
     every = len(task.rows) // most
-    return task if every < 2 else standing_for(task, task.rows[::every])
+    return task if every < 2 else at_some(task, task.rows[::every])
 
 
-def standing_for(task: Task, rows: NDArray[np.int64]) -> Task:
+def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
     """The same task for some of its samples (r,), each with the area of those that it stands for."""
     ready = task.ready
     area = np.zeros(len(ready.samples))

@@ -101,7 +101,9 @@ class MendEntry(Frozen):
     lost_areas: list[LostAreaEntry] = Field(default=[], description="the largest first")
     more_lost_areas: int = Field(default=0, description="that are not listed")
     uncompared: int = Field(
-        default=0, description="changes that promised less than those judged and were not judged: the work for advice was spent"
+        default=0,
+        description="changes that promised less than those judged and were not judged, and kinds of changes that were not looked "
+        "at: the work for advice was spent",
     )
     unsure: bool = Field(default=False, description="obstacles are missing, which may take away what a step gains")
 
