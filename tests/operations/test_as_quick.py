@@ -28,7 +28,9 @@ def plan_of(seconds, *, moving=0, untimed=0, other=0.0, name="plan"):
 def offer_of(*plans, reckoned=None):
     """Choices of repeated steps with these plans, reckoned to take as long as they do."""
     seconds = reckoned or [known(each) if each is not None else 0.0 for each in plans]
-    return SimpleNamespace(recommended=list(zip(range(len(plans)), seconds, strict=True)), plan=lambda k: plans[k])
+    return SimpleNamespace(
+        recommended=list(zip(range(len(plans)), seconds, strict=True)), plan=lambda k: plans[k], may_take=lambda *given: True
+    )
 
 
 def test_times_that_are_not_known_are_left_out_of_what_is_known():
@@ -104,3 +106,12 @@ def test_a_twentieth_of_the_area_more_in_motion_is_hardly_more():
     assert not _better(task, moving(9.0, [2]), repeated)
     assert not _better(task, plan_of(999.0), moving(1.0, [1]))
     assert _better(task, plan_of(999.0), moving(1.0, [2]))
+
+
+def test_what_takes_longer_by_far_at_some_samples_is_not_planned_at_all():
+    plans = [plan_of(80.0), plan_of(90.0)]
+    made, offer = [], offer_of(*plans)
+    offer.plan = lambda k: made.append(k) or plans[k]
+    offer.may_take = lambda k, most, share: k > 0
+    assert as_quick(TASK, offer, PLAIN, [])[0] is plans[1]
+    assert made == [1]

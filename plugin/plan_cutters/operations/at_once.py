@@ -62,7 +62,7 @@ class _Times:
         return self._with(some, self.cost[:, some].min(axis=1, initial=np.inf))
 
     def without_one(self, some: list[int]) -> list[tuple[list[int], tuple[float, float]]]:
-        """Some columns without one of them, and the `total` of the others, for each of those without which cutting takes least."""
+        """Some columns without one of them, and the `total` of the others: of each of those without which cutting takes least."""
         cost, rows = self.cost[:, some], np.arange(len(self.cost))
         quickest = cost.argmin(axis=1)
         least = cost[rows, quickest]

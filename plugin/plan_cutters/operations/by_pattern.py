@@ -34,6 +34,8 @@ _EQUAL = 0.02
 #: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what another plan leaves, and beyond
 #: what must go with it.
 _MOVING, _MOST_MOVING = 0.05, 0.1
+#: What a plan of some samples may be off in time and share, about.
+_ROUGH = 0.1
 
 PlansTimed = tuple[list[OperationPlan], Timed | None, tuple[Worth, ...], tuple[str, ...]]
 
@@ -64,6 +66,14 @@ class Repeated:
         """The plan of some columns and their images; None where nothing of it is repeated."""
         plan = plan_with(self.task, "fastest", columns)
         return plan if any(each.orbit >= 0 for each in plan.operations) else None
+
+    def may_take(self, columns: Columns, most: float, share: float) -> bool:
+        """Whether the plan of some columns may take no more seconds, and leave no more to simultaneous motion, by some samples."""
+        some = thinned(self.task)
+        if some is self.task:
+            return True
+        rough = plan_with(some, "fastest", columns, times=True)
+        return known(rough) <= (1.0 + _ROUGH) * most and moving_share(some, rough) <= share + _ROUGH
 
     @property
     def recommended(self) -> Iterator[tuple[Columns, float]]:
@@ -168,12 +178,14 @@ def as_quick(
         return plain
     other, _ = plain
     most = min((1.0 + _EQUAL) * known(other), *map(known, printed), np.inf)
+    share = moving_share(task, other) + _MOVING
     for columns, seconds in offer.recommended:
         # What the choice is reckoned to take is not quite what its plan does.
-        plan = offer.plan(columns) if seconds <= (1.0 + _EQUAL) * most else None
+        likely = seconds <= (1.0 + _EQUAL) * most and offer.may_take(columns, most, share)
+        plan = offer.plan(columns) if likely else None
         if plan is None or known(plan) > most or _untimed(task, plan) > _untimed(task, other):
             continue
-        if moving_share(task, plan) > moving_share(task, other) + _MOVING:
+        if moving_share(task, plan) > share:
             continue
         if known(plan) <= known(other) or not np.isfinite(other.total):
             return plan, ()
