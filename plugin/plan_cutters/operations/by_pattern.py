@@ -68,7 +68,7 @@ class Repeated:
         return plan if any(each.orbit >= 0 for each in plan.operations) else None
 
     def may_take(self, columns: Columns, most: float, share: float) -> bool:
-        """Whether the plan of some columns may take no more seconds, and leave no more to simultaneous motion, by some samples."""
+        """Whether a plan may take no more seconds and leave no more to simultaneous motion, by some samples."""
         some = thinned(self.task)
         if some is self.task:
             return True
