@@ -36,6 +36,11 @@ def unpacked(packed: PartContent) -> PartContent:
     return packed | {"shape": shape, "tree": tuple(_placed(bare, places) for bare in packed["tree"])}
 
 
+def comes_back(packed_content: PartContent) -> bool:
+    """Whether what is unpacked is what was packed to the last bit: the kernel makes directions unit vectors again as it reads."""
+    return bool(packed(unpacked(packed_content))["shape"] == packed_content["shape"])
+
+
 def packed_faces(faces: Sequence[TopoDS_Face]) -> bytes:
     """Faces with the edges that they share."""
     stream = io.BytesIO()

@@ -21,7 +21,7 @@ from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import unwrapped
 from cad_io.kernel.natural import ENDLESS, bound_naturally, endless
 from cad_io.part import Part
-from cad_io.part.packing import packed, unpacked
+from cad_io.part.packing import comes_back, packed, unpacked
 from cad_io.read import iges, step
 from cad_io.read.document import Read
 from cad_io.read.isolation import Crashed, PartContent
@@ -138,22 +138,23 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
         loader = partial(loader, foreign=others.foreign)
         known["references"] = checksums(followed(data, in_folder_of(file)))
     loaded: Any = None
+    content: PartContent | None = None
 
     def transferred() -> PartContent | None:
-        """Return what the kernel makes of the file; None where that may harm it."""
-        nonlocal loaded
+        """Return what the kernel makes of the file, packed; None where that may harm it."""
+        nonlocal loaded, content
         with translated("reading the file", error=ReadError, file=file):
             loaded = loader()
-            return None if loaded.risky or others.risky else _transferred(lambda: loaded, others)
+            content = None if loaded.risky or others.risky else _transferred(lambda: loaded, others)
+        return content and packed(content)
 
     stored = (NO_CACHE if "references" in known else cache).cached(
-        "read", (kind, known["sha256"], unit), lambda: (made := transferred()) and packed(made),
+        "read", (kind, known["sha256"], unit), transferred,
         # The kernel opens the file itself: what was written there meanwhile is not of this checksum.
-        lambda made: made is not None and loaded.alone and checksum(load(file)[1]) == known["sha256"],
+        lambda made: made is not None and loaded.alone and comes_back(made) and checksum(load(file)[1]) == known["sha256"],
     )  # fmt: skip
     if stored is not None:
-        # Its own form tells directions to the last bit but one: a part is the same whether it was kept or not.
-        return known | unpacked(stored)
+        return known | (content or unpacked(stored))
     # A crash costs no more than a copy: try with less and less.
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):

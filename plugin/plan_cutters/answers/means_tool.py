@@ -174,12 +174,11 @@ def radius(scan: Scan) -> Iterator[Candidate]:
             if made not in scan.given and scan.state.ready.conditions.judges(made)
         ]
         some = rows[::_FIRST_OF]
-        first = [scan.estimate(known.glance(state, some)) for state in states]
-        enough = max(min(first, default=0.0), scan.estimate(some) - _MAY_DO * (scan.estimate(some) - min(first, default=0.0)))
+        gains = [scan.estimate(some) - scan.estimate(known.glance(state, some)) for state in states]
         tried = [
             (scan.estimate(known.glance(state, rows)), state)
-            for state, estimate in zip(states, first, strict=True)
-            if estimate <= enough
+            for state, gain in zip(states, gains, strict=True)
+            if gain >= _MAY_DO * max(gains)
         ]
         least = min((each[0] for each in tried), default=whole)
         if least >= min(whole, content):

@@ -34,6 +34,8 @@ _EQUAL = 0.02
 #: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what another plan leaves, and beyond
 #: what must go with it.
 _MOVING, _MOST_MOVING = 0.05, 0.1
+#: Samples by which orientations of one copy are compared, at most about: each is looked at with all images of an orientation.
+_OF_ONE = 1000
 #: What a plan of some samples may be off in time and share, about.
 _ROUGH = 0.1
 
@@ -108,7 +110,7 @@ def repeated_orientations(
     copied = repeated(one if exact else own, candidates(task), stored, part_of(tell, 0, 2))
     if copied is None:
         return None
-    one = thinned(one)
+    one = thinned(one, _OF_ONE)
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
     return Repeated(own, one, tuple(fewer(one, columns)), copied, exact)
