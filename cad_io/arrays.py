@@ -17,17 +17,17 @@ SIMPLE_KINDS = ("plane", "cylinder", "cone", "sphere", "torus")
 
 
 def cross(a: Floats, b: Floats) -> Floats:
-    """Cross products (n, 3) of rows (n, 3): those of numpy, which takes several times as long over a few rows.
+    """Cross products of vectors (..., 3): those of `numpy.cross`, bit for bit, whose own checks take longest where there are few.
 
     >>> cross(np.eye(3), np.eye(3)[[1, 2, 0]])
     array([[0., 0., 1.],
            [1., 0., 0.],
            [0., 1., 0.]])
     """
-    (a0, a1, a2), (b0, b1, b2) = a.T, b.T
-    out = np.empty(a.shape)
-    out[:, 0], out[:, 1], out[:, 2] = a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
-    return out
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return product
 
 
 class Record:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record
+from cad_io.arrays import Floats, Record, cross
 from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 
 #: Tool axes this near to the direction of the axis next to the part, rad, are held only with fast turns of it: singular.
@@ -22,25 +22,17 @@ SINGULAR = math.radians(2.0)
 STEP = math.radians(2.0)
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
-    """What `np.cross` gives of vectors (..., 3), bit for bit: asked for few so often, its own checks take longest."""
-    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
-    return product
-
-
 def turned(direction: Floats, angle: Floats | float, vector: Floats) -> Floats:
     """Vectors (..., 3) turned about a unit direction (3,) by angles (...,), rad."""
     cosine, sine = np.cos(angle)[..., None], np.sin(angle)[..., None]
     along = (vector @ direction)[..., None] * direction
-    return np.asarray(along + cosine * (vector - along) + sine * _cross(direction, vector))
+    return np.asarray(along + cosine * (vector - along) + sine * cross(direction, vector))
 
 
 def angle_about(direction: Floats, start: Floats, end: Floats) -> Floats:
     """Angles (...,), rad, by which vectors (..., 3) turn about a unit direction (3,) into others."""
-    cross = _cross(start, end) @ direction
-    return np.asarray(np.arctan2(cross, (start * end).sum(axis=-1) - (start @ direction) * (end @ direction)))
+    across = cross(start, end) @ direction
+    return np.asarray(np.arctan2(across, (start * end).sum(axis=-1) - (start @ direction) * (end @ direction)))
 
 
 def within(angle: Floats, low: float, high: float) -> Floats:
@@ -88,7 +80,7 @@ class Kinematics(Record):
                 tool = turned(direction[k], still, tool)
                 for other in turning_axes:
                     direction[other] = turned(direction[k], still, direction[other])
-            elif turning_axes or np.linalg.norm(_cross(direction[k], tool)) > PARALLEL:
+            elif turning_axes or np.linalg.norm(cross(direction[k], tool)) > PARALLEL:
                 turning_axes.insert(0, k)
         if len(turning_axes) == len(direction):
             return self, turning_axes
@@ -146,10 +138,10 @@ class Kinematics(Record):
         for k, (low, high) in enumerate(self.limit):
             positions[:, :, k] = within(positions[:, :, k], low, high)
         if len(self.direction) == 0:
-            held = np.linalg.norm(_cross(axis, self.tool), axis=1) <= self._reach()
+            held = np.linalg.norm(cross(axis, self.tool), axis=1) <= self._reach()
             taken = np.where(held & (axis @ self.tool > 0.0), 0, -1)
             return positions, taken.astype(np.int8), np.zeros(len(axis), bool)
-        sine = np.linalg.norm(_cross(axis, self.direction[0]), axis=1)
+        sine = np.linalg.norm(cross(axis, self.direction[0]), axis=1)
         if len(self.direction) == 2:
             # On the singular axis itself any angle of the first one serves, so one within its limits does.
             low, high = self.limit[0]
@@ -207,7 +199,7 @@ class Kinematics(Record):
             rows = [[*first, along - PARALLEL], [*first, along + PARALLEL]]
             for end in (low, high):
                 if high - low < 2.0 * math.pi:
-                    across = _cross(first, turned(first, np.array(end), self.tool))
+                    across = cross(first, turned(first, np.array(end), self.tool))
                     rows.append([*(across / np.linalg.norm(across)), 0.0])
             return np.array(rows)
         first, second = self.direction
@@ -242,7 +234,7 @@ class Kinematics(Record):
         first, second = self.direction
         along = float(self.tool @ second)
         remainder = self.tool - along * second
-        a, b = float(first @ remainder), float(first @ _cross(second, remainder))
+        a, b = float(first @ remainder), float(first @ cross(second, remainder))
         return math.atan2(b, a), math.hypot(a, b), float(first @ second) * along
 
     def _reach(self) -> float:
@@ -252,4 +244,4 @@ class Kinematics(Record):
 
 def _between(axis: Floats, direction: Floats) -> Floats:
     """Angles (n,), rad, of unit axes (n, 3) to a unit direction (3,)."""
-    return np.asarray(np.arctan2(np.linalg.norm(_cross(axis, direction), axis=1), axis @ direction))
+    return np.asarray(np.arctan2(np.linalg.norm(cross(axis, direction), axis=1), axis @ direction))

@@ -71,11 +71,11 @@ class _Times:
         following = cost.min(axis=1)
         taken, instead = (np.where(np.isfinite(each), each, self.moving) for each in (least, following))
         longer = np.bincount(quickest, instead - taken, len(some))
-        return [
-            (others, self._with(others, np.where(quickest == k, following, least)))
-            for k in np.sort(np.argsort(longer, kind="stable")[:_TRIED]).tolist()
-            for others in [some[:k] + some[k + 1 :]]
-        ]
+        result = []
+        for k in np.sort(np.argsort(longer, kind="stable")[:_TRIED]).tolist():
+            others = some[:k] + some[k + 1 :]
+            result.append((others, self._with(others, np.where(quickest == k, following, least))))
+        return result
 
     def _with(self, some: Sequence[int], own: Floats) -> tuple[float, float]:
         """The `total` of columns that take so long at each sample (r,), infinite where none serves."""

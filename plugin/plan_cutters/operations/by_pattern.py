@@ -7,6 +7,7 @@ samples, like any other.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +43,7 @@ _ROUGH = 0.1
 PlansTimed = tuple[list[OperationPlan], Timed | None, tuple[Worth, ...], tuple[str, ...]]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Repeated:
     """Orientations that may be repeated.
 
@@ -71,11 +72,14 @@ class Repeated:
 
     def may_take(self, columns: Columns, most: float, share: float) -> bool:
         """Whether a plan may take no more seconds and leave no more to simultaneous motion, by some samples."""
-        some = thinned(self.task)
-        if some is self.task:
+        if self._some is self.task:
             return True
-        rough = plan_with(some, "fastest", columns, times=True)
-        return known(rough) <= (1.0 + _ROUGH) * most and moving_share(some, rough) <= share + _ROUGH
+        rough = plan_with(self._some, "fastest", columns, times=True)
+        return known(rough) <= (1.0 + _ROUGH) * most and moving_share(self._some, rough) <= share + _ROUGH
+
+    @cached_property
+    def _some(self) -> Task:
+        return thinned(self.task)
 
     @property
     def recommended(self) -> Iterator[tuple[Columns, float]]:

@@ -96,13 +96,14 @@ def promising(problem: Problem, chosen: Which) -> Which:
 
     These are the best of each sample, and of each cutter those that gain most where each sample pays its price.
     """
-    first = _shares(problem, chosen)
-    ascent = _Ascent(
-        np.ascontiguousarray(problem.cost.T), problem.costs.operation, 0.0, first, *np.zeros((2, len(problem.cutter)), int)
-    )
-    while not ascent.over and ascent.steps < _PRICED:
-        ascent.step(problem.total(chosen))
-    reduced, picked = lagrange(problem.cost.T, problem.costs.operation, ascent.price)[1], [chosen, problem.cost.argmin(axis=1)]
+    table, operation, most = np.ascontiguousarray(problem.cost.T), problem.costs.operation, problem.total(chosen)
+    nothing, same = np.zeros(len(table)), np.zeros(len(table), np.int64)
+    ascent = _Ascent(table, operation, 0.0, _shares(problem, chosen), nothing, same)
+    for _ in range(_PRICED):
+        if ascent.over:
+            break
+        ascent.step(most)
+    reduced, picked = lagrange(problem.cost.T, operation, ascent.price)[1], [chosen, problem.cost.argmin(axis=1)]
     for cutter in np.unique(problem.cutter).tolist():
         own = np.flatnonzero(problem.cutter == cutter)
         picked.append(own[np.argsort(reduced[own], kind="stable")[:_PROMISING]])
@@ -286,15 +287,15 @@ class _Ascent:
     ----------
     bound : float
         Of choices with all these cutters and setups.
-    work, steps : int
-        Costs looked at, and steps made.
+    work : int
+        Costs looked at.
     """
 
     def __init__(self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which) -> None:
         self._cost, self._operation, self._base, self.price = cost, operation, base, price
         self._least, self._group, self._reach = reach, group, Reach.of(reach, group)
         self._mean, self._length, self._waited = np.zeros(len(price)), 1.0, 0
-        self.bound, self.work, self.steps, self.over = -np.inf, 0, 0, not len(cost)
+        self.bound, self.work, self.over = -np.inf, 0, not len(cost)
 
     def step(self, most: float) -> None:
         """Make the prices better, below a cost that a choice has."""
@@ -311,7 +312,7 @@ class _Ascent:
             self.bound, self.price = value, price
         if self._waited >= _PATIENT:
             self._length, self._waited = _SHORTER * self._length, 0
-        self.work, self.steps = self.work + self._cost.size, self.steps + 1
+        self.work += self._cost.size
         self.over = self._length < _SHORTEST or not self._mean.any()
         # With one of the others any choice costs more than that: they are in no better choice.
         some = value + np.maximum(0.0, reduced) <= most + _NOTHING

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cad_io.arrays import Floats, Record, SurfaceSamples
+from cad_io.arrays import Floats, Record, SurfaceSamples, cross
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import modes
 
@@ -73,7 +73,7 @@ def strips_at(
     sine = np.linalg.norm(across, axis=1)
     tilt = np.arctan2(sine, cosine)
     f = np.where((sine > _HAIR)[:, None], across / np.maximum(sine, 1e-300)[:, None], direction)
-    t = _cross(normal, f)
+    t = cross(normal, f)
     offset, radius = _touching(cutter, tilt)
     inverse = np.zeros((len(axis), 2, 2))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -167,19 +167,13 @@ def _height(turn: Floats, offset: Floats, sine: Floats, radius: Floats) -> tuple
 def _surface(normal: Floats, direction: Floats, curvature: Floats, f: Floats) -> Floats:
     """Second fundamental forms (n, 2, 2) in the frame of f and n x f, concave positive."""
     c = (f * direction).sum(axis=1)
-    s = (_cross(normal, direction) * f).sum(axis=1)
+    s = (cross(normal, direction) * f).sum(axis=1)
     high, low = curvature.T
     form = np.empty((len(f), 2, 2))
     form[:, 0, 0] = high * c**2 + low * s**2
     form[:, 1, 1] = high * s**2 + low * c**2
     form[:, 0, 1] = form[:, 1, 0] = (low - high) * s * c
     return form
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Products of vectors (n, 3), in less time than `numpy.cross`."""
-    (ax, ay, az), (bx, by, bz) = a.T, b.T
-    return np.column_stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def _largest(form: Floats) -> tuple[Floats, Floats]:

@@ -167,20 +167,22 @@ def _near_order(samples: SurfaceSamples, rows: NDArray[np.int64], place: Floats,
         return 1
     others = others[:: max(1, len(others) // _COMPARED)]
     tree, least = cKDTree(point), math.cos(_NORMAL)
+
+    def agree(turn: Motion, some: NDArray[np.int64], share: float) -> bool:
+        """Whether a turn carries so much of the area of some samples near to others with like normals."""
+        distance, near = tree.query(turn.points(point[some]), k=min(_NEAR, len(rows)), distance_upper_bound=samples.max_gap)
+        is_near = np.isfinite(distance)
+        moved = turn.directions(normal[some])
+        alike = (moved[:, None] * normal[np.where(is_near, near, 0)]).sum(axis=2) >= least
+        agrees = (is_near & alike).any(axis=1)
+        return bool(area[some][agrees].sum() >= share * area[some].sum())
+
     for order in reversed(_ORDERS):
         turn = Motion.turn(place, direction, 2.0 * math.pi / order)
         far = 2.0 * math.pi / order * float(np.average(radius[others], weights=area[others] + 1e-300))
         if far < _GAPS * samples.max_gap:
             continue
         # Few of them tell of most turns that they are none.
-        for some, most in ((others[::_EVERY], 0.5 * _AGREES), (others, _AGREES)):
-            distance, near = tree.query(turn.points(point[some]), k=min(_NEAR, len(rows)), distance_upper_bound=samples.max_gap)
-            is_near = np.isfinite(distance)
-            moved = turn.directions(normal[some])
-            alike = (moved[:, None] * normal[np.where(is_near, near, 0)]).sum(axis=2) >= least
-            agrees = (is_near & alike).any(axis=1)
-            if area[some][agrees].sum() < most * area[some].sum():
-                break
-        else:
+        if agree(turn, others[::_EVERY], 0.5 * _AGREES) and agree(turn, others, _AGREES):
             return order
     return 1

@@ -115,7 +115,7 @@ class Walls:
 
     @classmethod
     def of(cls, probes: Probes, scallop: float, accuracy: float) -> "Walls":
-        """Those of the faces that samples lie on."""
+        """Those of the part as it stands in the first setup."""
         return cls(probes, probes.setups[0].obstacles, scallop, accuracy)
 
     def of_probes(self, probes: Probes) -> "Walls":

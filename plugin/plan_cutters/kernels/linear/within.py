@@ -50,23 +50,31 @@ def _holds(x, y, z, space, local):
 
 
 @kernel
+def _next_leaf(vertex, box, depth, space, stack, top):
+    """Walk on, with `top` nodes on the stack, to the next leaf near a space: its triangles from, to, nodes left; -1: none."""
+    n, inner = len(vertex), (1 << depth) - 1
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        if _misses(box, node, space):
+            continue
+        if node >= inner:
+            leaf = node - inner
+            return (n * leaf) >> depth, (n * (leaf + 1)) >> depth, top
+        stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+        top += 2
+    return 0, 0, -1
+
+
+@kernel
 def _any(tree, faces, space, stack, local):
     """As `any_within`; scratch: stack (64,) int64, local (3,)."""
     for k in range(2):
         vertex, box, depth, begin = half(tree, k)
-        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
-        stack[0] = 0
-        while top > 0:
-            top -= 1
-            node = stack[top]
-            if _misses(box, node, space):
-                continue
-            if node < inner:
-                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
-                top += 2
-                continue
-            leaf = node - inner
-            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+        stack[0], top = 0, 1 if len(vertex) else 0
+        while top >= 0:
+            first, last, top = _next_leaf(vertex, box, depth, space, stack, top)
+            for t in range(first, last):
                 if faces[begin + t] <= 0:
                     continue
                 a, b, c = vertex[t, 0], vertex[t, 1], vertex[t, 2]
@@ -104,19 +112,10 @@ def _mark(tree, space, stack, marked):
     """As `in_box`; scratch: stack (64,) int64."""
     for k in range(2):
         vertex, box, depth, begin = half(tree, k)
-        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
-        stack[0] = 0
-        while top > 0:
-            top -= 1
-            node = stack[top]
-            if _misses(box, node, space):
-                continue
-            if node < inner:
-                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
-                top += 2
-                continue
-            leaf = node - inner
-            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+        stack[0], top = 0, 1 if len(vertex) else 0
+        while top >= 0:
+            first, last, top = _next_leaf(vertex, box, depth, space, stack, top)
+            for t in range(first, last):
                 v, meets = vertex[t], True
                 for j in range(3):
                     low, high = min(v[0, j], min(v[1, j], v[2, j])), max(v[0, j], max(v[1, j], v[2, j]))
