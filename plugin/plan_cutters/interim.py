@@ -6,10 +6,14 @@ from dataclasses import replace
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.judged_part import JudgedPart, assembled, worded
+from plan_cutters.judging.first_look import first_look
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import AreaEntry, Plan
 from plan_cutters.plan_file.notes import later_stages, run_unfinished
+from plan_cutters.plan_file.words.headline import first_looked
+from plan_cutters.plan_file.words.names import called
 from plan_cutters.result import Result
+from plan_cutters.scene.preparation import Prepared
 
 Describe = Callable[[Plan], Plan]
 
@@ -25,6 +29,8 @@ class Interim:
         Given a result as soon as all verdicts have their reasons, and after each stage that another one follows.
     begins : callable, optional
         Called once, as soon as the verdicts stand: from then on `interrupted` has a result.
+    looks : callable, optional
+        Given what a first look at the first part that is ready says, if it is much sooner than all verdicts.
 
     Attributes
     ----------
@@ -34,14 +40,22 @@ class Interim:
     """
 
     def __init__(
-        self, clock: Clock, stands: Callable[[Result], None] | None = None, begins: Callable[[], None] | None = None
-    ) -> None:
+        self, clock: Clock, stands: Callable[[Result], None] | None = None, begins: Callable[[], None] | None = None,
+        looks: Callable[[str], None] | None = None,
+    ) -> None:  # fmt: skip
         self.answers, self.between = Answers(), dict[str, AreaEntry]()
-        self._clock, self._stands, self._begins = clock, stands, begins
+        self._clock, self._stands, self._begins, self._looks = clock, stands, begins, looks
         self._made: Callable[[], tuple[JudgedPart, Describe]] | None = None
         self._unanswered: Sequence[str] | None = None
         self._looked = self._planned = False
         self._absent: list[str] | None = None
+
+    def prepared(self, ready: Prepared) -> None:
+        """A part is ready to be judged; setups may still be compared."""
+        looks, self._looks = self._looks, None
+        if looks is not None and (look := first_look(ready)) is not None:
+            shares = [(called(cutter), share) for cutter, share in look.shares]
+            looks(first_looked(look.setup.tolist(), look.samples, look.of, shares, look.together))
 
     def verdicts(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
         """The verdicts stand: what makes the part of them, with the reasons that were found by then, and describes its plan."""
@@ -91,6 +105,7 @@ class Interim:
     def _missing(self, part: JudgedPart) -> list[str]:
         options = part.ready.options
         each = later_stages(
+            setups=part.later,
             reasons=part.unexplained,
             witnesses=not part.witnessed,
             area=part.looks_between and not self._looked,

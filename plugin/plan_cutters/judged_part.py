@@ -42,7 +42,7 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.ground import GroundDigests
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.setups import for_another_setup
 from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
@@ -105,6 +105,8 @@ class JudgedPart:
         that reaches all there are none.
     witnessed : bool
         Whether each cutter has its witnesses.
+    later : tuple
+        Axes of setups that are judged later, and of which this part knows nothing.
     """
 
     ready: Prepared
@@ -116,12 +118,14 @@ class JudgedPart:
     carried: NDArray[np.int64]
     unexplained: tuple[str, ...] = ()
     witnessed: bool = True
+    later: tuple[Axis, ...] = ()
 
     @classmethod
     def of(
         cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
         carried: NDArray[np.int64], by_cutter: "dict[Cutter, ExplainedIn]", *, explain: bool = True,
+        later: tuple[Axis, ...] = (),
     ) -> "JudgedPart":  # fmt: skip
         """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line.
 
@@ -168,7 +172,7 @@ class JudgedPart:
                 fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
-        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
+        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain, later)
 
     @property
     def here(self) -> dict[Cutter, Verdicts]:

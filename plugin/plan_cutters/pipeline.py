@@ -152,13 +152,17 @@ class Run:
 
     def prepare(self, part: Any, options: Options) -> Prepared:
         """Read, sample, classify and surround with obstacles."""
-        return prepare(
+        ready = prepare(
             part, options, self.clock, read_timeout=self.read_timeout, at=self.at, compiling=self.compiling,
             excluded=self.excluded, cache=self.cache,
         )  # fmt: skip
+        self.interim.prepared(ready)
+        return ready
 
     def judge(self, part: Any, options: Options, stand: Stand[JudgedPart]) -> JudgedPart:
-        """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, as soon as these stand."""
+        """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, once these stand
+        in the first setup, and again once they stand in all.
+        """
         started, clock = datetime.datetime.now(datetime.UTC), self.clock
         ready = self.prepare(part, options)
         here: dict[Cutter, Verdicts] = {}
@@ -174,6 +178,10 @@ class Run:
                     ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched
                 )
                 seconds[cutter] = time.perf_counter() - began
+        if options.other_setups:
+            first = replace(ready.alone(0), options=replace(ready.options, other_setups=(), other_placements=()))
+            stand(lambda: JudgedPart.of(first, here, [], seconds, clock, searched, started, once.carried, {}, explain=False,
+                                        later=options.other_setups))  # fmt: skip
         others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
         reasons: dict[Cutter, ExplainedIn] = {}
 

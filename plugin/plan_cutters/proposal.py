@@ -68,7 +68,8 @@ def judged_proposed(
     folder : str
         Where the setups will be written; empty where they will not be.
     stand : callable, optional
-        Called with what gives such a pair of the verdicts alone, as soon as those of the first proposal stand.
+        Called with what gives such a pair of the verdicts alone, as soon as those of the first proposal stand, in its first setup
+        and in all.
 
     Returns
     -------
@@ -128,7 +129,11 @@ def judged_proposed(
 def _proposed(
     part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...], tried: int
 ) -> tuple[tuple[float, float, int], Callable[[Plan], Plan]]:
-    """What a part in proposed setups reaches, as `_compared`, and what gives its plan with the proposal."""
+    """What a part in proposed setups reaches, as `_compared`, and what gives its plan with the proposal.
+
+    The first setup is judged first, and may stand alone.
+    """
+    chosen = chosen[: len(chosen) - len(part.later)]
     reached_share, held_share, worst = _compared(part, ranking, chosen)
     left = _in_other_setups(part, ranking, chosen)
     shares = reached_share, held_share, tried

@@ -71,7 +71,7 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        interim = Interim(clock, stands if staging else None, lambda: report("stands", ""))
+        interim = Interim(clock, stands if staging else None, lambda: report("stands", ""), watch.looked)
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
         planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
@@ -183,6 +183,12 @@ class ProgressListener:
         if not self.request.quiet:
             summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
         report("summarised", "")
+
+    def looked(self, text: str) -> None:
+        """A first look says what to expect, while all samples are judged and setups compared."""
+        if not self.request.quiet:
+            self.end()
+            terminal.say(text)
 
     def stands(self, plan: "Plan") -> None:
         """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that.

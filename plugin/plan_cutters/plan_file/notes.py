@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from plan_cutters.domain.figures import angle, area, count, joined, listed, mm, plainly
+from plan_cutters.domain.placement import axis_words
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
@@ -34,16 +35,18 @@ class Note(NamedTuple):
 
 def later_stages(
     *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False,
-    reasons: Sequence[str] = (), witnesses: bool = False,
+    reasons: Sequence[str] = (), witnesses: bool = False, setups: Sequence[Sequence[float]] = (),
 ) -> tuple[str, ...]:  # fmt: skip
     """Name what follows the verdicts, in its order, by its options; empty for what was not requested.
 
-    `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either.
+    `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either; `setups`:
+    axes of those that are not judged.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('', '', 'the proof between the samples', '', '--operations fewest', '')
+    ('', '', '', 'the proof between the samples', '', '--operations fewest', '')
     """
     return (
+        f"what follows in setup {joined([axis_words(each) for each in setups])}" if setups else "",
         f"the reasons of {listed(reasons)}" if reasons else "",
         "witnesses" if witnesses else "",
         "the proof between the samples" if area else "",

@@ -19,6 +19,9 @@ _ONE = {"ball": "ball end", "bull": "bull nose", "flat": "flat end", "special": 
 _MANY = {"ball": "ball ends", "bull": "bull noses", "flat": "flat ends",
          "special": "tapered cutters, barrels, lenses and lollipops", "last": "engraving, chamfer and form cutters"}  # fmt: skip
 
+#: Cutters that a first look names.
+_LOOKED = 3
+
 
 def rule(free_form: float) -> str:
     """By which rule a cutter is chosen, for a share of free-form faces."""
@@ -40,6 +43,20 @@ def why(before: Sequence[str]) -> str:
 def stands(cutter: str) -> str:
     """Why a cutter comes first that leaves what stands on a proposed table."""
     return f"{cutter} comes first, and leaves only what stands on the table of the proposed setup"
+
+
+def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence[tuple[str, float]], together: float) -> str:
+    """Say what cutters, by name, reach at some samples of the first setup, before all are judged.
+
+    >>> first_looked((0.0, 0.0, 1.0), 400, 56473, [("D16", 0.5), ("D6", 0.75)], 0.75)
+    'First look with 0,0,1 along the spindle, at 400 of 56,473 samples: D6 reaches 75 %, D16 50 %; together 75 %'
+    """
+    first, *others = sorted(shares, key=lambda each: -each[1])
+    each = [f"{first[0]} reaches {percent(first[1])}", *(f"{name} {percent(share)}" for name, share in others[: _LOOKED - 1])]
+    rest = f", {count(len(shares) - _LOOKED, 'more cutter')} less" if len(shares) > _LOOKED else ""
+    together_too = f"; together {percent(together)}" if others else ""
+    where = f"with {axis_words(setup)} along the spindle, at {samples:,} of {of:,} samples"
+    return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
 def comes_last(plan: Plan) -> str:
