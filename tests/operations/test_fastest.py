@@ -134,3 +134,17 @@ def test_promising_candidates_have_the_best_of_each_sample_and_a_choice_that_cos
     assert (np.diff(some) > 0).all()
     part = problem.of(some)
     assert part.total(cheap(part)) <= 1.03 * problem.total(chosen)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("left", [0, 1, 150])
+def test_samples_that_the_choice_leaves_have_no_price(left):
+    rng = np.random.default_rng(left)
+    cost = rng.random((150, 80)) + 1.0
+    cost[:left, :3] = np.inf
+    problem = Problem(cost, np.zeros(80, np.int32), np.zeros(80, np.int32), Costs(3.0, 5.0, 0.0))
+    some = promising(problem, np.arange(3))
+    assert np.isin(cost.argmin(axis=1), some).all()
+    if left < 150:
+        paying = problem.of(np.arange(80), np.arange(150) >= left)
+        assert np.isin(promising(paying, np.arange(3)), some).all()

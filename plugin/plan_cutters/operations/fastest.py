@@ -92,18 +92,20 @@ def bounded(problem: Problem, chosen: Which) -> Location:
 
 
 def promising(problem: Problem, chosen: Which) -> Which:
-    """The candidates that a good choice may have, ascending, by prices of the samples: `chosen`, which serves all, is among them.
+    """The candidates that a good choice may have, ascending, by prices of the samples: those `chosen` are among them.
 
-    These are the best of each sample, and of each cutter those that gain most where each sample pays its price.
+    These are the best of each sample, and of each cutter those that gain most where each sample pays its price. A sample that the
+    choice leaves has none.
     """
-    table, operation, most = np.ascontiguousarray(problem.cost.T), problem.costs.operation, problem.total(chosen)
+    paying = problem.of(np.arange(len(problem.cutter)), np.isfinite(problem.cost[:, chosen].min(axis=1, initial=np.inf)))
+    table, operation, most = np.ascontiguousarray(paying.cost.T), problem.costs.operation, paying.total(chosen)
     nothing, same = np.zeros(len(table)), np.zeros(len(table), np.int64)
-    ascent = _Ascent(table, operation, 0.0, _shares(problem, chosen), nothing, same)
+    ascent = _Ascent(table, operation, 0.0, _shares(paying, chosen), nothing, same)
     for _ in range(_PRICED):
         if ascent.over:
             break
         ascent.step(most)
-    reduced, picked = lagrange(problem.cost.T, operation, ascent.price)[1], [chosen, problem.cost.argmin(axis=1)]
+    reduced, picked = lagrange(paying.cost.T, operation, ascent.price)[1], [chosen, problem.cost.argmin(axis=1)]
     for cutter in np.unique(problem.cutter).tolist():
         own = np.flatnonzero(problem.cutter == cutter)
         picked.append(own[np.argsort(reduced[own], kind="stable")[:_PROMISING]])
