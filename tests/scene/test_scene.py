@@ -10,6 +10,7 @@ import pytest
 from cad_io.arrays import Orientation
 from cad_io.part.bodies import Body
 from plan_cutters import plan, posture_map
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene import inside_material
@@ -17,6 +18,8 @@ from plan_cutters.scene import scene as scenes
 from plan_cutters.scene.inside_material import inside_bodies
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.work import METER, Budget
+from tests.support.cad_parts import box
 from tests.support.places import ROOT
 
 GROOVE = ROOT / "samples" / "v_groove.step"
@@ -118,3 +121,23 @@ def test_rows_of_each_face_are_those_of_its_number():
     rows = samples.by_face()
     assert set(rows) == set(samples.face.tolist())
     assert all((mine == np.flatnonzero(samples.face == number)).all() for number, mine in rows.items())
+
+
+def test_what_is_round_is_as_fine_in_another_setup_as_in_the_first():
+    part, held = box(), Fixture.parse("cylinder:4,11@60,3,8")
+    first = Scene.of(part, setup=(0.0, 0.0, 1.0), fixtures=(held,)).surround()
+    turned = Scene.of(part, setup=(0.0, 0.0, 1.0))
+    turned.surround()
+    other = turned.surround_in((0.0, 0.0, -1.0), (), (held,))
+    assert len(other.certain.triangles) == len(first.certain.triangles) > 100
+    assert other.certain.triangles.chord_error == first.certain.triangles.chord_error
+
+
+def test_a_budget_is_what_was_given_less_what_was_looked_at_since():
+    METER.add(50)
+    budget = Budget(100.0)
+    assert budget.left == 100.0
+    METER.add(30)
+    assert budget.left == 70.0
+    METER.add(90)
+    assert budget.left == 0.0
