@@ -5,6 +5,7 @@ costs with each operation. The sum is made small by alpha expansion: for one ope
 samples change to it (Boykov, Veksler, Zabih 2001). An operation that does not serve a sample costs too much to be ever taken.
 """
 
+from collections import Counter
 from heapq import heapify, heappop, heappush
 from itertools import cycle, islice
 
@@ -146,9 +147,11 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
     label, number = label.copy(), pieces(label, edge)
     mine = number >= 0
     size = np.bincount(number[mine], area[mine]).tolist()
-    rows_of = np.split(np.flatnonzero(mine)[np.argsort(number[mine], kind="stable")], np.cumsum(np.bincount(number[mine]))[:-1])
+    ends = np.cumsum(np.bincount(number[mine]))[:-1]
+    rows_of = [each.tolist() for each in np.split(np.flatnonzero(mine)[np.argsort(number[mine], kind="stable")], ends)]
     both = np.concatenate([edge, edge[:, ::-1]])
     adjacency = coo_array((np.ones(len(both), np.int8), both.T), shape=(len(label), len(label))).tocsr()
+    beside = [each.tolist() for each in np.split(adjacency.indices, adjacency.indptr[1:-1])]
     waiting = [(each, piece) for piece, each in enumerate(size) if each < least]
     heapify(waiting)
     while waiting:
@@ -156,24 +159,24 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
         # What another piece has joined has another size, or none.
         if known != size[piece]:
             continue
+        # Most pieces are a sample or two, for which arrays would take ten times as long.
         rows = rows_of[piece]
-        others = adjacency[rows].indices
-        others = others[(number[others] != piece) & (label[others] >= 0)]
-        adjacent, touching = np.unique(label[others], return_counts=True)
-        able = serves[np.ix_(rows, adjacent)].all(axis=0)
-        if not able.any():
+        others = [(label.item(k), number.item(k)) for row in rows for k in beside[row]]
+        others = [(its, other) for its, other in others if its >= 0 and other != piece]
+        touching = Counter(its for its, _ in others)
+        to = next((each for each in sorted(touching, key=lambda own: (-touching[own], own)) if serves[rows, each].all()), -1)
+        if to < 0:
             continue
-        to = adjacent[able][touching[able].argmax()]
-        neighbours = np.unique(number[others])
-        into = np.unique(number[others[label[others] == to]]).tolist()
+        into = sorted({other for its, other in others if its == to})
         whole = max(into, key=lambda each: len(rows_of[each]))
         for each in [piece, *into]:
             if each != whole:
                 number[rows_of[each]] = whole
-                rows_of[whole], size[whole], size[each] = np.append(rows_of[whole], rows_of[each]), size[whole] + size[each], -1.0
+                rows_of[whole] += rows_of[each]
+                size[whole], size[each] = size[whole] + size[each], -1.0
         label[rows] = to
         # Those beside it may have somewhere to go now.
-        for each in {whole, *neighbours.tolist()}:
+        for each in {whole, *(other for _, other in others)}:
             if 0.0 <= size[each] < least:
                 heappush(waiting, (size[each], each))
     return label
