@@ -1,5 +1,7 @@
 """While other setups are compared and judged, something stands: a first look, and then the plan of the first setup."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,6 +59,8 @@ def test_a_first_look_says_about_what_the_verdicts_will(monkeypatch):
         reached = result.reaches[cutter.id].reached
         assert share == pytest.approx(float(area[reached].sum() / area.sum()), abs=0.05)
     assert max(share for _, share in look.shares) - 1e-12 <= look.together <= 1.0
+    assert first_look(replace(ready, cutters=ready.cutters * 10)).samples == 200
+    assert first_look(replace(ready, cutters=ready.cutters * 50)).samples == 100
 
 
 def test_of_proposed_setups_a_first_look_is_told_before_they_are_compared_and_the_first_one_stands(monkeypatch):

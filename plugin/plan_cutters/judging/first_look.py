@@ -10,8 +10,9 @@ from plan_cutters.judging.judge import judge
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.preparation import Prepared
 
-#: Samples that are looked at; where all cutters at all samples are fewer pairs than this, their verdicts come as soon.
-_FEW, _WORTH = 400, 40_000
+#: Samples that are looked at, fewer with many cutters, at least so many; where all cutters at all samples are fewer pairs than
+#: the last, their verdicts come as soon.
+_MOST, _PAIRS, _LEAST, _WORTH = 400, 4_000, 100, 40_000
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,8 @@ def first_look(ready: Prepared) -> FirstLook | None:
     every = np.flatnonzero(ready.finished)
     if len(every) * len(ready.cutters) < _WORTH:
         return None
-    rows = every[np.linspace(0, len(every) - 1, min(_FEW, len(every))).astype(np.int64)]
+    few = min(_MOST, max(_LEAST, _PAIRS // len(ready.cutters)), len(every))
+    rows = every[np.linspace(0, len(every) - 1, few).astype(np.int64)]
     some = some_of(ready, rows)
     reached = [judge(some, cutter).reached for cutter in ready.cutters]
     area = np.nan_to_num(some.samples.area)
