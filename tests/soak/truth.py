@@ -73,15 +73,9 @@ class Truth:
     def _refined(self, body, skin, near, tip, axis, limits):
         found = self.over(skin.point[near], tip, axis, limits)
         best = float(found.max())
-        # One seed of each neighbourhood: the worst, and the worst of those that lie apart.
-        order, seeds = near[np.argsort(-found)[:400]], []
-        order = order[np.sort(-found)[: len(order)] < _FAR]
-        for row in order:
-            if len(seeds) == _SEEDS:
-                break
-            if all(np.linalg.norm(skin.point[row] - skin.point[other]) > 2 * _APART for other in seeds):
-                seeds.append(row)
-        for row in seeds:
+        # Beside a contact that may lie deep in the flutes, what hardly touches the shank or holder is not the worst.
+        above = self.over(skin.point[near], tip, axis, (math.inf, limits[1]))
+        for row in dict.fromkeys([*self._apart(skin, near, found), *self._apart(skin, near, above)]):
             face, uv, step = int(skin.face[row]), skin.uv[row], 1.5
             sizes = np.array([max(body.faces[face].long, 1e-9), max(body.faces[face].wide, 1e-9)])
             for _ in range(_ROUNDS):
@@ -96,6 +90,17 @@ class Truth:
                     uv = kept[k]
                 best = max(best, float(deep[k]))
         return best
+
+    def _apart(self, skin, near, found):
+        """One seed of each neighbourhood: the worst, and the worst of those that lie apart."""
+        order, seeds = near[np.argsort(-found)[:400]], []
+        order = order[np.sort(-found)[: len(order)] < _FAR]
+        for row in order.tolist():
+            if len(seeds) == _SEEDS:
+                break
+            if all(np.linalg.norm(skin.point[row] - skin.point[other]) > 2 * _APART for other in seeds):
+                seeds.append(row)
+        return seeds
 
     def _sunk(self, tip, axis, limits):
         """How much deeper than limits points of the tool are that lie within material; -inf if none does."""

@@ -97,7 +97,8 @@ def promising(problem: Problem, chosen: Which) -> Which:
     These are the best of each sample, and of each cutter those that gain most where each sample pays its price. A sample that the
     choice leaves has none.
     """
-    paying = problem.of(np.arange(len(problem.cutter)), np.isfinite(problem.cost[:, chosen].min(axis=1, initial=np.inf)))
+    pays = np.isfinite(problem.cost[:, chosen].min(axis=1, initial=np.inf))
+    paying = problem if pays.all() else problem.of(np.arange(len(problem.cutter)), pays)
     table, operation, most = np.ascontiguousarray(paying.cost.T), problem.costs.operation, paying.total(chosen)
     nothing, same = np.zeros(len(table)), np.zeros(len(table), np.int64)
     ascent = _Ascent(table, operation, 0.0, _shares(paying, chosen), nothing, same)

@@ -33,6 +33,8 @@ _PLANE = 1e-9
 #: Chord errors by which a flank is kept off a surface where it is not free on it: then a shank as wide, which may touch nothing,
 #: is as free of the surface as of its triangles. It is half of the tolerance at most.
 _AWAY = 2.0
+#: Axes of a few contacts, at all rotations, are looked up in the machine together: so many at once.
+_TOGETHER = 20_000
 
 
 def search(
@@ -144,7 +146,8 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
             continue
         for at, axis, whole in _axes(contacts, face, rows, flank, conditions):
             mine = verdicts.not_reached[at]
-            _on_flank(contacts, at[mine], axis[mine], flank, whole, context, verdicts, hints)
+            if mine.any():
+                _on_flank(contacts, at[mine], axis[mine], flank, whole, context, verdicts, hints)
         rows = rows[verdicts.not_reached[rows]]
 
 
@@ -201,9 +204,9 @@ def _on_flank(
     # What is surely in the way of the smaller tool leaves nothing to look for. Why the larger one does not stand is looked at
     # where only the axis limit seemed to lose the contact.
     inaccessible, unknown = verdicts.verdict[rows] == INACCESSIBLE, verdicts.reason[rows] == AXIS_LIMIT
-    proved = np.flatnonzero(inaccessible & ~unknown)
-    sure = surely(proved)
-    open_ = np.setdiff1d(np.arange(len(rows)), proved[sure[proved] == NONE])
+    proved = inaccessible & ~unknown
+    sure = surely(np.flatnonzero(proved))
+    open_ = np.flatnonzero(~(proved & (sure == NONE)))
     hints.possible[rows[unknown]] = -1
     state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints.possible)
     free = state == FREE
@@ -258,12 +261,12 @@ def _axes(
         for axes in _at_angle(normal[rows], cosine, kinematics):
             yield (*_turned(rows, axes, contacts, conditions), True)
         return
-    for turn in conditions.postures.rotations.tolist():
-        e1 = contacts.direction_max[rows]
-        f = math.cos(turn) * e1 + math.sin(turn) * np.cross(normal[rows], e1)
-        axes = cosine * normal[rows] + sine * f
-        held = conditions.allows(axes)
-        yield rows[held], axes[held], True
+    turns, n, e1 = conditions.postures.rotations.tolist(), normal[rows], contacts.direction_max[rows]
+    e2, together = np.cross(n, e1), max(1, _TOGETHER // max(1, len(rows)))
+    for some in (turns[k : k + together] for k in range(0, len(turns), together)):
+        axes = np.stack([cosine * n + sine * (math.cos(turn) * e1 + math.sin(turn) * e2) for turn in some])
+        held = conditions.allows(axes.reshape(-1, 3)).reshape(axes.shape[:2])
+        yield from ((rows[its], each[its], True) for each, its in zip(axes, held, strict=True))
 
 
 def _wholly_along(

@@ -53,7 +53,7 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     """
     first, *others = sorted(shares, key=lambda each: -each[1])
     each = [f"{first[0]} reaches {percent(first[1])}", *(f"{name} {percent(share)}" for name, share in others[: _LOOKED - 1])]
-    rest = f", {count(len(shares) - _LOOKED, 'more cutter')} less" if len(shares) > _LOOKED else ""
+    rest = f", {count(len(shares) - _LOOKED, 'other cutter')} no more" if len(shares) > _LOOKED else ""
     together_too = f"; together {percent(together)}" if others else ""
     where = f"with {axis_words(setup)} along the spindle, at {samples:,} of {of:,} samples"
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
