@@ -125,7 +125,6 @@ class JudgedPart:
         cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
         carried: NDArray[np.int64], by_cutter: "dict[Cutter, ExplainedIn]", *, explain: bool = True,
-        later: tuple[Axis, ...] = (),
     ) -> "JudgedPart":  # fmt: skip
         """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line.
 
@@ -172,7 +171,7 @@ class JudgedPart:
                 fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
-        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain, later)
+        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
 
     @property
     def here(self) -> dict[Cutter, Verdicts]:

@@ -178,18 +178,17 @@ class Run:
                     ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched
                 )
                 seconds[cutter] = time.perf_counter() - began
+
+        def combined(of: Prepared, others: list[OtherSetup], by_cutter: dict[Cutter, ExplainedIn], explain: bool) -> JudgedPart:
+            return JudgedPart.of(of, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
+
         if options.other_setups:
             first = replace(ready.alone(0), options=replace(ready.options, other_setups=(), other_placements=()))
-            stand(lambda: JudgedPart.of(first, here, [], seconds, clock, searched, started, once.carried, {}, explain=False,
-                                        later=options.other_setups))  # fmt: skip
+            stand(lambda: replace(combined(first, [], {}, explain=False), later=options.other_setups))
         others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
         reasons: dict[Cutter, ExplainedIn] = {}
-
-        def combined(by_cutter: dict[Cutter, ExplainedIn], *, explain: bool) -> JudgedPart:
-            return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
-
-        stand(lambda: combined(dict(reasons), explain=False))
-        return combined(reasons, explain=True)
+        stand(lambda: combined(ready, others, dict(reasons), explain=False))
+        return combined(ready, others, reasons, explain=True)
 
     def complete(self, part: JudgedPart, describe: Describe) -> Result:
         """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""

@@ -20,23 +20,17 @@ class StoppedError(Exception):
     """The run was ended here."""
 
 
-def stopped_in(stage, options):
-    """What an interim says of a run that ends as soon as a stage begins, and what a run of the first setup alone says."""
-
-    def tell(name, done, total):
-        if name == stage:
-            raise StoppedError
-
-    clock = Clock(tell)
-    interim = Interim(clock)
-    with pytest.raises(StoppedError):
-        run(box(), options, clock, interim=interim)
-    return interim.interrupted("judging in other setups")
-
-
 def test_the_plan_of_the_first_setup_stands_before_others_are_judged():
     asked = {"cutters": CUTTERS, "grid": 5, "machine": "trunnion-ac", "faces": "all", "area_budget": 0}
-    stood = stopped_in("setups", Options(**asked, other_setups=((0.0, 0.0, -1.0), (0.0, 1.0, 0.0)))).plan
+
+    def tell(name, done, total):
+        if name == "setups":
+            raise StoppedError
+
+    interim = Interim(clock := Clock(tell))
+    with pytest.raises(StoppedError):
+        run(box(), Options(**asked, other_setups=((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))), clock, interim=interim)
+    stood = interim.interrupted("judging in other setups").plan
     alone = run(box(), Options(**asked), Clock()).plan
     assert [(c.id, c.accessible, c.interference_free, c.inaccessible) for c in stood.cutters] == [
         (c.id, c.accessible, c.interference_free, c.inaccessible) for c in alone.cutters

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, cross
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.shapes import Flank
 from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer
@@ -262,7 +262,7 @@ def _axes(
             yield (*_turned(rows, axes, contacts, conditions), True)
         return
     turns, n, e1 = conditions.postures.rotations.tolist(), normal[rows], contacts.direction_max[rows]
-    e2, together = np.cross(n, e1), max(1, _TOGETHER // max(1, len(rows)))
+    e2, together = cross(n, e1), max(1, _TOGETHER // max(1, len(rows)))
     for some in (turns[k : k + together] for k in range(0, len(turns), together)):
         axes = np.stack([cosine * n + sine * (math.cos(turn) * e1 + math.sin(turn) * e2) for turn in some])
         held = conditions.allows(axes.reshape(-1, 3)).reshape(axes.shape[:2])
@@ -330,7 +330,7 @@ def _at_angle(normal: Floats, cosine: float, kinematics: Kinematics) -> Iterator
     d = kinematics.direction[0]
     along = float(kinematics.tool @ d)
     u = kinematics.tool - along * d
-    v = np.cross(d, u)
+    v = cross(d, u)
     middle, size = np.arctan2(normal @ v, normal @ u), np.hypot(normal @ u, normal @ v)
     with np.errstate(divide="ignore", invalid="ignore"):
         half = np.arccos((cosine - along * (normal @ d)) / size)
@@ -359,7 +359,7 @@ def _angle(length: float, tolerance: float) -> float:
 
 def _between(axis: Floats, normal: Floats) -> Floats:
     """Angles (m,) of unit vectors (m, 3), rad."""
-    return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, normal), axis=1), (axis * normal).sum(axis=1)))
+    return np.asarray(np.arctan2(np.linalg.norm(cross(axis, normal), axis=1), (axis * normal).sum(axis=1)))
 
 
 def _tilt_direction(axis: Floats, normal: Floats, otherwise: Floats) -> Floats:
