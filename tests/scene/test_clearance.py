@@ -116,7 +116,7 @@ CONTACT, NORMAL = np.zeros(3), np.array([0.0, 0.0, 1.0])
 
 
 @pytest.mark.parametrize("depth", [0.02, 0.5, 2.0])
-@pytest.mark.parametrize("share", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("share", [0.3, 1.0, 4.0, 11.0])
 def test_a_wall_lies_as_deep_in_a_flat_end_as_it_is_beyond_its_side(depth, share):
     """The axis stands at x = -4, the rim comes to 0: a block from x = -8 on the other side of it, up to there."""
     block = read_part(box(20, 40, 30, at=(-8 - 20 + depth, -20, 2)))
