@@ -82,8 +82,10 @@ class OperationPlan:
         Which operations serve each sample.
     strip : (n,) float
         Width of the strip that a path cuts there, mm; nan where it is not known.
+    length : (n,) float
+        Path of the tool's centre, mm.
     seconds : (n,) float
-        Cutting time, s; nan without a feed.
+        Cutting time, s: that of the path at the feed; nan without a feed.
     region : (n,) int32
         Number of the connected samples of one operation that each belongs to, -1 for none: from 0 by operation, the largest
         first.
@@ -95,8 +97,9 @@ class OperationPlan:
     contact : (n, 3) float
         Where the tool touches while it cuts a sample of a wall, mm: at the lower end of its strip, where its flutes begin to be
         straight. nan where it touches at the sample itself.
-    cutting, other : float
-        Seconds of all cutting, nan where one of them is not known; and of all orientations, of changes of cutters and of setups.
+    cutting, links, other : float
+        Seconds of all cutting, nan where one of them is not known; from the end of each pass to the next one; and of all
+        orientations, of changes of cutters and of setups.
     """
 
     name: str
@@ -104,18 +107,20 @@ class OperationPlan:
     label: Ints
     serves: NDArray[np.bool_]
     strip: Floats
+    length: Floats
     seconds: Floats
     region: Ints
     lean: Floats
     strategy: NDArray[np.uint8]
     contact: Floats
     cutting: float
+    links: float
     other: float
 
     @property
     def total(self) -> float:
         """Seconds of all that is counted; nan where they are not known."""
-        return self.cutting + self.other
+        return self.cutting + self.links + self.other
 
     @property
     def alone(self) -> NDArray[np.bool_]:

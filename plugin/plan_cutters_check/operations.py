@@ -16,7 +16,7 @@ _STRATEGIES, _NEARLY_ALL = ("point", "floor", "wall"), 0.95
 _INDEX_TIME, _ROUNDED, _UNIT = 5.0, 0.0015, 1_000_000
 #: Entries of `assumed` that repeat what was asked for in `effective`.
 _REPEATED = {"scallop_mm": "scallop_mm", "stepover": "stepover", "overlap_mm": "overlap_mm", "change_s": "change_time_s",
-             "setup_s": "setup_time_s"}  # fmt: skip
+             "setup_s": "setup_time_s", "link_s": "link_time_s"}  # fmt: skip
 _ANY = Loose(0.0, math.inf)
 
 
@@ -114,11 +114,13 @@ def _plan(reckoned: Reckoned, k: int, plan: Mapping[str, Any]) -> dict[str, Any]
     rest, words = np.flatnonzero(reckoned.finished & (label < 0)), document["reasons"]
     first = reckoned.question.samples[f"reason_{reckoned.considered[0]}"][rest]
     known = [c for c in np.unique(first).tolist() if c != NO_REASON and c < len(words)]
+    links = sum(each["link_seconds"] for each in written)
     entry: dict[str, Any] = {
         "name": plan["name"],
         "orientations": len(fixed),
         "cut_length_mm": sum(each["cut_length_mm"] or 0.0 for each in made),
-        "seconds": cutting + other if math.isfinite(cutting) else None,
+        "seconds": cutting + links + other if math.isfinite(cutting) else None,
+        "link_seconds": links,
         "cutting_seconds": cutting if math.isfinite(cutting) else None,
         "other_seconds": other,
         "changes": max(0, len({each["cutter"] for each in written}) - 1),
@@ -152,7 +154,9 @@ def _ratio(document: Mapping[str, Any], fixed: Sequence[Mapping[str, Any]]) -> A
 
 def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> dict[str, Any]:
     rows = np.flatnonzero(reckoned.array(k, "operation") == i)
-    strip, seconds, alone, how = (reckoned.array(k, name)[rows] for name in ("strip_mm", "seconds", "exclusive", "strategy"))
+    strip, length, seconds, alone, how = (
+        reckoned.array(k, name)[rows] for name in ("strip_mm", "path_mm", "seconds", "exclusive", "strategy")
+    )
     area, known = reckoned.area[rows], np.isfinite(strip) & (strip > 0.0)
     widths = np.percentile(strip[known], (10, 50, 90)).tolist() if known.any() else None
     # How most of its samples are cut.
@@ -168,8 +172,9 @@ def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> d
         **reckoned.judged.of(rows, "samples", "area_mm2", "share"),
         "exclusive_mm2": float(area[alone].sum()),
         "strip_mm": None if widths is None else [Loose(w, w, 1e-6 * w) for w in widths],
-        "cut_length_mm": float((area[known] / strip[known]).sum()) if known.all() else None,
+        "cut_length_mm": float(length.sum()) if np.isfinite(length).all() else None,
         "seconds": float(seconds.sum()) if np.isfinite(seconds).all() else None,
+        "link_seconds": _links(reckoned, each) if np.isfinite(seconds).all() else 0.0,
         "faces": reckoned.judged.by_face(rows, each["faces"]),
         "regions": _regions(reckoned, k, i, each, rows),
     }
@@ -178,6 +183,12 @@ def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> d
     if each["axis"] is None:
         return entry | dict.fromkeys(("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from"))
     return entry | _orientation(reckoned, each) if entry["setup"] == each["setup"] else entry
+
+
+def _links(reckoned: Reckoned, each: Mapping[str, Any]) -> Loose:
+    """Links take at least one to each piece; how long passes are is not reckoned."""
+    one = float(reckoned.question.document["operations"]["assumed"]["link_s"])
+    return Loose(one * len(each["regions"]) * (1.0 - 1e-9), math.inf)
 
 
 def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:

@@ -11,7 +11,7 @@ from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
 from plan_cutters_check.findings import Finding
 from plan_cutters_check.question import Question, allowed, axes_of
-from plan_cutters_check.reckoned import WALL, Reckoned
+from plan_cutters_check.reckoned import FLOOR, WALL, Reckoned
 from plan_cutters_check.strategies import Strategies
 
 #: Parts of unit vectors, and mm, that differ by less are one; share by which areas of a face may differ.
@@ -160,32 +160,35 @@ class Paper:
             )
 
     def _times(self, k: int) -> Iterator[Finding]:
-        """Seconds of each sample are its area over the width of a pass and the feed."""
+        """Seconds of each sample are its path over the feed; on planes a path of a fixed axis is its area over the width."""
         plan, label, assumed = (
             self.plans[k],
             self.reckoned.array(k, "operation"),
             self.question.document["operations"]["assumed"],
         )
-        strip, seconds = self.reckoned.array(k, "strip_mm"), self.reckoned.array(k, "seconds")
+        strip, length, seconds = (self.reckoned.array(k, name) for name in ("strip_mm", "path_mm", "seconds"))
         wanted, widest, feeds = np.full(len(label), np.nan), np.zeros(len(label)), assumed["feed_mm_min"]
-        walls = self.reckoned.array(k, "strategy") == WALL
+        walls, floors = (self.reckoned.array(k, "strategy") == each for each in (WALL, FLOOR))
         for i, each in enumerate(plan["operations"]):
             mine = label == i
             if feeds is not None:
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    wanted[mine] = self.reckoned.area[mine] / (strip[mine] * feeds[each["cutter"]] / 60.0)
+                wanted[mine] = length[mine] / (feeds[each["cutter"]] / 60.0)
             tool = self.question.tools[each["cutter"]]
             # Along walls the flutes are the limit: `Strategies` compares strips with these.
-            widest[mine] = np.where(walls[mine], tool.flutes, assumed["stepover"] * 2.0 * tool.radius)
+            # A floor that is no wider than the tip is cut in one pass.
+            by_tip = np.where(floors[mine], 1.0, assumed["stepover"]) * 2.0 * tool.radius
+            widest[mine] = np.where(walls[mine], tool.flutes, by_tip)
         own = label >= 0
         same = np.isclose(seconds[own], wanted[own], rtol=1e-9, atol=1e-12, equal_nan=True).all()
+        on_floor, area = own & floors, self.reckoned.area
+        same &= np.isclose(length[on_floor] * strip[on_floor], area[on_floor], rtol=1e-9, atol=1e-12, equal_nan=True).all()
         same &= not np.isfinite(seconds[~own]).any() and not np.isfinite(strip[~own]).any()
         fits = (np.isnan(strip[own]) | ((strip[own] > 0.0) & (strip[own] <= widest[own] * (1.0 + _SAME)))).all()
         if not (same and fits):
             yield Finding(
                 False,
-                f"The {plan['name']} plan: seconds of samples in operations.npz are not their area over "
-                "width and feed, or widths are beyond the step-over.",
+                f"The {plan['name']} plan: seconds of samples in operations.npz are not their path over "
+                "the feed, paths on floors not their area over the width, or widths are beyond the step-over.",
             )
 
 

@@ -35,7 +35,9 @@ def contacts_at(question: Question, reckoned: Reckoned, k: int, each: Mapping[st
     """Where the tool of an operation of plan k touches as it cuts samples (m,), with axes (m, 3): on walls as is written."""
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
     if each["mode"] != "fixed":
-        point += question.shift(each["cutter"])[rows]
+        # The posture that was found may touch elsewhere than at the sample; other axes touch there.
+        found = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
+        point[found] += question.shift(each["cutter"])[rows[found]]
     tilt_direction = reckoned.array(k, "lean")[rows].copy()
     mine = reckoned.array(k, "strategy")[rows] == WALL
     point[mine] = reckoned.array(k, "contact")[rows[mine]]
@@ -66,7 +68,7 @@ class Strategies:
     def __init__(self, question: Question, reckoned: Reckoned, rng: np.random.Generator) -> None:
         self.question, self.reckoned, self.rng = question, reckoned, rng
         effective = question.document["effective"]
-        self._scallop, self._stepover = float(effective["scallop_mm"]), float(effective["stepover"])
+        self._scallop = float(effective["scallop_mm"])
         self._accuracy = math.radians(float(effective["axis_accuracy_deg"]))
 
     def findings(self, k: int) -> Iterator[Finding]:
@@ -111,8 +113,8 @@ class Strategies:
         if not (across & (flat * sine <= self._scallop + _SAME)).all():
             yield "a floor is not across the axis"
         strip = self.reckoned.array(k, "strip_mm")[rows]
-        if not (strip <= self._stepover * flat * (1.0 + _SHARE)).all():
-            yield "a strip of a floor is wider than the step-over of the flat"
+        if not (strip <= flat * (1.0 + _SHARE)).all():
+            yield "a strip of a floor is wider than the flat"
         looked = self.rng.permutation(rows)[:_LOOKED_AT]
         for face in np.unique(samples["face"][looked]).tolist():
             every = np.flatnonzero((samples["face"] == face) & self.reckoned.finished)

@@ -16,7 +16,9 @@ from plan_cutters.domain.operations import STRATEGIES
 from plan_cutters.kernels.linear import rulings
 from plan_cutters.kernels.linear.rulings import OneFace, extents
 from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.walls import Walls, flank_of, flat_of
+from plan_cutters.operations.extent import Extents
+from plan_cutters.operations.passes import Paths, flank_of, flat_of
+from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.obstacles import Obstacles
@@ -201,7 +203,8 @@ def test_a_wall_is_higher_than_the_scallop(height, there):
     band = np.array([[[x, y - 5, low], [x, y + 5, low], [x, y + 5, high]], [[x, y - 5, low], [x, y + 5, high], [x, y - 5, high]]])
     probes = Probes(samples, ready.cutters, ready.setups, ready.machinable)
     obstacles = Obstacles(Triangles(band, np.full(2, samples.face[row]), 0.0, ()))
-    walls = Walls(probes, obstacles, options.scallop, options.accuracy)
+    paths = Paths(options.scallop, options.stepover, None, options.accuracy, Extents(samples, obstacles))
+    walls = Walls(probes, obstacles, paths)
     (strip,) = walls.passes(0, 0, np.array([0.0, 0.0, 1.0]), np.array([row])).strip
     assert np.isfinite(strip) == there
     assert not there or strip == pytest.approx(height)
@@ -214,7 +217,9 @@ def test_no_wall_of_a_real_case_is_lower_than_the_scallop():
         {"faces": "F47,F86", "machine": "trunnion-ac", "setup": (0, 0, -1), "cutters": "D6L40F16S6", "spacing": 6}
     )
     ready = prepare(real_file("cad/hard/jack_phone.igs"), options)
-    walls = Walls.of(Probes(ready.samples, ready.cutters, ready.setups, ready.machinable), options.scallop, options.accuracy)
+    extents = Extents(ready.samples, ready.conditions.obstacles)
+    paths = Paths(options.scallop, options.stepover, None, options.accuracy, extents)
+    walls = Walls.of(Probes(ready.samples, ready.cutters, ready.setups, ready.machinable), paths)
     strip = walls.passes(0, 0, np.array([0.0, 0.0, -1.0]), np.arange(len(ready.samples))).strip
     assert np.isfinite(strip).any()
     assert np.nanmin(strip) > options.scallop

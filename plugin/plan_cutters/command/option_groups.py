@@ -444,6 +444,9 @@ _OPTIONS = (
         "--overlap", type=float, default=2.0, metavar="MM", help="Overlap of operations at a common border.  [default: 2]"
     ),
     _operations(
+        "--link-time", type=float, default=1.0, metavar="S", help="Seconds from the end of a pass to the next.  [default: 1]"
+    ),
+    _operations(
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(

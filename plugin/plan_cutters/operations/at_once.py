@@ -14,7 +14,6 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.plans import costs_with, moving_over
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import speed_of
 from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
@@ -52,7 +51,7 @@ class _Times:
         area, cost = costs_with(task, columns)
         motion = moving_over(task, task.rows)
         with np.errstate(divide="ignore", invalid="ignore"):
-            moving = area / (motion.width * speed_of(task.paths, task.cutters, motion.cutter))
+            moving = area / (motion.pace * task.paths.speeds(task.cutters)[motion.cutter])
         # Where its time is not known, motion is taken to be as slow as the slowest column: it must not look quick.
         slowest = np.where(np.isfinite(cost), cost, 0.0).max(axis=1, initial=0.0)
         return cls(task, columns, cost, np.where(np.isfinite(moving), moving, slowest), motion.cutter, motion.setup)

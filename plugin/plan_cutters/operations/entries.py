@@ -74,7 +74,7 @@ def operations_entry(
         assumed=AssumedEntry(
             feed_mm_min=None if feed is None else {cutter.id: each for cutter, each in feed.items()}, scallop_mm=options.scallop,
             stepover=options.stepover, overlap_mm=options.overlap, index_s=task.indexing.constant,
-            index_from=task.indexing.source, change_s=options.change_time, setup_s=options.setup_time,
+            index_from=task.indexing.source, change_s=options.change_time, setup_s=options.setup_time, link_s=task.paths.link,
         ),
         probes=task.probes.made,
         notes=list(notes),
@@ -97,6 +97,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations),
         seconds=plan.total if known else None,
         cutting_seconds=plan.cutting if known else None,
+        link_seconds=plan.links,
         other_seconds=plan.other,
         changes=max(0, len({each.cutter for each in operations}) - 1),
         pieces=len(np.unique(plan.region[plan.region >= 0])),
@@ -125,7 +126,7 @@ def _operation(
     number: int, operation: Operation, plan: OperationPlan, alone: Floats, task: Task, area: Floats, whole: float
 ) -> OperationEntry:
     rows, samples = operation.rows, task.ready.samples
-    strip, mine, seconds = plan.strip[rows], area[rows], plan.seconds[rows]
+    strip, length, seconds, mine = plan.strip[rows], plan.length[rows], plan.seconds[rows], area[rows]
     known = np.isfinite(strip) & (strip > 0.0)
     angles, others = (
         None if angle is None else dict(zip(task.orientations[0].names, angle.tolist(), strict=True))
@@ -137,7 +138,7 @@ def _operation(
         samples=len(rows), area_mm2=float(mine.sum()), share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0,
         exclusive_mm2=float(alone.sum()),
         strip_mm=tuple(np.percentile(strip[known], (10, 50, 90)).tolist()) if known.any() else None,
-        cut_length_mm=float((mine[known] / strip[known]).sum()) if known.all() else None,
+        cut_length_mm=float(length.sum()) if np.isfinite(length).all() else None,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None,
         orbit=None if operation.orbit < 0 else operation.orbit, faces=_faces(rows, samples, area),
         regions=[_region(k, np.flatnonzero(plan.region == k), samples, area) for k in np.unique(plan.region[rows]).tolist()],

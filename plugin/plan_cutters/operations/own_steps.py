@@ -126,7 +126,7 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(task.everywhere) for cutter in task.cutters]
     )
     probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred)
-    walls = Walls.of(probes, ready.options.scallop, ready.options.accuracy)
+    walls = Walls.of(probes, task.paths)
     problems = Problems(ready.samples, task.cutters, task.paths, task.indexing, walls)
     return replace(task, rows=rows[reached[rows]], probes=probes, walls=walls, problems=problems)
 

@@ -22,10 +22,12 @@ from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker, served
 from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.entries import operations_entry
+from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.own_steps import own_plan
+from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.plans import (
     MINOR_AREA,
     best_area,
@@ -42,7 +44,7 @@ from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import with_and_without, worths
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import at_some, thinned
-from plan_cutters.operations.timing import Paths, Problems
+from plan_cutters.operations.timing import Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared
@@ -282,8 +284,9 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
-    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.accuracy)
-    walls = Walls.of(probes, options.scallop, options.accuracy)
+    extents = Extents(ready.samples, ready.conditions.obstacles)
+    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time)
+    walls = Walls.of(probes, paths)
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,

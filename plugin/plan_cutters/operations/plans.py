@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
@@ -16,8 +16,9 @@ from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.labels import joined, labelled, regions_of
+from plan_cutters.operations.passes import Cut, cut_by_tip
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import costs_of, tip_widths, widths
+from plan_cutters.operations.timing import costs_of, paces
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.scene.clearance import least_clearance
@@ -67,11 +68,11 @@ def plan_with(
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
-    serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
+    serves, pace = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
-    width[rows] = _widths(task, columns, serves[rows])
+    pace[rows] = _paces(task, columns, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
-    cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
+    cost[rows] = costs_of(columns, pace[rows], serves[rows], area[rows], task.cutters, task.paths)
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
@@ -84,28 +85,60 @@ def plan_with(
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
-    strip = np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
-    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip, own)
+    moving = np.full(n, np.nan)
+    number, table, moving, others = _simultaneous(task, len(operations), number, table, moving, own)
     operations += others
-    speed = np.full(n, np.nan)
-    if task.paths.feed is not None:
-        for k, operation in enumerate(operations):
-            speed[number == k] = task.paths.feed[operation.cutter] / 60.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        seconds = area / (strip * speed)
+    region = regions_of(number, edge, area)
+    if times:
+        fixed = np.flatnonzero(label >= 0)
+        moving[fixed] = pace[fixed, label[fixed]]
+        return _only_timed(task, name, operations, number, table, region, moving)
+    strip, length, links = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
-    for k, operation in enumerate([] if times else operations):
+    for k, operation in enumerate(operations):
         stands, mine = _stands(task, operation), operation.rows
+        strip[mine], length[mine], links[mine] = stands.cut.strip, area[mine] * stands.cut.path, area[mine] * stands.cut.links
         tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
         strategy[mine] = stands.strategy
         clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
-        operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word)
-    region = regions_of(number, edge, area)
+        passes = float(np.nansum(links[mine])) + len(np.unique(region[mine]))
+        operations[k] = operation.with_fields(
+            clearance_mm=clearance, strategy=word, link_seconds=passes * task.paths.link_of(operation.cutter)
+        )
     operations = workplanes(operations, task.ready, task.indexing)
+    seconds = length / _speed(task, operations, number)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
-        name, tuple(operations), number, table, strip, seconds, region, tilt_direction, strategy, contact, cutting, other
-    )
+        name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, cutting,
+        sum(each.fields["link_seconds"] for each in operations), other,
+    )  # fmt: skip
+
+
+def _only_timed(
+    task: Task, name: str, operations: Sequence[Operation], number: NDArray[np.int32], table: NDArray[np.bool_], region: Ints,
+    pace: Floats,
+) -> OperationPlan:  # fmt: skip
+    """A plan whose times alone are known: links are in the seconds of samples, but for those to its pieces."""
+    n, area = len(number), np.nan_to_num(task.ready.samples.area)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        length = area / pace
+    operations = workplanes(operations, task.ready, task.indexing)
+    seconds, none = length / _speed(task, operations, number), np.full((n, 3), np.nan)
+    links = sum(len(np.unique(region[each.rows])) * task.paths.link_of(each.cutter) for each in operations)
+    cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
+    return OperationPlan(
+        name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, cutting,
+        links, other,
+    )  # fmt: skip
+
+
+def _speed(task: Task, operations: Sequence[Operation], number: NDArray[np.int32]) -> Floats:
+    """The feed (n,) at each sample, mm/s; nan where there is none."""
+    speed = np.full(len(number), np.nan)
+    if task.paths.feed is not None:
+        for k, operation in enumerate(operations):
+            speed[number == k] = task.paths.feed[operation.cutter] / 60.0
+    return speed
 
 
 def _other(task: Task, operations: Sequence[Operation]) -> float:
@@ -148,11 +181,11 @@ def _fixed(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """Simultaneous motion over samples, m of them: which cutter and setup, and the width of a pass, mm."""
+    """Simultaneous motion over samples, m of them: which cutter and setup, and what a mm of path cuts, mm2."""
 
     cutter: Rows
     setup: Rows
-    width: Floats
+    pace: Floats
 
 
 def moving_over(task: Task, rows: Rows) -> Motion:
@@ -164,38 +197,42 @@ def moving_over(task: Task, rows: Rows) -> Motion:
             mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
             if len(mine):
                 motion.cutter[mine], motion.setup[mine] = c, s
-                motion.width[mine] = _moving_width(task, c, s, rows[mine])
+                motion.pace[mine] = _moving_pace(task, c, s, rows[mine])
     return motion
 
 
 def _simultaneous(
-    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats, own: Reserved | None
+    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], pace: Floats, own: Reserved | None
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
-    """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
+    """Give what no fixed operation takes to simultaneous ones: number, what serves, paces and operations."""
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
-    pieces = [(step, c, s, rows, _moving_width(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
+    pieces = [(step, c, s, rows, _moving_pace(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
     if own is None or not own.leave:
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
         motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
         for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
             chosen = (motion.cutter == c) & (motion.setup == s)
-            pieces += [(0, c, s, rest[chosen], motion.width[chosen])] if c >= 0 else []
-    for step, c, s, mine, width in pieces:
+            pieces += [(0, c, s, rest[chosen], motion.pace[chosen])] if c >= 0 else []
+    for step, c, s, mine, own_pace in pieces:
         if not len(mine):
             continue
-        number[mine], strip[mine] = before + len(operations), width
+        number[mine], pace[mine] = before + len(operations), own_pace
         column = np.zeros((len(number), 1), bool)
         column[mine] = True
         table = np.concatenate([table, column], axis=1)
         name = f"op{before + len(operations) + 1}"
         operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, step=step))
-    return number, table, strip, operations
+    return number, table, pace, operations
 
 
-def _moving_width(task: Task, c: int, s: int, rows: Rows) -> Floats:
-    """Width of a pass at samples (m,), mm, by a cutter in the postures that were found for it in a setup."""
-    cutter = task.cutters[c]
-    return tip_widths(cutter, task.ready.samples, rows, task.everywhere[s][cutter].axis[rows], task.paths)[0]
+def _moving_pace(task: Task, c: int, s: int, rows: Rows) -> Floats:
+    """What a mm of path cuts at samples (m,), mm2, by a cutter in the postures that were found for it in a setup."""
+    return _moving_cut(task, task.cutters[c], s, rows).pace(task.paths, task.cutters[c])
+
+
+def _moving_cut(task: Task, cutter: Cutter, s: int, rows: Rows) -> Cut:
+    axis = task.everywhere[s][cutter].axis[rows]
+    return cut_by_tip(cutter, task.ready.samples, rows, axis, task.paths, turning=True)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -212,24 +249,29 @@ class _Stands:
         How its samples are cut, in STRATEGIES.
     contact : (r, 3) float
         As in the plan.
+    cut : Cut
+        What it takes.
     """
 
     samples: SurfaceSamples
     held: Verdicts
     strategy: NDArray[np.uint8]
     contact: Floats
+    cut: Cut
 
 
 def _stands(task: Task, operation: Operation) -> _Stands:
     """How the tool of an operation stands at its samples."""
     samples, rows, held = task.ready.samples, operation.rows, _held(task, operation)
     if operation.axis is None:
-        return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan))
+        cut = _moving_cut(task, operation.cutter, operation.setup, rows)
+        return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter = operation.axis, operation.cutter
-    width, floor = tip_widths(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
+    tip = cut_by_tip(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
     passes = task.walls.passes(task.cutters.index(cutter), operation.setup, axis, rows)
-    wall = passes.strip > np.nan_to_num(width)
-    strategy = np.where(wall, STRATEGIES.index("wall"), np.where(floor, STRATEGIES.index("floor"), 0)).astype(np.uint8)
+    wall = passes.cut.pace(task.paths, cutter) > np.nan_to_num(tip.pace(task.paths, cutter))
+    cut = Cut(*(np.where(wall, mine, others) for mine, others in zip(passes.cut, tip, strict=True)))
+    strategy = np.where(wall, STRATEGIES.index("wall"), np.where(cut.floor, STRATEGIES.index("floor"), 0)).astype(np.uint8)
     mine, flutes = rows[wall], passes.normal[wall]
     # Postures with the contact at a sample; those along walls, which are known to be free, are put in their place.
     at = at_fixed_axis(samples, held, task.ready.conditions.tolerance)
@@ -238,7 +280,7 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     tilt_direction[mine] = (axis - math.sin(cutter.taper) * flutes) / math.cos(cutter.taper)
     return _Stands(
         replace(at, point=point, normal=normal), replace(held, tilt=tilt, tilt_direction=tilt_direction), strategy,
-        np.where(wall[:, None], passes.point, np.nan),
+        np.where(wall[:, None], passes.point, np.nan), cut,
     )  # fmt: skip
 
 
@@ -304,14 +346,14 @@ def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
     rows, every = task.rows, task.images(columns)
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
-    cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
+    cost = costs_of(every, _paces(task, every, serves), serves, area, task.cutters, task.paths)
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
 
-def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
-    """Width of a pass (r, k), mm, of columns at the samples of a task that they serve: by the tip, or along a wall."""
-    by_tip = widths(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
+def _paces(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
+    """What a mm of path cuts (r, k), mm2, of columns at the samples of a task that they serve: by the tip, or along a wall."""
+    by_tip = paces(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
     return np.fmax(by_tip, np.where(serves, task.walls.cached(columns, task.rows), np.nan))
 
 

@@ -17,7 +17,7 @@ from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import SOME
-from plan_cutters.operations.timing import costs_of, shared_area, widths
+from plan_cutters.operations.timing import costs_of, paces, shared_area
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
@@ -149,9 +149,9 @@ def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
     """Seconds, or mm of path without a feed, of samples (r,) with columns (r, k): infinite where one does not serve it."""
     samples = task.ready.samples
     table = task.probes.table(rows, columns)
-    width = widths(columns, rows, samples, task.cutters, task.paths, table)
-    width = np.fmax(width, task.walls.strips(columns, rows, table))
-    return costs_of(columns, width, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
+    pace = paces(columns, rows, samples, task.cutters, task.paths, table)
+    pace = np.fmax(pace, task.walls.paces(columns, rows, table))
+    return costs_of(columns, pace, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
 
 
 def _apart(problem: Problem, cost: NDArray[np.float64], times: int) -> Problem:

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, SurfaceSamples, cross
 from plan_cutters.domain.cutter import Cutter
@@ -24,6 +25,8 @@ _WIDE, _PLANE = 0.25, 1e-9
 _HALVINGS = 40
 #: Tilts are within a mode up to this, rad; sines below it are that of an axis along the normal.
 _HAIR = 1e-9
+#: A gap is round within this share, and the centre runs no more than so many times as far as the contact.
+_ROUND, _MOST = 1e-6, 50.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -36,14 +39,17 @@ class Strips(Record):
         mm, at most the step-over that is allowed; nan where the tool does not touch at that tilt.
     feed : (n, 3) float
         Unit feed direction of the widest strip, in the tangent plane.
-    room : (n,) float
+    free_width : (n,) float
         Largest eigenvalue of `D^-1`, mm, the radius of a ball that leaves the same gap; infinite where curvatures match. The
         smaller it is, the farther is the tool from gouging.
+    any_feed : (n,) bool
+        Whether the strip is as wide in all feed directions.
     """
 
     width: Floats
     feed: Floats
     free_width: Floats
+    any_feed: NDArray[np.bool_]
 
 
 def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float, stepover: float) -> Strips:
@@ -95,7 +101,54 @@ def strips_at(
         width = np.minimum(most, width)
     feed = e[:, :1] * t - e[:, 1:] * f
     known = np.isfinite(radius) & np.isfinite(axis).all(axis=1)
-    return Strips(np.where(known, width, np.nan), feed, np.where(known, free_width, np.nan))
+    with np.errstate(invalid="ignore"):
+        round_gap = np.hypot(gap[:, 0, 1], 0.5 * (gap[:, 0, 0] - gap[:, 1, 1])) <= _ROUND * np.abs(largest)
+    return Strips(np.where(known, width, np.nan), feed, np.where(known, free_width, np.nan), known & round_gap)
+
+
+def centre_path(
+    cutter: Cutter, normal: Floats, direction: Floats, curvature: Floats, axis: Floats, feed: Floats,
+    mode: tuple[Floats, Floats] | None = None, *, turning: bool = False,
+) -> Floats:  # fmt: skip
+    """How far the centre of a tool runs for each mm that its contact runs, (n,); 0 where it stands still.
+
+    A contact p with the normal n is cut by a circle of the corner: its centre is p + r n, and the axis is o farther along h, the
+    unit part of n across the axis. So the centre runs by t + r dn + o dh where the contact runs by t. At a fixed axis h turns
+    with n; where the tool turns with the surface, both turn by n x dn, and with them the way from the centre of the tip to the
+    contact. `docs/operations_proof.md`, lemma O11.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    normal, direction, axis, feed : (n, 3) float
+        Unit normals, directions of the larger curvature, tool axes, and feed directions in the surface.
+    curvature : (n, 2) float
+        Of the surface, the larger first, concave positive, 1/mm.
+    mode : ((n,) float, (n,) float), optional
+        o and r, mm; None: those of the part of the tip that touches.
+    turning : bool
+        Whether the tool turns with the surface: simultaneous motion.
+    """
+    cosine = (normal * axis).sum(axis=1)[:, None]
+    across = normal - cosine * axis
+    sine = np.linalg.norm(across, axis=1)
+    h = across / np.maximum(sine, 1e-300)[:, None]
+    o, r = _touching(cutter, np.arctan2(sine, cosine[:, 0])) if mode is None else mode
+    o, r = o[:, None], r[:, None]
+    second = cross(normal, direction)
+    dn = -(curvature[:, :1] * (feed * direction).sum(axis=1)[:, None] * direction
+           + curvature[:, 1:] * (feed * second).sum(axis=1)[:, None] * second)  # fmt: skip
+    upright = (sine <= _HAIR)[:, None]
+    if turning:
+        ball = o == 0.0
+        arm = r * normal + np.where(upright, 0.0, o * h) - np.where(ball, 0.0, r * axis)
+        path = feed + cross(cross(normal, dn), arm)
+    else:
+        flat = dn - (dn * axis).sum(axis=1)[:, None] * axis
+        dh = (flat - (flat * h).sum(axis=1)[:, None] * h) / np.maximum(sine, _HAIR)[:, None]
+        # Under the flat of a tip any of its points may touch.
+        path = feed + np.where(upright & (o != 0.0), 0.0, r * dn + o * np.where(upright, 0.0, dh))
+    return np.asarray(np.minimum(np.linalg.norm(path, axis=1), _MOST))
 
 
 def _touching(cutter: Cutter, tilt: Floats) -> tuple[Floats, Floats]:

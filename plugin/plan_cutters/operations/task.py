@@ -11,9 +11,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.symmetry import Symmetry
-from plan_cutters.operations.timing import Paths, Problems
+from plan_cutters.operations.timing import Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.preparation import Prepared
 

@@ -3,30 +3,33 @@
 A face is a wall of a tool axis where its normal stands on the side of the flutes: across the axis, or by the taper off that. The
 line of the face that runs up the flutes is its ruling. A pass stands with the lower end of its strip where the flutes begin to be
 straight, and is judged there as every posture is, with all of the tool. A sample is cut by it if it lies on the flutes within the
-scallop height. Nothing is concluded from the kind of a surface: a face that bends away from its ruling ends there.
+scallop height. Nothing is concluded from the kind of a surface: a face that bends away from its ruling ends there. Where
+something is in the way below, such as the jaw of a vise, the lowest strip begins where the tool comes free of it.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record
+from cad_io.arrays import Floats, Record, cross
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.shapes import flute_length
+from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, flank_of
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.strips import centre_path
 from plan_cutters.scene.fixed_axis import leaning
 from plan_cutters.scene.obstacles import Obstacles
 
 Rows = NDArray[np.int64]
-#: Lengths that count as nothing, mm.
-_NOTHING = 1e-6
-#: Curvatures of a plane at most, 1/mm.
-PLANE = 1e-9
 #: Share of the scallop height by which the floor may leave a flat tip, or a wall the flutes: rounding stays below it.
 _WITHIN = 1.0 - 1e-6
+#: Halvings by which it is found where a strip above an obstacle begins.
+_HALVINGS = 7
+#: In a corner of its own radius the centre stands still: it counts as running by this share of what the contact runs.
+_STANDS_STILL = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -37,59 +40,28 @@ class Passes(Record):
     ----------
     strip : (m,) float
         Height of the strip that the pass cuts, mm: that of the wall over the number of its passes.
+    path, links : (m,) float
+        As of `Cut`, 1/mm and 1/mm2.
     point, normal : (m, 3) float
         Contact at which the tool stands, at the lower end of its strip, mm, and unit normal there: that of the flutes.
     """
 
     strip: Floats
+    path: Floats
+    links: Floats
     point: Floats
     normal: Floats
 
     @classmethod
     def none(cls, count: int) -> "Passes":
         """No pass at any of some samples."""
-        return cls(np.full(count, np.nan), np.full((count, 3), np.nan), np.full((count, 3), np.nan))
+        none, places = np.full(count, np.nan), np.full((count, 3), np.nan)
+        return cls(none, none.copy(), none.copy(), places, places.copy())
 
-
-def flank_of(cutter: Cutter) -> tuple[float, float] | None:
-    """Height over the tip at which the straight side of the flutes begins, and its length, mm; None where there is none.
-
-    >>> flank_of(Cutter.parse("D12L60rc1F26"))
-    (1.0, 25.0)
-    >>> flank_of(Cutter.lollipop(radius=4, neck_radius=2, length=40)) is None
-    True
-    """
-    if cutter.shape != "end":
-        return None
-    begins = cutter.corner_radius * (1.0 - math.sin(cutter.taper))
-    length = (flute_length(cutter) - begins) / math.cos(cutter.taper)
-    return (begins, length) if length > _NOTHING else None
-
-
-def flat_of(cutter: Cutter) -> float:
-    """Diameter of the flat part of the tip, mm; 0 where there is none.
-
-    >>> flat_of(Cutter.parse("D12L60rc1")), flat_of(Cutter.parse("D12L60rc6"))
-    (10.0, 0.0)
-    """
-    return 2.0 * max(0.0, cutter.radius - cutter.corner_radius) if cutter.shape == "end" else 0.0
-
-
-def on_floor(
-    cutter: Cutter, normal: Floats, curvature: Floats, axis: Floats, accuracy: float, scallop: float
-) -> NDArray[np.bool_]:
-    """At which points (n,) the flat part of the tip lies on the face.
-
-    That is where the face is plane and the axis (n, 3) within the accuracy, rad, of its normal (n, 3), and across the flat part
-    the face leaves the tip by no more than the scallop height, mm.
-    """
-    flat = flat_of(cutter)
-    if flat <= 0.0:
-        return np.zeros(len(normal), bool)
-    sine = np.linalg.norm(np.cross(normal, axis), axis=1)
-    plane = (np.abs(curvature) <= PLANE).all(axis=1)
-    near = (sine <= math.sin(accuracy) + 1e-12) & ((normal * axis).sum(axis=1) > 0.0)
-    return np.asarray(plane & near & (flat * sine <= scallop))
+    @property
+    def cut(self) -> Cut:
+        """What cutting takes."""
+        return Cut(self.strip, self.path, self.links, np.zeros(len(self.strip), bool))
 
 
 class Walls:
@@ -100,32 +72,30 @@ class Walls:
     probes : Probes
     obstacles : Obstacles
         With the triangles of the part.
-    scallop : float
-        mm.
-    accuracy : float
-        How far an axis may be off the ruling, rad: the accuracy of the rotary axes.
+    paths : Paths
+        An axis may be off the ruling by the accuracy of the rotary axes.
     """
 
-    def __init__(self, probes: Probes, obstacles: Obstacles, scallop: float, accuracy: float) -> None:
-        self._probes, self._obstacles, self._band = probes, obstacles, obstacles.triangles.chord_error + scallop
-        self._scallop, self._accuracy = scallop, accuracy
+    def __init__(self, probes: Probes, obstacles: Obstacles, paths: Paths) -> None:
+        self._probes, self._obstacles, self._band = probes, obstacles, obstacles.triangles.chord_error + paths.scallop
+        self._paths, self._scallop, self._accuracy = paths, paths.scallop, paths.accuracy
         self._upright: dict[int, NDArray[np.bool_]] = {}
         self._known: dict[str, Floats] = {}
         self._known_rows: Rows = np.zeros(0, np.int64)
 
     @classmethod
-    def of(cls, probes: Probes, scallop: float, accuracy: float) -> "Walls":
+    def of(cls, probes: Probes, paths: Paths) -> "Walls":
         """Those of the part as it stands in the first setup."""
-        return cls(probes, probes.setups[0].obstacles, scallop, accuracy)
+        return cls(probes, probes.setups[0].obstacles, paths)
 
     def of_probes(self, probes: Probes) -> "Walls":
         """The same with probes of the same tools at the same samples: what is cut along the setup axis is known already."""
-        same = Walls(probes, self._obstacles, self._scallop, self._accuracy)
+        same = Walls(probes, self._obstacles, self._paths)
         same._upright = self._upright
         return same
 
-    def strips(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
-        """Heights of the strips (rows, columns) of passes along walls, mm; nan where there is none, or `where` is not set."""
+    def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
+        """Paces (rows, columns) of passes along walls, mm2/mm; nan where there is none, or `where` is not set."""
         result, samples = np.full(where.shape, np.nan), self._probes.samples
         cosine = samples.normal[rows] @ columns.axis.T
         for c, cutter in enumerate(self._probes.cutters):
@@ -134,17 +104,18 @@ class Walls:
             mine = where & (columns.cutter == c) & self._side(cutter, cosine)
             for k in np.flatnonzero(mine.any(axis=0)).tolist():
                 at = np.flatnonzero(mine[:, k])
-                result[at, k] = self.passes(c, int(columns.setup[k]), columns.axis[k], rows[at]).strip
+                passes = self.passes(c, int(columns.setup[k]), columns.axis[k], rows[at])
+                result[at, k] = passes.cut.pace(self._paths, cutter)
         return result
 
     def cached(self, columns: Columns, rows: Rows) -> Floats:
-        """As `strips` at all of some samples, (rows, columns), for columns that are requested again and again at these."""
+        """As `paces` at all of some samples, (rows, columns), for columns that are requested again and again at these."""
         if not np.array_equal(rows, self._known_rows):
             self._known, self._known_rows = {}, rows
         keys = columns.key.tolist()
         for k, key in enumerate(keys):
             if key not in self._known:
-                self._known[key] = self.strips(columns.of(np.array([k])), rows, np.ones((len(rows), 1), bool))[:, 0]
+                self._known[key] = self.paces(columns.of(np.array([k])), rows, np.ones((len(rows), 1), bool))[:, 0]
         return np.array([self._known[key] for key in keys]).reshape(len(keys), len(rows)).T
 
     def _side(self, cutter: Cutter, cosine: Floats) -> NDArray[np.bool_]:
@@ -161,45 +132,94 @@ class Walls:
         at = np.flatnonzero(able)
         square, ruling = _flute_frame(normal[at], axis, cutter.taper)
         low, high = self._ends(rows[at], normal[at], axis)
-        for raised in (0.0, flank[0] / math.cos(cutter.taper)) if flank[0] > _NOTHING else (0.0,):
-            open_ = np.flatnonzero(np.isnan(result.strip[at]))
-            ends = low[open_] + raised, high[open_]
-            more = self._pass(c, s, axis, rows[at[open_]], square[open_], ruling[open_], ends, flank[1])
-            for name in ("strip", "point", "normal"):
-                getattr(result, name)[at[open_]] = getattr(more, name)
+        begins = flank[0] / math.cos(cutter.taper)
+        starts = (0.0, begins) if flank[0] > NOTHING else (0.0,)
+        raised = self._lowest(c, s, axis, rows[at], square, ruling, low, starts)
+        open_ = np.flatnonzero(np.isfinite(raised))
+        ends = low[open_] + raised[open_], high[open_]
+        more = self._pass(c, s, axis, rows[at[open_]], square[open_], ruling[open_], ends, flank[1])
+        for name in ("strip", "path", "links", "point", "normal"):
+            getattr(result, name)[at[open_]] = getattr(more, name)
         return result
+
+    def _lowest(
+        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, starts: Sequence[float]
+    ) -> Floats:
+        """How far above the lower end of the wall the lowest strip begins (m,), mm; nan where it would be above the sample.
+
+        It begins at the first of the `starts` at which the tool stands free; where something is in the way at all of them, such
+        as a jaw, it begins where the tool comes free of that.
+        """
+        raised = np.full(len(rows), np.nan)
+        known = np.isfinite(low)
+
+        def free(which: Rows, height: Floats) -> NDArray[np.bool_]:
+            return self._stands(c, s, axis, rows[which], square[which], ruling[which], low[which] + height)[1]
+
+        for start in starts:
+            open_ = np.flatnonzero(known & np.isnan(raised) & (-low >= start - NOTHING))
+            raised[open_[free(open_, np.full(len(open_), start))]] = start
+        blocked, free_at = np.full(len(rows), starts[-1]), -low
+        open_ = np.flatnonzero(known & np.isnan(raised) & (free_at > blocked + NOTHING))
+        open_ = open_[free(open_, free_at[open_])]
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (blocked[open_] + free_at[open_])
+            good = free(open_, middle)
+            free_at[open_[good]], blocked[open_[~good]] = middle[good], middle[~good]
+        raised[open_] = free_at[open_]
+        return raised
 
     def _pass(
         self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, ends: tuple[Floats, Floats], flutes: float
     ) -> Passes:
         """The same between ends (m,) of the wall along its ruling from each sample."""
         result, (low, high) = Passes.none(len(rows)), ends
+        tangent = self._tangent(rows, ruling)
         # How far the wall stands out towards the flutes, mm for each mm up.
-        out = (self._tangent(rows, ruling) * square).sum(axis=1)
+        out = (tangent * square).sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             most = np.minimum(flutes, _WITHIN * self._scallop / np.abs(out))
-            count = np.maximum(1.0, np.ceil((high - low - _NOTHING) / most))
+            count = np.maximum(1.0, np.ceil((high - low - NOTHING) / most))
             strip = (high - low) / count
             number = np.clip(np.floor(-low / strip), 0.0, count - 1.0)
         above = -low - number * strip
         # What is no higher than the scallop is the end of a face that bends away.
-        good = np.flatnonzero((strip > self._scallop) & (above >= -_NOTHING) & (above <= most + _NOTHING))
+        good = np.flatnonzero((strip > self._scallop) & (above >= -NOTHING) & (above <= most + NOTHING))
         if not len(good):
             return result
-        tangent = self._tangent(rows[good], ruling[good])
-        point = self._probes.samples.point[rows[good]] - above[good, None] * tangent
+        point, free = self._stands(c, s, axis, rows[good], square[good], ruling[good], -above[good], strip[good])
+        good, point = good[free], point[free]
+        result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]
+        # A window in a wall is no wall: strips are as high as what there is along them.
+        there = self._paths.extents.along(rows[good], tangent[good])[1]
+        there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
+        samples, cutter = self._probes.samples, self._probes.cutters[c]
+        feed = cross(samples.normal[rows[good]], tangent[good])
+        shape = samples.normal[rows[good]], samples.direction_max[rows[good]], samples.curvature[rows[good]]
+        side = np.full(len(good), cutter.radius), np.zeros(len(good))
+        axes = np.broadcast_to(axis, (len(good), 3))
+        result.path[good] = np.maximum(centre_path(cutter, *shape, axes, feed, side), _STANDS_STILL) / there
+        length = self._paths.extents.along(rows[good], feed)[0]
+        result.links[good] = np.where(np.isfinite(length), 1.0 / (there * length), 0.0)
+        return result
+
+    def _stands(
+        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, strip: Floats | None = None
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """Where a tool touches (m, 3) at the lower ends of strips, mm along the ruling from samples, and where it is free."""
+        tangent = self._tangent(rows, ruling)
+        out = (tangent * square).sum(axis=1)
+        high = np.zeros(len(rows)) if strip is None else strip
         # The flutes touch where the wall stands out farthest over the strip.
-        point += np.maximum(0.0, strip[good] * out[good])[:, None] * square[good]
-        free = self._free(c, s, axis, rows[good], point, square[good])
+        point = self._probes.samples.point[rows] + low[:, None] * tangent + np.maximum(0.0, high * out)[:, None] * square
+        free = self._free(c, s, axis, rows, point, square)
         # A shank as wide as the flutes may not touch the wall above them: kept off by what the surface may be off, it does not.
         # What a strip leaves already, for the wall is not quite along the flutes, counts as well.
         met, off = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)
-        keep = np.maximum(0.0, off - strip[good[met]] * np.abs(out[good[met]]))
-        point[met] += keep[:, None] * square[good[met]]
-        free[met] = self._free(c, s, axis, rows[good[met]], point[met], square[good[met]])
-        good, point = good[free], point[free]
-        result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]
-        return result
+        keep = np.maximum(0.0, off - high[met] * np.abs(out[met]))
+        point[met] += keep[:, None] * square[met]
+        free[met] = self._free(c, s, axis, rows[met], point[met], square[met])
+        return point, free
 
     def _tangent(self, rows: Rows, ruling: Floats) -> Floats:
         """Unit directions (m, 3) in the face nearest to those of the flutes."""

@@ -111,8 +111,9 @@ class OperationEntry(Frozen):
     strip_mm: tuple[float, float, float] | None = Field(
         description="widths of a pass that leaves the scallop height: 10, 50 and 90 % of the samples have at most this"
     )
-    cut_length_mm: float | None = Field(description="area over width, summed up: without links and lead-ins")
+    cut_length_mm: float | None = Field(description="path of the tool's centre in the cut: without links and lead-ins")
     seconds: float | None = Field(description="cutting alone, at the feed; null without a feed")
+    link_seconds: float = Field(default=0.0, description="of links between passes and to its pieces; 0 without a feed")
     proved_share: float | None = Field(
         description="of its area, proved between the samples with its axis or another of the plan, or with a field of axes if "
         "simultaneous; null: not looked at"
@@ -162,6 +163,7 @@ class AssumedEntry(Frozen):
     index_from: Literal["rates", "given", "assumed"] = Field(description="what the seconds of orientations follow from")
     change_s: float
     setup_s: float
+    link_s: float = Field(default=0.0, description="from the end of a pass to the next one, and to each piece")
 
 
 class OperationPlanEntry(Frozen):
@@ -172,8 +174,9 @@ class OperationPlanEntry(Frozen):
     )
     orientations: int = Field(description="fixed ones, each with one cutter and setup")
     cut_length_mm: float
-    seconds: float | None = Field(description="cutting and other_seconds together; null without a feed")
+    seconds: float | None = Field(description="cutting, link and other seconds together; null without a feed")
     cutting_seconds: float | None = Field(description="of all operations, at the feed; null without a feed")
+    link_seconds: float = Field(default=0.0, description="of links of all operations; 0 without a feed")
     other_seconds: float = Field(
         description="index time of each operation, change and setup time of each cutter and setup after the first"
     )

@@ -130,6 +130,7 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
     return {
         "operation": plan.label.astype(np.int16),
         "strip_mm": plan.strip,
+        "path_mm": plan.length,
         "seconds": plan.seconds,
         "exclusive": plan.alone,
         "lean": plan.lean,
@@ -149,7 +150,7 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", f"{first}_deg", f"{second}_deg",
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "faces"])  # fmt: skip
+                       "link_seconds", "faces"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
@@ -157,7 +158,7 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                 turned = (angles.get(first, ""), angles.get(second, ""))
                 rows.writerow([plan.name, each.id, each.mode, each.strategy, each.cutter, each.setup + 1, *turned, *axis,
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
-                               _rounded(each.cut_length_mm), _rounded(each.seconds),
+                               _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
                                " ".join(face.face for face in each.faces)])  # fmt: skip
 
 

@@ -113,12 +113,13 @@ def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
 def _work(plan: OperationPlanEntry) -> str:
     if plan.cutting_seconds is None:
         return f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
+    links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
     if plan.other_seconds <= 0.0:
-        return f"{duration(plan.cutting_seconds)} of cutting"
+        return f"{duration(plan.cutting_seconds)} of cutting{links}"
     cutters = len({each.cutter for each in plan.operations})
     setups = len({each.setup for each in plan.operations})
     what = [word for word, there in (("orientations", True), ("cutters", cutters > 1), ("setups", setups > 1)) if there]
-    return f"{duration(plan.cutting_seconds)} of cutting and {duration(plan.other_seconds)} for {joined(what)}"
+    return f"{duration(plan.cutting_seconds)} of cutting{links} and {duration(plan.other_seconds)} for {joined(what)}"
 
 
 def share_text(share: float) -> str:
