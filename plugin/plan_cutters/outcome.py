@@ -97,8 +97,10 @@ class OperationPlan:
     contact : (n, 3) float
         Where the tool touches while it cuts a sample of a wall, mm: at the lower end of its strip, where its flutes begin to be
         straight. nan where it touches at the sample itself.
+    link : (n,) float
+        Seconds of links between passes, as the share of each sample; nan without a feed.
     cutting, links, other : float
-        Seconds of all cutting, nan where one of them is not known; from the end of each pass to the next one; and of all
+        Seconds of all cutting, nan where one of them is not known; of all links, to the pieces of operations too; and of all
         orientations, of changes of cutters and of setups.
     """
 
@@ -113,6 +115,7 @@ class OperationPlan:
     lean: Floats
     strategy: NDArray[np.uint8]
     contact: Floats
+    link: Floats
     cutting: float
     links: float
     other: float

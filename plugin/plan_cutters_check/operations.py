@@ -114,7 +114,7 @@ def _plan(reckoned: Reckoned, k: int, plan: Mapping[str, Any]) -> dict[str, Any]
     rest, words = np.flatnonzero(reckoned.finished & (label < 0)), document["reasons"]
     first = reckoned.question.samples[f"reason_{reckoned.considered[0]}"][rest]
     known = [c for c in np.unique(first).tolist() if c != NO_REASON and c < len(words)]
-    links = sum(each["link_seconds"] for each in written)
+    links = sum(each["link_seconds"] for each in made)
     entry: dict[str, Any] = {
         "name": plan["name"],
         "orientations": len(fixed),
@@ -154,8 +154,8 @@ def _ratio(document: Mapping[str, Any], fixed: Sequence[Mapping[str, Any]]) -> A
 
 def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> dict[str, Any]:
     rows = np.flatnonzero(reckoned.array(k, "operation") == i)
-    strip, length, seconds, alone, how = (
-        reckoned.array(k, name)[rows] for name in ("strip_mm", "path_mm", "seconds", "exclusive", "strategy")
+    strip, length, seconds, link, alone, how = (
+        reckoned.array(k, name)[rows] for name in ("strip_mm", "path_mm", "seconds", "link_s", "exclusive", "strategy")
     )
     area, known = reckoned.area[rows], np.isfinite(strip) & (strip > 0.0)
     widths = np.percentile(strip[known], (10, 50, 90)).tolist() if known.any() else None
@@ -174,7 +174,9 @@ def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> d
         "strip_mm": None if widths is None else [Loose(w, w, 1e-6 * w) for w in widths],
         "cut_length_mm": float(length.sum()) if np.isfinite(length).all() else None,
         "seconds": float(seconds.sum()) if np.isfinite(seconds).all() else None,
-        "link_seconds": _links(reckoned, each) if np.isfinite(seconds).all() else 0.0,
+        "link_seconds": 0.0
+        if not np.isfinite(seconds).all()
+        else float(link.sum()) + len(each["regions"]) * reckoned.question.document["operations"]["assumed"]["link_s"],
         "faces": reckoned.judged.by_face(rows, each["faces"]),
         "regions": _regions(reckoned, k, i, each, rows),
     }
@@ -183,12 +185,6 @@ def _operation(reckoned: Reckoned, k: int, i: int, each: Mapping[str, Any]) -> d
     if each["axis"] is None:
         return entry | dict.fromkeys(("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from"))
     return entry | _orientation(reckoned, each) if entry["setup"] == each["setup"] else entry
-
-
-def _links(reckoned: Reckoned, each: Mapping[str, Any]) -> Loose:
-    """Links take at least one to each piece; how long passes are is not reckoned."""
-    one = float(reckoned.question.document["operations"]["assumed"]["link_s"])
-    return Loose(one * len(each["regions"]) * (1.0 - 1e-9), math.inf)
 
 
 def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:

@@ -172,7 +172,8 @@ class Paper:
         for i, each in enumerate(plan["operations"]):
             mine = label == i
             if feeds is not None:
-                wanted[mine] = length[mine] / (feeds[each["cutter"]] / 60.0)
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    wanted[mine] = length[mine] / (feeds[each["cutter"]] / 60.0)
             tool = self.question.tools[each["cutter"]]
             # Along walls the flutes are the limit: `Strategies` compares strips with these.
             # A floor that is no wider than the tip is cut in one pass.

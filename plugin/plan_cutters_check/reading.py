@@ -7,9 +7,9 @@ from typing import Any
 from plan_cutters_check.question import Question
 
 #: Arrays of operations.npz that are of each plan, of samples and of candidates: their last axes, and kinds.
-_OF_PLAN = {"operation": ((), "i"), "strip_mm": ((), "f"), "path_mm": ((), "f"), "seconds": ((), "f"), "exclusive": ((), "b"),
-            "lean": ((3,), "f"), "strategy": ((), "u"), "contact": ((3,), "f"), "moving_axis": ((3,), "f"),
-            "moving_piece": ((), "i")}  # fmt: skip
+_OF_PLAN = {"operation": ((), "i"), "strip_mm": ((), "f"), "path_mm": ((), "f"), "seconds": ((), "f"), "link_s": ((), "f"),
+            "exclusive": ((), "b"), "lean": ((3,), "f"), "strategy": ((), "u"), "contact": ((3,), "f"),
+            "moving_axis": ((3,), "f"), "moving_piece": ((), "i")}  # fmt: skip
 _OF_CANDIDATES = {
     "candidate_cutter": ((), "i"),
     "candidate_setup": ((), "i"),

@@ -137,7 +137,8 @@ def test_the_centre_goes_round_a_pin_and_round_a_hole(radius, hole):
 def test_a_window_in_a_wall_is_no_wall():
     """A plate of 80 x 20 mm that stands upright, with a window in it: one pass along it, as without the window."""
     solid = box(80.0, 10.0, 20.0)
-    window = cq.Workplane(obj=cq.Shape.cast(solid)).cut(cq.Workplane().box(40, 30, 8, centered=False).translate((20, -10, 6))).val()
+    opening = cq.Workplane().box(40, 30, 8, centered=False).translate((20, -10, 6))
+    window = cq.Workplane(obj=cq.Shape.cast(solid)).cut(opening).val()
     length = [
         planned(shape, "D12L60F26", faces=on(shape, lambda f: f.geomType() == "PLANE" and f.BoundingBox().ymax < 1e-6))
         for shape in (cq.Shape.cast(solid), window)

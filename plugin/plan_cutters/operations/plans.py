@@ -93,23 +93,23 @@ def plan_with(
         fixed = np.flatnonzero(label >= 0)
         moving[fixed] = pace[fixed, label[fixed]]
         return _only_timed(task, name, operations, number, table, region, moving)
-    strip, length, links = np.full((3, n), np.nan)
+    strip, length, link = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     for k, operation in enumerate(operations):
         stands, mine = _stands(task, operation), operation.rows
-        strip[mine], length[mine], links[mine] = stands.cut.strip, area[mine] * stands.cut.path, area[mine] * stands.cut.links
+        strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
+        if task.paths.feed is not None:
+            link[mine] = area[mine] * stands.cut.links * task.paths.link_of(operation.cutter)
         tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
         strategy[mine] = stands.strategy
         clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
-        passes = float(np.nansum(links[mine])) + len(np.unique(region[mine]))
-        operations[k] = operation.with_fields(
-            clearance_mm=clearance, strategy=word, link_seconds=passes * task.paths.link_of(operation.cutter)
-        )
+        linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
+        operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
     operations = workplanes(operations, task.ready, task.indexing)
     seconds = length / _speed(task, operations, number)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
-        name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, cutting,
+        name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
         sum(each.fields["link_seconds"] for each in operations), other,
     )  # fmt: skip
 
@@ -124,12 +124,17 @@ def _only_timed(
         length = area / pace
     operations = workplanes(operations, task.ready, task.indexing)
     seconds, none = length / _speed(task, operations, number), np.full((n, 3), np.nan)
-    links = sum(len(np.unique(region[each.rows])) * task.paths.link_of(each.cutter) for each in operations)
+    links = sum(_to_pieces(task, region[each.rows]) for each in operations)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
-        name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, cutting,
-        links, other,
+        name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, none[:, 0],
+        cutting, links, other,
     )  # fmt: skip
+
+
+def _to_pieces(task: Task, region: Ints) -> float:
+    """Seconds of links to the pieces of an operation, by the numbers of these at its samples; 0 without a feed."""
+    return 0.0 if task.paths.feed is None else task.paths.link * len(np.unique(region))
 
 
 def _speed(task: Task, operations: Sequence[Operation], number: NDArray[np.int32]) -> Floats:

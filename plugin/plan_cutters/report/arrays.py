@@ -132,6 +132,7 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
         "strip_mm": plan.strip,
         "path_mm": plan.length,
         "seconds": plan.seconds,
+        "link_s": plan.link,
         "exclusive": plan.alone,
         "lean": plan.lean,
         "strategy": plan.strategy,
