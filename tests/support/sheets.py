@@ -10,7 +10,11 @@ from plan_cutters.setups import solids
 
 def around(vertex, face=1, chord_error=0.0):
     """Triangles (n, 3, 3) of one face that are surely in the way and enclose nothing."""
-    return Surroundings.sheet(Obstacles(Triangles(np.asarray(vertex, float), np.full(len(vertex), face, np.int32), chord_error, ())))
+    return Surroundings.sheet(
+        Obstacles(
+            Triangles(np.asarray(vertex, float), np.broadcast_to(np.asarray(face, np.int32), len(vertex)).copy(), chord_error, ())
+        )
+    )
 
 
 #: The skin of a cube.
