@@ -1,4 +1,4 @@
-"""Laws of canonical orientations (`docs/operations_proof.md`, lemma E1), on made-up samples that each cutter serves from a cone of axes."""
+"""Laws of canonical orientations (`docs/operations_proof.md`, lemmas E1 and E2): each cutter serves samples from a cone of axes."""
 
 import math
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ def columns_at(angle, cutter):
 
 
 def task_of(centre, radius):
-    """Samples that a cutter serves from axes within a radius (n, cutters), rad, about a centre (n, cutters, 3); the farther the dearer."""
+    """Samples that cutters serve from axes within a radius (n, cutters), rad, of a centre (n, cutters, 3): far ones cost more."""
     n, cutters = radius.shape
     normal = np.tile([0.0, 0.0, 1.0], (n, 1))
     samples = SimpleNamespace(normal=normal, face=np.ones(n, int), area=np.ones(n), unjudged=np.full(n, -1))

@@ -2,7 +2,7 @@
 
 An orientation goes only for another one that was judged, with the axis of its angles as they are written, at every sample that no
 other one of the choice serves: a choice serves afterwards what it served before. All exchanges together cost at most 2 % of the
-time.
+time (`docs/operations_proof.md`, lemmas E1 and E2).
 """
 
 import math

@@ -1,7 +1,7 @@
 """A plan of repeated steps: a few orientations and their images about an axis, chosen by what samples cost with the best image.
 
 Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is chosen for one sector, and
-proved for all.
+proved for all (`docs/operations_proof.md`, lemma P3).
 """
 
 from collections.abc import Callable
@@ -157,7 +157,7 @@ def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
 def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float64]) -> Problem:
     """What samples (r,) of one copy and their images cost with columns and their images (r, k), each by itself.
 
-    A turn that carries a sample onto its image carries what serves it: no tool is put down for that.
+    A turn that carries a sample onto its image carries what serves it: no tool is put down for that (lemma P4).
     """
     own = cost.reshape(len(cost), -1, task.times)
     turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(task.times)]
