@@ -1,4 +1,4 @@
-"""Laws of canonical orientations (`docs/operations_proof.md`, lemmas E1 and E2): each cutter serves samples from a cone of axes."""
+"""Laws of canonical orientations (`docs/operations_proof.md`, lemmas E1 and E2): a cutter serves a sample from a cone of axes."""
 
 import math
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""Laws of passes along walls (`docs/operations_proof.md`, lemmas W1 and W2), on a wall of two triangles over a floor."""
+"""Laws of passes along walls (`docs/operations_proof.md`, lemmas W1 to W3), on a wall of two triangles over a floor."""
 
 import math
 from types import SimpleNamespace
@@ -15,6 +15,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.walls import Walls, flank_of
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, serves
 from tests.support.sheets import around
 
 TOLERANCE, SCALLOP, ACCURACY, WIDE = 0.01, 0.02, math.radians(0.5), 60.0
@@ -54,7 +55,10 @@ def wall(cutter, off, height, foot, seed):
     conditions = Conditions(Machine(), axis, PostureRange(), surroundings, TOLERANCE, 1, accuracy=ACCURACY)
     probes = Probes(samples, [cutter], [conditions], [np.ones(ROWS, bool)])
     passes = Walls(probes, conditions.obstacles, SCALLOP, ACCURACY).passes(0, 0, axis, rows)
-    return SimpleNamespace(passes=passes, point=point, above=above, axis=axis, up=turn @ up, vertex=vertex, across=turn[:, 1])
+    return SimpleNamespace(
+        passes=passes, point=point, above=above, axis=axis, up=turn @ up, vertex=vertex, across=turn[:, 1], samples=samples,
+        context=probes.contexts[0][0],
+    )  # fmt: skip
 
 
 def flutes_of(made, cutter, k):
@@ -125,3 +129,21 @@ def test_a_wall_in_the_open_is_cut_in_the_fewest_passes():
     """The laws above are about something: 42 mm take 3 passes of flutes of 15 mm, whichever way it leans a little."""
     for off in (-1e-4, 0.0, 1e-4):
         assert wall(CUTTERS[2], off, 42.0, 5.0, 1).passes.strip == pytest.approx(np.full(ROWS, 14.0))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from([0, 2, 3]), OFFS, st.floats(0.1, 40.0), st.integers(0, 2**31))
+def test_a_flank_that_keeps_the_tolerance_from_a_wall_cuts_it_within_the_tolerance_to_either_side(which, off, height, seed):
+    """As a fixed axis serves a wall: what stays at the sample is the tolerance, and nothing of the wall is deeper than that."""
+    cutter = CUTTERS[which]
+    made, (begins, length) = wall(cutter, off, height, 5.0, seed), flank_of(cutter)
+    served = serves(np.arange(ROWS), made.axis, made.samples, made.context)
+    held = held_at(made.axis[None], np.where(served, 0, -1), made.samples, made.context)
+    contact = at_fixed_axis(made.samples, held, TOLERANCE)
+    for k in np.flatnonzero(along(held) & served).tolist():
+        out, away = contact.normal[k], contact.point[k] - made.point[k]
+        assert abs(out @ made.axis) <= 1e-12
+        assert away @ out == pytest.approx(TOLERANCE)
+        assert np.linalg.norm(away) == pytest.approx(TOLERANCE)
+        for above in np.clip(made.above[[0, -1]] - made.above[k], -begins, length):
+            assert (above * made.up - away) @ out <= TOLERANCE + 1e-9

@@ -163,7 +163,7 @@ class Problems:
 
 
 def turning_of(indexing: Indexing, columns: Columns) -> Turning | None:
-    """What the rotary axes take from one column to the next by their rates; None where each orientation takes the same."""
+    """Say what the rotary axes take from column to column by their rates; None where each orientation takes the same."""
     if indexing.rate is None:
         return None
     return Turning(lambda chosen: indexing.together(columns.of(chosen)), indexing.from_zero(columns))

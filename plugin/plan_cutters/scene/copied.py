@@ -17,7 +17,7 @@ from plan_cutters.scene.conditions import Conditions, rotations_of
 from plan_cutters.scene.copies import Copies, Rows
 from plan_cutters.scene.preparation import Prepared
 
-#: Samples correspond within this share of the part's size, the cosines of their normals within this, and rotations within this, rad.
+#: Samples correspond within this share of the part's size, cosines of their normals within this, and rotations within this, rad.
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6
 #: Directions that a motion leaves as they are, within this.
 _STILL = 1e-9
