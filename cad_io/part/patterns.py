@@ -1,7 +1,8 @@
 """Patterns: motions that carry the whole part, or some of its faces, onto equal faces.
 
 Candidates come from what any motion keeps: the middles of borders, their lengths and second moments. Each candidate is then
-compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none.
+compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none. What
+follows from it for verdicts is `docs/operations_proof.md`, lemma P2.
 A motion of the whole part keeps the middle of all borders and their second moment: few axes and planes can be its own.
 """
 

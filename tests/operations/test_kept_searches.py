@@ -15,7 +15,7 @@ from cad_io.arrays import FaceGrid, Triangles
 from plan_cutters import Machine, PostureRange, operations
 from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.operations import canonical, cover, fastest, fewest, moving_axes, moving_proof, strips, symmetry, timing, walls
+from plan_cutters.operations import canonical, cover, fastest, fewest, moving_axes, moving_proof, passes, strips, symmetry, timing
 from plan_cutters.operations.candidates import Orientations, _multiples, apart, candidates, directions, neighbours
 from plan_cutters.operations.fastest import Reach, bounded, cheap, exchanged, lagrange
 from plan_cutters.operations.indexing import Indexing, index_times
@@ -357,9 +357,11 @@ def test_strips(keeps):
             found[f"{name} {scallop:.3f}"] = by_place
         samples = SimpleNamespace(normal=normal, curvature=bend, direction_max=along)
         for accuracy, scallop in ((math.radians(0.1), 0.013), (0.31, 1.9)):
-            paths = timing.Paths(scallop, 0.61, {cutter: 870.0}, accuracy)
-            found[f"{name} tip {scallop}"] = [timing.tip_widths(cutter, samples, np.arange(len(normal)), axis, paths),
-                                             walls.flat_of(cutter), walls.flank_of(cutter)]  # fmt: skip
+            # Faces whose extents are not known.
+            endless = SimpleNamespace(along=lambda rows, way: np.full((2, len(rows)), np.nan), longest=lambda rows: along[rows])
+            paths = passes.Paths(scallop, 0.61, {cutter: 870.0}, accuracy, endless)
+            cut = passes.cut_by_tip(cutter, samples, np.arange(len(normal)), axis, paths)
+            found[f"{name} tip {scallop}"] = [*cut, passes.flat_of(cutter), passes.flank_of(cutter)]
     keeps("strips", found)
 
 

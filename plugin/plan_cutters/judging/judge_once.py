@@ -2,7 +2,8 @@
 
 A posture of a sample, moved, is only a candidate at its image, and is tested there among the obstacles as they are: nothing is
 called reached without that. That an image is not reached follows where the motion leaves all that verdicts depend on as it is,
-and where a tenth of the images on each face, judged by themselves, have the verdicts that follow; if one differs, none follows.
+and where a tenth of the images on each face, judged by themselves, have the verdicts that follow; if one differs, none follows
+(`docs/operations_proof.md`, lemmas P1 and P2).
 """
 
 from collections.abc import Callable

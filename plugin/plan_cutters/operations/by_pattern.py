@@ -1,7 +1,7 @@
 """Plans of a part that is a pattern, or nearly one: one copy is planned, and repeated.
 
 Samples of one sector alone are compared, each counted as often as there are copies. The plan that comes of it is tested at all
-samples, like any other.
+samples, like any other (`docs/operations_proof.md`, lemmas P3 and P4).
 """
 
 import math

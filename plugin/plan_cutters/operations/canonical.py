@@ -2,7 +2,7 @@
 
 An orientation goes only for another one that was judged, with the axis of its angles as they are written, at every sample that no
 other one of the choice serves: a choice serves afterwards what it served before. All exchanges together cost at most 2 % of the
-time.
+time (`docs/operations_proof.md`, lemmas E1 and E2).
 """
 
 import math
@@ -72,9 +72,9 @@ class _Choice:
         """The columns, that with the most samples first."""
         return sorted(range(len(self.columns)), key=lambda k: -len(self.own(k)))
 
-    def without(self, k: int) -> "_Choice":
-        """The choice without one of its columns."""
-        others = np.delete(np.arange(len(self.columns)), k)
+    def without(self, which: Sequence[int]) -> "_Choice":
+        """The choice without some of its columns."""
+        others = np.delete(np.arange(len(self.columns)), np.array(which, np.int64))
         return _choice(self.task, self.columns.of(others), self.cost[:, others])
 
     def exchanged(self, k: int, other: Columns) -> "_Choice":
@@ -209,18 +209,15 @@ def _merged(choice: _Choice, most: float) -> _Choice:
             near = bool(_within(columns.axis[[j]], columns.axis[k], accuracy)[0])
             if k in gone or j in gone or columns.setup[k] != columns.setup[j] or not near:
                 continue
+            # What is gone serves nothing any more.
+            now = choice.without(gone)
             if columns.cutter[k] != columns.cutter[j]:
                 good = _as_good(choice, j, columns.angle[[k]], columns.axis[[k]], most)
-                choice = good[0] if good else choice
-                continue
-            fewer = choice
-            for each in sorted([*gone, j], reverse=True):
-                fewer = fewer.without(each)
-            if fewer.as_good(choice, most):
+                if good and good[0].without(gone).as_good(now, most):
+                    choice = good[0]
+            elif choice.without([*gone, j]).as_good(now, most):
                 gone.append(j)
-    for each in sorted(gone, reverse=True):
-        choice = choice.without(each)
-    return choice
+    return choice.without(gone)
 
 
 def _within(axis: Floats, other: Floats, angle: float) -> Served:

@@ -1,9 +1,9 @@
 """The operations that take the least time together, and how far from the best they are at most.
 
 It is a facility location: each sample is cut by one chosen operation that serves it, each operation costs an index of the rotary
-axes, each cutter a change and each setup a clamping. A choice is made greedily and made better by leaving out and by exchanging
-operations. The bound is Lagrange's: any prices of samples give one, over all candidates at once (`docs/operations_proof.md`,
-lemmas O8 and O9).
+axes, each cutter after the first a change and each setup after the first a clamping. A choice is made greedily and made better by
+leaving out and by exchanging operations. The bound is Lagrange's: any prices of samples give one for each set of cutters and of
+setups, and the least of these bounds every choice (`docs/operations_proof.md`, lemma O8; lemma O9 where rotary axes have rates).
 Prices are made better by steps along the mean of what samples are served too often or not at all; candidates that no better
 choice can have are left out on the way.
 """

@@ -1,7 +1,7 @@
 """A plan of repeated steps: a few orientations and their images about an axis, chosen by what samples cost with the best image.
 
 Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is chosen for one sector, and
-proved for all.
+proved for all (`docs/operations_proof.md`, lemma P3).
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import SOME
-from plan_cutters.operations.timing import costs_of, paces, shared_area
+from plan_cutters.operations.timing import costs_of, paces, shared_area, turning_of
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
@@ -131,7 +131,7 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
         cost = np.concatenate([cost, _costs(task, more, every)])
     if not len(chosen):
         return None
-    apart = _apart(problem, cost[open_] * (scale / task.times), task.times)
+    apart = _apart(task, symmetry.images(base), problem, cost[open_] * (scale / task.times))
     return Copied(base, chosen, problem, apart, float(share[open_].sum()), float(share[~open_].sum() / max(1e-300, share.sum())))
 
 
@@ -154,15 +154,15 @@ def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
     return costs_of(columns, pace, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
 
 
-def _apart(problem: Problem, cost: NDArray[np.float64], times: int) -> Problem:
+def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float64]) -> Problem:
     """What samples (r,) of one copy and their images cost with columns and their images (r, k), each by itself.
 
-    A turn that carries a sample onto its image carries what serves it: no tool is put down for that.
+    A turn that carries a sample onto its image carries what serves it: no tool is put down for that (lemma P4).
     """
-    own = cost.reshape(len(cost), -1, times)
-    turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(times)]
-    each = Costs(problem.costs.operation / times, problem.costs.cutter, problem.costs.setup)
-    return Problem(np.concatenate(turned), np.repeat(problem.cutter, times), np.repeat(problem.setup, times), each)
+    own = cost.reshape(len(cost), -1, task.times)
+    turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(task.times)]
+    each = Costs(problem.costs.operation / task.times, problem.costs.cutter, problem.costs.setup)
+    return Problem(np.concatenate(turned), images.cutter, images.setup, each, turning_of(task.indexing, images))
 
 
 def _problem(task: Task, symmetry: Symmetry, base: Columns, cost: NDArray[np.float64]) -> Problem:

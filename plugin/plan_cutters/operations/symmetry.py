@@ -1,7 +1,8 @@
 """Orientations that are repeated about an axis: one of them, and its images, stand for one step.
 
 The axis is that of a pattern of the whole part, or of a part that nearly is one: then each image is tested on its own samples all
-the same, for nothing follows from a symmetry that is not exact. So a plan of repeated steps is made of ordinary operations.
+the same, for nothing follows from a symmetry that is not exact. So a plan of repeated steps is made of ordinary operations
+(`docs/operations_proof.md`, lemma P3).
 """
 
 import math

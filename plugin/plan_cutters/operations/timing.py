@@ -116,7 +116,11 @@ class Problems:
         # What is served and nowhere timed is served by whatever serves it, in no time that is known.
         untimed = ~np.isfinite(cost).any(axis=1)
         cost[untimed] = np.where(table[untimed], 0.0, np.inf)
-        turning = None
-        if self._indexing.rate is not None:
-            turning = Turning(lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns))
-        return Problem(cost, columns.cutter, columns.setup, costs, turning)
+        return Problem(cost, columns.cutter, columns.setup, costs, turning_of(self._indexing, columns))
+
+
+def turning_of(indexing: Indexing, columns: Columns) -> Turning | None:
+    """Say what the rotary axes take from column to column by their rates; None where each orientation takes the same."""
+    if indexing.rate is None:
+        return None
+    return Turning(lambda chosen: indexing.together(columns.of(chosen)), indexing.from_zero(columns))

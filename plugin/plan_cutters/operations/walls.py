@@ -3,8 +3,9 @@
 A face is a wall of a tool axis where its normal stands on the side of the flutes: across the axis, or by the taper off that. The
 line of the face that runs up the flutes is its ruling. A pass stands with the lower end of its strip where the flutes begin to be
 straight, and is judged there as every posture is, with all of the tool. A sample is cut by it if it lies on the flutes within the
-scallop height. Nothing is concluded from the kind of a surface: a face that bends away from its ruling ends there. Where
-something is in the way below, such as the jaw of a vise, the lowest strip begins where the tool comes free of it.
+scallop height (`docs/operations_proof.md`, lemmas W1 and W2). Nothing is concluded from the kind of a surface: a face that bends
+away from its ruling ends there. Where something is in the way below, such as the jaw of a vise, the lowest strip begins where the
+tool comes free of it.
 """
 
 import math

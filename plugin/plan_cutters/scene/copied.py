@@ -1,4 +1,7 @@
-"""Find the samples of a part that is ready which motions of the whole part carry onto others."""
+"""Find the samples of a part that is ready which motions of the whole part carry onto others.
+
+What follows from it, and within what: `docs/operations_proof.md`, lemma P2.
+"""
 
 from dataclasses import replace
 
@@ -14,7 +17,7 @@ from plan_cutters.scene.conditions import Conditions, rotations_of
 from plan_cutters.scene.copies import Copies, Rows
 from plan_cutters.scene.preparation import Prepared
 
-#: Samples correspond within this share of the part's size, their normals within this, and rotations within this, rad.
+#: Samples correspond within this share of the part's size, cosines of their normals within this, and rotations within this, rad.
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6
 #: Directions that a motion leaves as they are, within this.
 _STILL = 1e-9

@@ -1,7 +1,7 @@
 """Tool axes that stay as they are: where each serves, and the postures with it.
 
 A machine that holds its rotary axes while it cuts (3+2) needs just that. Each axis is tested at each sample as a plan tests the
-postures that it finds: what is served is proved to the same tolerance.
+postures that it finds: what is served is proved to the same tolerance (`docs/operations_proof.md`, lemmas O10 and W3).
 """
 
 from dataclasses import replace

@@ -1,4 +1,7 @@
-"""Does a fixture stand in the part? They may touch; what is deeper than triangles and tolerance can be off is a mistake."""
+"""Does a fixture stand in the part? They may touch; what is deeper than triangles and tolerance can be off is a mistake.
+
+How deep it may stand in the part all the same is `docs/operations_proof.md`, lemma K2.
+"""
 
 from dataclasses import dataclass
 from functools import partial

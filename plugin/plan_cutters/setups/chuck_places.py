@@ -1,4 +1,4 @@
-"""Where a chuck may grip a part: on an upright outside cylinder near its bottom."""
+"""Where a chuck may grip a part: on an upright outside cylinder near its bottom (`docs/operations_proof.md`, lemma K3)."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,7 @@
-"""Where does a vise or chuck grip a part in a setup? What it may grip is compared by how little of the target faces it hides."""
+"""Where does a vise or chuck grip a part in a setup? What it may grip is compared by how little of the target faces it hides.
+
+No safety rests on the place (`docs/operations_proof.md`, lemma K1); how deep jaws may stand in the part is lemma K2.
+"""
 
 import math
 from collections.abc import Callable

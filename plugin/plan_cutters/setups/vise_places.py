@@ -1,4 +1,4 @@
-"""Where a vise may grip a part: on two opposite upright planes near its bottom."""
+"""Where a vise may grip a part: on two opposite upright planes near its bottom (`docs/operations_proof.md`, lemma K3)."""
 
 import math
 from dataclasses import replace
