@@ -39,11 +39,12 @@ def planned(shape, cutter, **more):
 @pytest.mark.slow("another cutter of the same law", but=("D12L60F26",))
 @pytest.mark.parametrize(("cutter", "height"), [("D12L60F26", 20.0), ("D12L60F60", 50.0)])
 def test_a_block_takes_the_seconds_of_its_top_and_of_passes_along_its_sides(cutter, height):
-    """The top in strips of 0.75 of the flat of the tip, each side in passes as high as the flutes: one orientation, A 0."""
+    """The top in passes 0.75 of the flat of the tip apart, each side in passes as high as the flutes: one orientation, A 0."""
     made = Cutter.parse(cutter)
     found = planned(box(60.0, 40.0, height), cutter).plan.operations.plans[0]
     assert [list(each.angles_deg.values()) for each in found.operations] == [[0.0, 0.0]]
-    top = 60.0 * 40.0 / (0.75 * flat_of(made))
+    flat = flat_of(made)
+    top = min(length * (1.0 + math.ceil((width - flat) / (0.75 * flat))) for length, width in ((60.0, 40.0), (40.0, 60.0)))
     sides = 2.0 * (60.0 + 40.0)
     assert found.cutting_seconds == pytest.approx((top + sides) * 60.0 / FEED, rel=0.01)
 
