@@ -1,6 +1,7 @@
 """What passes take: the centre's path, how far faces go on, and walls above what holds the part."""
 
 import math
+from dataclasses import replace
 
 import cadquery as cq
 import numpy as np
@@ -11,9 +12,13 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 from plan_cutters import Cutter, plan
+from plan_cutters.domain.machine import Machine
 from plan_cutters.kernels.linear.sections import sections
+from plan_cutters.machines import read_machine, to_toml
+from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.strips import centre_path
 from tests.support.cad_parts import box
+from tests.support.places import DATA
 
 FEED = 1000.0
 OPTIONS = {"area_budget": 0, "feed": FEED, "machine": "tilt:0", "setup": "+z", "operations": "fastest"}
@@ -179,3 +184,15 @@ def test_paths_of_a_part_grow_with_it(size):
     one, other = of(1.0), of(size)
     assert other.cut_length_mm == pytest.approx(size * one.cut_length_mm, rel=0.02)
     assert other.link_seconds == pytest.approx(one.link_seconds, rel=0.05)
+
+
+def test_a_pass_takes_the_feed_over_the_acceleration_of_the_slowest_axis_beside_its_link(tmp_path):
+    """The file of a real machine: 800 mm/s2 along X, Y and Z, read from LinuxCNC and, once written, from our own format."""
+    machine = read_machine(DATA / "machines" / "linuxcnc_5axis.ini")
+    (tmp_path / "own.toml").write_text(to_toml(machine), encoding="utf-8")
+    assert machine.acceleration == read_machine(tmp_path / "own.toml").acceleration == 800.0
+    assert Machine().acceleration == math.inf
+    cutter = Cutter.parse("D12L60F26")
+    paths = Paths(0.01, 0.75, {cutter: 6000.0}, 0.0, None, 1.5, machine.acceleration)
+    assert paths.link_of(cutter) == pytest.approx(1.5 + 100.0 / 800.0)
+    assert replace(paths, feed=None).link_of(cutter) == 0.0

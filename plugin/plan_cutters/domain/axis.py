@@ -37,6 +37,8 @@ class Axis:
         Largest speed, rad/s or mm/s.
     accuracy : float, optional
         Of a rotary axis, rad: how far it may stand from where it is told to.
+    acceleration : float, optional
+        Largest one, mm/s2 or rad/s2.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Axis:
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rate: float | None = None
     accuracy: float | None = None
+    acceleration: float | None = None
 
     if TYPE_CHECKING:
 
@@ -60,6 +63,7 @@ class Axis:
             point: Sequence[float] | Floats = ...,
             rate: float | None = None,
             accuracy: float | None = None,
+            acceleration: float | None = None,
         ) -> None: ...
 
     @classmethod
@@ -105,11 +109,12 @@ class Axis:
                 raise MachineError(f"{what}: its limits {low:g} to {high:g} must run upwards")
             none = math.isinf(low) and math.isinf(high)
             object.__setattr__(self, "limits", None if none else (low, high))
-        if self.rate is not None:
-            rate = number(self.rate, f"{what}: its rate", error=MachineError)
-            if not 0.0 < rate < math.inf:
-                raise MachineError(f"{what}: its rate must be positive")
-            object.__setattr__(self, "rate", rate)
+        for name in ("rate", "acceleration"):
+            if getattr(self, name) is not None:
+                value = number(getattr(self, name), f"{what}: its {name}", error=MachineError)
+                if not 0.0 < value < math.inf:
+                    raise MachineError(f"{what}: its {name} must be positive")
+                object.__setattr__(self, name, value)
         if self.accuracy is not None:
             accuracy = number(self.accuracy, f"{what}: its accuracy", error=MachineError)
             if self.kind != "rotary" or not 0.0 <= accuracy <= _MOST_ACCURACY:

@@ -105,6 +105,11 @@ class Machine:
         return tuple(axis for axis in self.axes if axis.kind == "rotary")
 
     @property
+    def acceleration(self) -> float:
+        """The least acceleration of its linear axes, mm/s2; infinite where none is known."""
+        return min((axis.acceleration for axis in self.linear if axis.acceleration is not None), default=math.inf)
+
+    @property
     def linear(self) -> tuple[Axis, ...]:
         """Its linear axes, the one next to the part first."""
         return tuple(axis for axis in self.axes if axis.kind == "linear")

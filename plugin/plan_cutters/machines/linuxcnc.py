@@ -6,6 +6,7 @@ Only kinematics whose sources were read are taken (src/emc/kinematics of LinuxCN
 """
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -307,21 +308,22 @@ class _Reading:
     def ends(self, section: str, size: float) -> tuple[float, float] | None:
         return chain.ranged(self.ini.number(section, "MIN_LIMIT"), self.ini.number(section, "MAX_LIMIT"), size)
 
-    def rate(self, letter: str) -> float | None:
-        """The least of the largest speeds of an axis and its joints."""
+    def least(self, letter: str, word: str) -> float | None:
+        """The least of what an axis and its joints say by a word: of the largest speeds, or accelerations."""
         size = self.angle if letter in "ABC" else self.length
         sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
-        rates = [self.ini.number(section, "MAX_VELOCITY") for section in (f"AXIS_{letter}", *sections)]
+        rates = [self.ini.number(section, word) for section in (f"AXIS_{letter}", *sections)]
         speeds = [chain.scaled(each, size) for each in rates if each is not None and each > 0.0]
         return min(speeds, default=None)
 
     def linear(self, letter: str) -> Axis:
-        return chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), self.rate(letter))
+        rate, change = (self.least(letter, word) for word in ("MAX_VELOCITY", "MAX_ACCELERATION"))
+        return replace(chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), rate), acceleration=change)
 
     def rotary(self, letter: str, carries: str, against: bool, point: chain.Vector) -> Axis:
         direction = chain.opposite(chain.ISO[letter]) if against else chain.ISO[letter]
         return chain.axis(letter, "rotary", "part" if carries == "part" else "tool", direction,
-                          limits=self.limits(letter, False), point=point, rate=self.rate(letter))  # fmt: skip
+                          limits=self.limits(letter, False), point=point, rate=self.least(letter, "MAX_VELOCITY"))  # fmt: skip
 
     def trivial(self) -> tuple[list[Axis], list[Axis]]:
         """Kinematics that say nothing of how axes stand on each other."""

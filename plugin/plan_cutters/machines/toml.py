@@ -38,7 +38,7 @@ class Units(_Table):
 class AxisTable(_Table):
     """An axis; `limits` missing or null: none, one of them null or inf: none on that side.
 
-    `rate` is a speed a second; `accuracy` an angle, of a rotary axis alone.
+    `rate` is a speed a second, `acceleration` what that may change by in a second; `accuracy` an angle, of a rotary axis alone.
     """
 
     axis: Annotated[str, Field(min_length=1)]
@@ -48,6 +48,7 @@ class AxisTable(_Table):
     limits: Annotated[list[Size | None], Field(min_length=2, max_length=2)] | None = None
     rate: Size | None = None
     accuracy: Size | None = None
+    acceleration: Size | None = None
 
 
 class MaxTool(_Table):
@@ -154,8 +155,9 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
     px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
     rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate", turns)
     accuracy = None if table.accuracy is None else _size(table.accuracy, size, f"{what}: its accuracy", turns)
+    change = None if table.acceleration is None else _size(table.acceleration, size, f"{what}: its acceleration", turns)
     turned = opposite((x, y, z)) if sign == "table" and carries == "part" else (x, y, z)
-    return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate, accuracy)
+    return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate, accuracy, change)
 
 
 def _size(value: float | str, size: float, what: str, turns: bool = True) -> float:
@@ -256,6 +258,8 @@ def _axis_table(axis: Axis) -> dict[str, Any]:
         entry["rate"] = size(axis.rate)
     if axis.accuracy is not None:
         entry["accuracy"] = size(axis.accuracy)
+    if axis.acceleration is not None:
+        entry["acceleration"] = size(axis.acceleration)
     return entry
 
 

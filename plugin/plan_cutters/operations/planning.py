@@ -285,7 +285,11 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
     extents = Extents(ready.samples, ready.conditions.obstacles)
-    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time)
+    machine = ready.conditions.machine
+    paths = Paths(
+        options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time,
+        machine.acceleration,
+    )  # fmt: skip
     walls = Walls.of(probes, paths)
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
