@@ -12,6 +12,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import INDEX_TIME, IndexFrom
 from plan_cutters.operations.candidates import DIGITS, Orientations
+from plan_cutters.operations.problem import Turning
 
 #: Positions of which the best order is looked for among all orders; of more, the nearest one comes next.
 MOST = 12
@@ -66,6 +67,12 @@ class Indexing:
             both = [[angle] if other is None else [angle, other] for angle, other in zip(mine.angle, others, strict=True)]
             seconds += float(self.times(s, both).sum())
         return seconds
+
+    def turning(self, columns: Columns) -> Turning | None:
+        """Say what choices of columns take by the rates of the rotary axes; None where each orientation takes the same."""
+        if self.rate is None:
+            return None
+        return Turning(lambda chosen: self.together(columns.of(chosen)), self.from_zero(columns))
 
     def from_zero(self, columns: Columns) -> Floats:
         """Time (m,), s, that the axes take at least from zero to each column, in any order of any choice; 0 without rates.

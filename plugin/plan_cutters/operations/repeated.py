@@ -17,7 +17,7 @@ from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import SOME
-from plan_cutters.operations.timing import costs_of, paces, shared_area, turning_of
+from plan_cutters.operations.timing import costs_of, paces, shared_area
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
@@ -162,7 +162,7 @@ def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float
     own = cost.reshape(len(cost), -1, task.times)
     turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(task.times)]
     each = Costs(problem.costs.operation / task.times, problem.costs.cutter, problem.costs.setup)
-    return Problem(np.concatenate(turned), images.cutter, images.setup, each, turning_of(task.indexing, images))
+    return Problem(np.concatenate(turned), images.cutter, images.setup, each, task.indexing.turning(images))
 
 
 def _problem(task: Task, symmetry: Symmetry, base: Columns, cost: NDArray[np.float64]) -> Problem:

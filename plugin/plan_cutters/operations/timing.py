@@ -12,7 +12,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.passes import Paths, cut_by_tip
-from plan_cutters.operations.problem import Costs, Problem, Turning
+from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.walls import Walls
 
 Rows = NDArray[np.int64]
@@ -116,11 +116,4 @@ class Problems:
         # What is served and nowhere timed is served by whatever serves it, in no time that is known.
         untimed = ~np.isfinite(cost).any(axis=1)
         cost[untimed] = np.where(table[untimed], 0.0, np.inf)
-        return Problem(cost, columns.cutter, columns.setup, costs, turning_of(self._indexing, columns))
-
-
-def turning_of(indexing: Indexing, columns: Columns) -> Turning | None:
-    """Say what the rotary axes take from column to column by their rates; None where each orientation takes the same."""
-    if indexing.rate is None:
-        return None
-    return Turning(lambda chosen: indexing.together(columns.of(chosen)), indexing.from_zero(columns))
+        return Problem(cost, columns.cutter, columns.setup, costs, self._indexing.turning(columns))
