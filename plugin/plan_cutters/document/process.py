@@ -17,7 +17,9 @@ from plan_cutters.document.setups import OverSetups
 from plan_cutters.domain.change import Step
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.fillet import Fit, Fitting
+from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.preference import by_radius
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE
 from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import filled, vector
@@ -239,6 +241,8 @@ def faces_of(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str
 _PREFERRED = ("process", "fastest", "fewest")
 #: A number of a reason that is none: another orientation would do.
 _OTHER = 1000
+#: How the steps of a cutter cut, in their order.
+_IN_TURN: tuple[Strategy, ...] = ("floor", "mixed", "wall", "point")
 #: Cosine from the setup axis under which a tool comes from below: walls that are drawn out of true by half a degree are walls.
 _BELOW = -0.01
 
@@ -320,14 +324,15 @@ class _Parts:
         )  # fmt: skip
 
     def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
-        """The steps that were planned: by setup, fixed orientations first, by cutter, the largest area first."""
-        by_cutter: dict[tuple[int, str], float] = {}
-        for each in entry.operations:
-            key = each.setup, each.cutter
-            by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
+        """List the steps that were planned, in the order of a shop.
+
+        Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls,
+        other fixed orientations and simultaneous motion, of each the largest area first.
+        """
+        size = {cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))}
 
         def place(e: OperationEntry | ProcessStep) -> tuple[object, ...]:
-            return e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2
+            return e.setup, size[e.cutter], e.mode != "fixed", _IN_TURN.index(e.strategy), -e.area_mm2
 
         # Operations that are images of each other are one step.
         together = dict[object, list[tuple[int, OperationEntry]]]()

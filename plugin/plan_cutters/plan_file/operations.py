@@ -385,7 +385,10 @@ class NextEntry(Frozen):
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
-    steps: list[ProcessStep] = Field(description="the planner's own first, then by setup and, in a setup, by cutter")
+    steps: list[ProcessStep] = Field(
+        description="the planner's own first, then by setup; in a setup by cutter, the largest first, and with a cutter floors, "
+        "walls, other fixed orientations, simultaneous motion"
+    )
     plan: str = Field(default="", description="the name of the plan of operations that the steps are; empty: no operations")
     finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float
