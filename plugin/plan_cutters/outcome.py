@@ -97,6 +97,8 @@ class OperationPlan:
         straight. nan where it touches at the sample itself.
     cutting, other : float
         Seconds of all cutting, nan where one of them is not known; and of all orientations, of changes of cutters and of setups.
+    short : (m,) int64
+        Samples that are left because a step for them would be hardly any.
     """
 
     name: str
@@ -111,6 +113,7 @@ class OperationPlan:
     contact: Floats
     cutting: float
     other: float
+    short: NDArray[np.int64]
 
     @property
     def total(self) -> float:

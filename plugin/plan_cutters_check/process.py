@@ -16,6 +16,8 @@ _PREFERRED = ("process", "fastest", "fewest")
 _BELOW, _ROUNDED = -0.01, 1.5e-3
 #: By how much each of some angles may be off, deg, that are written to three digits.
 _WRITTEN = 0.0021
+#: A number of a reason that is none: a step for it would be hardly any.
+_SHORT = 1000
 #: How steps of one cutter cut, in their order; those that move come last.
 _STRATEGIES = ("floor", "mixed", "wall", "point")
 #: Entries of a step that repeat those of its first operation.
@@ -138,8 +140,11 @@ class Process:
         for name in (cutter["id"] for cutter in cutters):
             mine = left & (reason == NO_REASON) & np.isin(self.reckoned.verdict[name], NOT_REACHED)
             reason[mine] = self.question.samples[f"reason_{name}"][mine]
+        if self.reckoned.all_planned:
+            reason[left & self.reckoned.reached] = _SHORT
+        words = {_SHORT: "short_step", NO_REASON: "not_planned"}
         causes = {
-            "not_planned" if code == NO_REASON else document["reasons"][code]: np.flatnonzero(left & (reason == code))
+            words.get(code) or document["reasons"][code]: np.flatnonzero(left & (reason == code))
             for code in np.unique(reason[left]).tolist()
         }
         if self.reckoned.unjudged.any() or self.reckoned.not_sampled > 0.0 or empty(self.question):

@@ -28,6 +28,7 @@ from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
+    SHORT_STEP,
     UNJUDGED_CAUSE,
     FitEntry,
     HelpEntry,
@@ -111,6 +112,8 @@ def _has_images(ready: Prepared, motion: Motion, mine: NDArray[np.bool_]) -> boo
 
 Rows = NDArray[np.int64]
 
+#: A number of a reason that is none: a step for it would be hardly any.
+_SHORT = 1001
 #: Reasons against which a smaller size is tried.
 _BY_SIZE = (LOCAL_GOUGE, REAR_GOUGE, COLLISION)
 #: A face that has less of an area does not speak for the others, mm2, as long as these have most of it.
@@ -163,7 +166,7 @@ def remaining(
     left = ready.finished & ~done
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
-        cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
+        cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
             rows = _speaking(samples.face, np.flatnonzero(mine), area)
@@ -269,13 +272,14 @@ def process_entry(
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
     requested, clamping, name, seconds = float(area.sum()) + not_sampled, None, "", None
+    short = np.zeros(0, np.int64)
     parts = _Parts(ready, over, area, requested)
     if answers.operations is not None:
         chosen, entry = min(
             zip(answers.operations.plans, answers.operations.entry.plans, strict=True),
             key=lambda each: _PREFERRED.index(each[0].name),
         )
-        done, name, seconds = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds
+        done, name, seconds, short = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds, chosen.short
         steps = [*parts.own(answers.operations, chosen, entry), *parts.planned(answers.operations, chosen, entry)]
         if seconds is not None:
             clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
@@ -285,10 +289,9 @@ def process_entry(
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
         none = {"mode": "any", "angles_deg": None, "axis": None, "seconds": None, "clearance_mm": None}
         steps = [parts.step(mine, None, setup=setup, cutter=cutter, **none) for setup, cutter, mine in runs]
-    advice = answers.mends.get(shown)
-    left = remaining(
-        ready, done, reasons(entries, over, steps, done), area, requested, () if advice is None else advice.steps, fitting
-    )
+    advice, why = answers.mends.get(shown), reasons(entries, over, steps, done)
+    why.reason[short] = _SHORT
+    left = remaining(ready, done, why, area, requested, () if advice is None else advice.steps, fitting)
     finished, exempt = float(area[done].sum()), None
     if ready.exempt is not None and ready.exempt.any():
         at_edges = np.where(ready.inside_bodies, 0.0, sampled)

@@ -134,8 +134,8 @@ def _unbroken(task: Task, symmetry: Symmetry) -> bool:
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     """The fastest plan that follows from one copy, with what it is compared with; None where others have to be looked for.
 
-    Orientations are repeated, unless setting each once takes much less time, or leaves much less to simultaneous motion. Others are
-    looked for where one copy does not stand for all, or the plan leaves much to simultaneous motion.
+    Orientations are repeated, unless setting each once takes much less time, or leaves much less to simultaneous motion. Others
+    are looked for where one copy does not stand for all, or the plan leaves much to simultaneous motion.
     """
     if not offer.exact:
         return None
