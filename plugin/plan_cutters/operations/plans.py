@@ -94,7 +94,7 @@ def plan_with(
     number, table, strip, others = _simultaneous(task, len(operations), number, table, strip, own)
     operations += others
     made, short = _Made(operations, number, table, strip), rows[:0]
-    if task.ready.options.most_operations is None:
+    if operations and task.ready.options.most_operations is None:
         made, short = _fewer(task, made, np.where(may, cost, np.inf)[:, order], width[:, order], own)
     operations, number, table, strip = made
     speed = np.full(n, np.nan)
