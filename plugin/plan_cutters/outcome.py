@@ -102,6 +102,8 @@ class OperationPlan:
     cutting, links, other : float
         Seconds of all cutting, nan where one of them is not known; of all links, to the pieces of operations too; and of all
         orientations, of changes of cutters and of setups.
+    short : (m,) int64
+        Samples that are left because a step for them would be hardly any.
     """
 
     name: str
@@ -119,6 +121,7 @@ class OperationPlan:
     cutting: float
     links: float
     other: float
+    short: NDArray[np.int64]
 
     @property
     def total(self) -> float:

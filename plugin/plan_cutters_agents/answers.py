@@ -129,8 +129,8 @@ class OfPlan(Answer):
 class Remaining(Entry):
     """An area that no step finishes, for one cause."""
 
-    #: Code of a reason; `unjudged`; `not_planned`: reached, and in no step; `orientation`: reached by the step's cutter in this
-    #: setup at other angles.
+    #: Code of a reason; `unjudged`; `not_planned`: reached, and in no step; `short_step`: a step for it would take less than 1 s;
+    #: `orientation`: reached by the step's cutter in this setup at other angles.
     cause: str
     area_mm2: float
     share: float

@@ -127,6 +127,7 @@ def _plan(reckoned: Reckoned, k: int, plan: Mapping[str, Any]) -> dict[str, Any]
         "pieces": sum(len(each["regions"]) for each in made),
         "operations": made,
         "rest": reckoned.judged.of(rest, "samples", "area_mm2", "share")
+        | {"short": int(reckoned.reached[rest].sum()) if reckoned.all_planned else Loose(0, len(rest))}
         | {"reason_counts": Exactly({words[c]: int((first == c).sum()) for c in known})},
         **_proved([each for each in written if each["proved_share"] is not None]),
     }

@@ -16,6 +16,8 @@ from plan_cutters_check.strategies import Strategies
 
 #: Parts of unit vectors, and mm, that differ by less are one; share by which areas of a face may differ.
 _SAME, _SAME_MM, _SAME_AREA = 1e-6, 1e-5, 0.01
+#: What may be missing of what is reached, where something is missing anyway: mm2, and a share of the area.
+_SHORT_MM2, _SHORT_SHARE = 0.1, 0.001
 #: Tool axes that are tried for a candidate near to them, and how near one must be, deg.
 _TRIED, _FARTHEST = 400, 5.0
 #: Points that are asked at once whether they lie in a face.
@@ -150,7 +152,12 @@ class Paper:
         plan, label, tilt_direction = self.plans[k], self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
         bad = (label < -1) | (label >= len(plan["operations"])) | ((label >= 0) & ~self.reckoned.finished)
         if self.reckoned.all_planned:
-            bad |= (label < 0) & self.reckoned.reached
+            # Steps that would be hardly any may be missing, where something is missing anyway.
+            missing = (label < 0) & self.reckoned.reached
+            area, whole = float(self.reckoned.area[missing].sum()), float(self.reckoned.area.sum())
+            complete = not (self.reckoned.finished & ~self.reckoned.reached).any()
+            if complete or area >= max(_SHORT_MM2, _SHORT_SHARE * whole):
+                bad |= missing
         bad |= (label < 0) & (np.isfinite(tilt_direction).any(axis=1) | self.reckoned.array(k, "exclusive"))
         if bad.any():
             yield Finding(

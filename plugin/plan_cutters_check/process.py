@@ -16,6 +16,10 @@ _PREFERRED = ("process", "fastest", "fewest")
 _BELOW, _ROUNDED = -0.01, 1.5e-3
 #: By how much each of some angles may be off, deg, that are written to three digits.
 _WRITTEN = 0.0021
+#: A number of a reason that is none: a step for it would be hardly any.
+_SHORT = 1000
+#: How steps of one cutter cut, in their order; those that move come last.
+_STRATEGIES = ("floor", "mixed", "wall", "point")
 #: Entries of a step that repeat those of its first operation.
 _REPEATED = ("setup", "mode", "angles_deg", "axis", "cutter", "strategy")
 
@@ -55,16 +59,16 @@ class Process:
         }  # fmt: skip
 
     def _steps(self) -> list[dict[str, Any]]:
-        """Those of the planner's own first, then by setup, fixed ones first, by cutter and by area."""
+        """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""
         operations, own = self.plan["operations"], self.reckoned.own or []
-        by_cutter: dict[tuple[int, str], float] = {}
-        for each in operations:
-            key = each["setup"], each["cutter"]
-            by_cutter[key] = by_cutter.get(key, 0.0) + each["area_mm2"]
+        size = {
+            each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
+            for k, each in enumerate(self.question.document["cutters"])
+        }
 
         def rank(each: Mapping[str, Any]) -> tuple[Any, ...]:
-            moving, most = each["mode"] != "fixed", by_cutter[each["setup"], each["cutter"]]
-            return each["setup"], moving, -most, each["cutter"], -each["area_mm2"]
+            kind = _STRATEGIES.index(each["strategy"]) if each["mode"] == "fixed" else len(_STRATEGIES)
+            return each["setup"], size[each["cutter"]], kind, -each["area_mm2"]
 
         groups: dict[Any, list[int]] = {}
         for k in sorted((k for k, each in enumerate(operations) if each.get("step") is None), key=lambda k: rank(operations[k])):
@@ -136,8 +140,11 @@ class Process:
         for name in (cutter["id"] for cutter in cutters):
             mine = left & (reason == NO_REASON) & np.isin(self.reckoned.verdict[name], NOT_REACHED)
             reason[mine] = self.question.samples[f"reason_{name}"][mine]
+        if self.reckoned.all_planned:
+            reason[left & self.reckoned.reached] = _SHORT
+        words = {_SHORT: "short_step", NO_REASON: "not_planned"}
         causes = {
-            "not_planned" if code == NO_REASON else document["reasons"][code]: np.flatnonzero(left & (reason == code))
+            words.get(code) or document["reasons"][code]: np.flatnonzero(left & (reason == code))
             for code in np.unique(reason[left]).tolist()
         }
         if self.reckoned.unjudged.any() or self.reckoned.not_sampled > 0.0 or empty(self.question):

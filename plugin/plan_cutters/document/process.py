@@ -17,7 +17,9 @@ from plan_cutters.document.setups import OverSetups
 from plan_cutters.domain.change import Step
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.fillet import Fit, Fitting
+from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.preference import by_radius
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE
 from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import filled, vector
@@ -26,6 +28,7 @@ from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
+    SHORT_STEP,
     UNJUDGED_CAUSE,
     FitEntry,
     HelpEntry,
@@ -109,6 +112,8 @@ def _has_images(ready: Prepared, motion: Motion, mine: NDArray[np.bool_]) -> boo
 
 Rows = NDArray[np.int64]
 
+#: A number of a reason that is none: a step for it would be hardly any.
+_SHORT = 1001
 #: Reasons against which a smaller size is tried.
 _BY_SIZE = (LOCAL_GOUGE, REAR_GOUGE, COLLISION)
 #: A face that has less of an area does not speak for the others, mm2, as long as these have most of it.
@@ -161,7 +166,7 @@ def remaining(
     left = ready.finished & ~done
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
-        cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
+        cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
             rows = _speaking(samples.face, np.flatnonzero(mine), area)
@@ -239,6 +244,8 @@ def faces_of(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str
 _PREFERRED = ("process", "fastest", "fewest")
 #: A number of a reason that is none: another orientation would do.
 _OTHER = 1000
+#: How the steps of a cutter cut, in their order.
+_IN_TURN: tuple[Strategy, ...] = ("floor", "mixed", "wall", "point")
 #: Cosine from the setup axis under which a tool comes from below: walls that are drawn out of true by half a degree are walls.
 _BELOW = -0.01
 
@@ -265,13 +272,14 @@ def process_entry(
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
     requested, clamping, name, seconds = float(area.sum()) + not_sampled, None, "", None
+    short = np.zeros(0, np.int64)
     parts = _Parts(ready, over, area, requested)
     if answers.operations is not None:
         chosen, entry = min(
             zip(answers.operations.plans, answers.operations.entry.plans, strict=True),
             key=lambda each: _PREFERRED.index(each[0].name),
         )
-        done, name, seconds = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds
+        done, name, seconds, short = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds, chosen.short
         steps = [*parts.own(answers.operations, chosen, entry), *parts.planned(answers.operations, chosen, entry)]
         if seconds is not None:
             clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
@@ -281,10 +289,9 @@ def process_entry(
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
         none = {"mode": "any", "angles_deg": None, "axis": None, "seconds": None, "clearance_mm": None}
         steps = [parts.step(mine, None, setup=setup, cutter=cutter, **none) for setup, cutter, mine in runs]
-    advice = answers.mends.get(shown)
-    left = remaining(
-        ready, done, reasons(entries, over, steps, done), area, requested, () if advice is None else advice.steps, fitting
-    )
+    advice, why = answers.mends.get(shown), reasons(entries, over, steps, done)
+    why.reason[short] = _SHORT
+    left = remaining(ready, done, why, area, requested, () if advice is None else advice.steps, fitting)
     finished, exempt = float(area[done].sum()), None
     if ready.exempt is not None and ready.exempt.any():
         at_edges = np.where(ready.inside_bodies, 0.0, sampled)
@@ -320,14 +327,15 @@ class _Parts:
         )  # fmt: skip
 
     def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
-        """The steps that were planned: by setup, fixed orientations first, by cutter, the largest area first."""
-        by_cutter: dict[tuple[int, str], float] = {}
-        for each in entry.operations:
-            key = each.setup, each.cutter
-            by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
+        """List the steps that were planned, in the order of a shop.
+
+        Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls,
+        other fixed orientations and simultaneous motion, of each the largest area first.
+        """
+        size = {cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))}
 
         def place(e: OperationEntry | ProcessStep) -> tuple[object, ...]:
-            return e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2
+            return e.setup, size[e.cutter], e.mode != "fixed", _IN_TURN.index(e.strategy), -e.area_mm2
 
         # Operations that are images of each other are one step.
         together = dict[object, list[tuple[int, OperationEntry]]]()

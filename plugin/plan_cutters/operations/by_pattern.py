@@ -30,8 +30,10 @@ from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
-#: Times that differ by less are equal, as a share: of these the fewest steps are taken.
-_EQUAL = 0.02
+#: A plan of repeated steps may take so much more time, as a share: equal copies are cut alike, and are set up once.
+_DEARER = 0.25
+#: What a choice is reckoned to take is not quite what its plan does: by about so much, as a share.
+_NEAR = 0.02
 #: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what another plan leaves, and beyond
 #: what must go with it.
 _MOVING, _MOST_MOVING = 0.05, 0.1
@@ -132,7 +134,7 @@ def _unbroken(task: Task, symmetry: Symmetry) -> bool:
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     """The fastest plan that follows from one copy, with what it is compared with; None where others have to be looked for.
 
-    Orientations are repeated, or each is set once, whichever takes less time, or leaves much less to simultaneous motion. Others
+    Orientations are repeated, unless setting each once takes much less time, or leaves much less to simultaneous motion. Others
     are looked for where one copy does not stand for all, or the plan leaves much to simultaneous motion.
     """
     if not offer.exact:
@@ -151,11 +153,13 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
         plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
     bound = bounded(copied.apart, alone).bound
     timed = against_bound(plan.total, bound, copied.at_best, *copied.apart.cost.shape), copied.area
-    words = (
+    words = [
         "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
         "well, by all samples."
-    )
-    return [plan], timed, worths(task, compared), (words,)
+    ]
+    if plan is not single and known(single) < known(plan) and np.isfinite(single.total):
+        words.append(_without_repeats(single))
+    return [plan], timed, worths(task, compared), tuple(words)
 
 
 def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
@@ -166,28 +170,27 @@ def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
 
 
 def _better(task: Task, plan: OperationPlan, repeated_plan: OperationPlan) -> bool:
-    """Whether a plan takes less time than one of repeated steps, and leaves hardly more to simultaneous motion, or much less."""
+    """Whether a plan takes much less time than one of repeated steps, with hardly more simultaneous motion, or has much less."""
     more = moving_share(task, plan) - moving_share(task, repeated_plan)
-    return (abs(more) <= _MOVING and (1.0 + _EQUAL) * known(plan) < known(repeated_plan)) or more < -_MOVING
+    return (abs(more) <= _MOVING and (1.0 + _DEARER) * known(plan) < known(repeated_plan)) or more < -_MOVING
 
 
 def as_quick(
     task: Task, offer: Repeated | None, plain: tuple[OperationPlan, tuple[str, ...]], printed: list[OperationPlan]
 ) -> tuple[OperationPlan, tuple[str, ...]]:
-    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
+    """The plan that is recommended, and what must be said of it: one of repeated steps, unless that takes a quarter more time.
 
-    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
-    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
-    time is not known, it must be that of no more area.
+    Of those that take no more than that, nor more than those that are printed beside it, that which leaves least to simultaneous
+    motion is taken, if that is hardly more than in the plan that was found; else that plan. Where a time is not known, it must be
+    that of no more area.
     """
     if offer is None:
         return plain
     other, _ = plain
-    most = min((1.0 + _EQUAL) * known(other), *map(known, printed), np.inf)
+    most = min((1.0 + _DEARER) * known(other), *map(known, printed), np.inf)
     share = moving_share(task, other) + _MOVING
     for columns, seconds in offer.recommended:
-        # What the choice is reckoned to take is not quite what its plan does.
-        likely = seconds <= (1.0 + _EQUAL) * most and offer.may_take(columns, most, share)
+        likely = seconds <= (1.0 + _NEAR) * most and offer.may_take(columns, most, share)
         plan = offer.plan(columns) if likely else None
         if plan is None or known(plan) > most or _untimed(task, plan) > _untimed(task, other):
             continue
@@ -195,11 +198,14 @@ def as_quick(
             continue
         if known(plan) <= known(other) or not np.isfinite(other.total):
             return plan, ()
-        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
-        if any(each.mode == "simultaneous" for each in other.operations):
-            words += " and simultaneous motion"
-        return plan, (f"{words} would take {duration(other.total)}.",)
+        return plan, (_without_repeats(other),)
     return plain
+
+
+def _without_repeats(plan: OperationPlan) -> str:
+    """Say what a plan takes that was compared with one of repeated steps."""
+    moving = " and simultaneous motion" if any(each.mode == "simultaneous" for each in plan.operations) else ""
+    return f"Without repeated steps {count(plan.orientations, 'orientation')}{moving} would take {duration(plan.total)}."
 
 
 def known(plan: OperationPlan) -> float:

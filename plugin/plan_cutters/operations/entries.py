@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
-from plan_cutters.operations.fewest import Fewest
 from plan_cutters.operations.rest_areas import Worth
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation, OperationPlan
@@ -16,6 +15,7 @@ from plan_cutters.plan_file.operations import (
     AssumedEntry,
     CutterUse,
     FastestEntry,
+    FewestEntry,
     OperationEntry,
     OperationFace,
     OperationPlanEntry,
@@ -36,7 +36,7 @@ _UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s
 
 def operations_entry(
     task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str] = (),
-    fewest: Fewest | None = None, timed: Timed | None = None, worth: Sequence[Worth] = (),
+    fewest: FewestEntry | None = None, timed: Timed | None = None, worth: Sequence[Worth] = (),
 ) -> OperationsEntry:  # fmt: skip
     """Make the entry of plans.
 
@@ -47,7 +47,7 @@ def operations_entry(
     reason : (n,) uint8
         Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
     notes : sequence of str
-    fewest : Fewest, optional
+    fewest : FewestEntry, optional
     timed : (FastestEntry, float), optional
     worth : sequence of Worth
         Of each cutter, the largest first.
@@ -59,7 +59,7 @@ def operations_entry(
         asked=options.operations or "",  # type: ignore[arg-type]
         rotary=task.orientations[0].names,
         plans=entries,
-        fewest=None if fewest is None else fewest.entry,
+        fewest=fewest,
         fastest=None if timed is None else timed[0],
         cutters=[
             CutterUse(
@@ -108,6 +108,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
         rest=RestEntry(
             samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
             reason_counts={REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)},
+            short=len(plan.short),
         ),
     )  # fmt: skip
 

@@ -26,6 +26,7 @@ from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.one_more import one_more
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.plans import (
@@ -92,7 +93,7 @@ def plan_operations(
     task = _task(ready, everywhere, least)
     if options.process is not None:
         return _own(task, options.process, stage, over, searched)
-    fewest, alone = None, 0
+    fewest, alone, more = None, 0, None
     with stage("operations") as tell:
         offer = _offer(task, part_of(tell, 0, _PARTS))
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
@@ -107,10 +108,13 @@ def plan_operations(
         else:
             search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
             few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
-            plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 2, _PARTS))
+            some = thinned(task)
+            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
+            more = one_more(task, some, search, plans[0], _columns_of(task, plans[0]))
         plans = _proved(task, plans, searched, part_of(tell, 3, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else alone))
-    entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, fewest, timed, worth)
+    few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
+    entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
     columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
     return Operations(entry, task.cutters, tuple(plans), columns, chosen)
 

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +17,9 @@ from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.fewer_steps import Steps, in_one_step, without_minor_steps
 from plan_cutters.operations.labels import joined, labelled, regions_of
-from plan_cutters.operations.passes import Cut, cut_by_tip
+from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import costs_of, paces
 from plan_cutters.operations.workplanes import workplanes
@@ -77,7 +80,9 @@ def plan_with(
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
-    may = finite if rule is None else rule(finite)
+    may = finite.copy() if rule is None else rule(finite)
+    if rule is None:
+        may[rows] &= ~_floors_elsewhere(task, columns, serves[rows])
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
@@ -88,11 +93,15 @@ def plan_with(
     moving = np.full(n, np.nan)
     number, table, moving, others = _simultaneous(task, len(operations), number, table, moving, own)
     operations += others
+    fixed = np.flatnonzero(label >= 0)
+    moving[fixed] = pace[fixed, label[fixed]]
+    made, short = _Made(operations, number, table, moving), rows[:0]
+    if operations and task.ready.options.most_operations is None:
+        made, short = _fewer(task, made, np.where(may, cost, np.inf)[:, order], pace[:, order], own)
+    operations, number, table, moving = made
     region = regions_of(number, edge, area)
     if times:
-        fixed = np.flatnonzero(label >= 0)
-        moving[fixed] = pace[fixed, label[fixed]]
-        return _only_timed(task, name, operations, number, table, region, moving)
+        return _only_timed(task, name, operations, number, table, region, moving, short)
     strip, length, link = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     for k, operation in enumerate(operations):
@@ -110,13 +119,13 @@ def plan_with(
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
-        sum(each.fields["link_seconds"] for each in operations), other,
+        sum(each.fields["link_seconds"] for each in operations), other, short,
     )  # fmt: skip
 
 
 def _only_timed(
     task: Task, name: str, operations: Sequence[Operation], number: NDArray[np.int32], table: NDArray[np.bool_], region: Ints,
-    pace: Floats,
+    pace: Floats, short: Rows,
 ) -> OperationPlan:  # fmt: skip
     """A plan whose times alone are known: links are in the seconds of samples, but for those to its pieces."""
     n, area = len(number), np.nan_to_num(task.ready.samples.area)
@@ -128,7 +137,7 @@ def _only_timed(
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
         name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, none[:, 0],
-        cutting, links, other,
+        cutting, links, other, short,
     )  # fmt: skip
 
 
@@ -228,6 +237,78 @@ def _simultaneous(
         name = f"op{before + len(operations) + 1}"
         operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, step=step))
     return number, table, pace, operations
+
+
+class _Made(NamedTuple):
+    """Operations, and of the samples (n,) the operation, which ones serve (n, k), and what a mm of path cuts, mm2."""
+
+    operations: list[Operation]
+    number: NDArray[np.int32]
+    table: NDArray[np.bool_]
+    pace: Floats
+
+
+def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | None) -> tuple[_Made, Rows]:
+    """Join operations to fewer, and say which samples are left for that: `cost` and `pace` (n, f) are those of the fixed ones.
+
+    Simultaneous motion of any cutter in any setup is an operation that a face of free form may go into.
+    """
+    samples, options, number = task.ready.samples, task.ready.options, made.number
+    area, operations = np.nan_to_num(samples.area), list(made.operations)
+    free_form = _free_form(task, number)
+    if len(free_form) and options.index_step is None and own is None:
+        there = {(each.cutter, each.setup) for each in operations if each.axis is None}
+        operations += [
+            Operation("", "simultaneous", cutter, s, None, None, None, task.rows[:0])
+            for s in range(len(task.everywhere)) for cutter in task.cutters if (cutter, s) not in there
+        ]  # fmt: skip
+    verdicts, open_ = task.everywhere if own is None else own.others, task.ready.machinable
+    for each in operations[cost.shape[1] :]:
+        c, mine = task.cutters.index(each.cutter), each.rows
+        if not each.step:
+            mine = task.rows[(verdicts[each.setup][each.cutter].reached & open_[each.setup])[task.rows]]
+        column = np.full((len(number), 2), np.nan)
+        column[mine, 0] = _moving_pace(task, c, each.setup, mine)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            column[mine, 1] = area[mine] / (column[mine, 0] * task.paths.speeds([each.cutter])[0])
+        pace = np.column_stack([pace, column[:, 0]])
+        cost = np.column_stack([cost, np.where(np.isfinite(column[:, 1]), column[:, 1], np.inf)])
+    group = np.array([-1 - k if each.orbit < 0 else each.orbit for k, each in enumerate(operations)])
+    planned = np.array([not each.step for each in operations])
+
+    @cache
+    def spent(used: tuple[int, ...]) -> float:
+        return _other(task, workplanes([operations[k] for k in used], task.ready, task.indexing))
+
+    steps = Steps(cost, group, planned, area, task.paths.feed is not None, spent)
+    somewhere = np.logical_or.reduce([its[each].reached & open_[s] for s, its in enumerate(verdicts) for each in task.cutters])
+    fewer = in_one_step(steps, number, samples.face, free_form)
+    fewer = without_minor_steps(steps, fewer, incomplete=bool((task.ready.finished & ~somewhere).any()))
+    return (made, task.rows[:0]) if np.array_equal(fewer, number) else _made_of(operations, fewer, made, pace, area)
+
+
+def _free_form(task: Task, number: NDArray[np.int32]) -> list[int]:
+    """The faces of free form that several operations cut, the largest first."""
+    face, area = task.ready.samples.face, np.nan_to_num(task.ready.samples.area)
+    size, shape = np.bincount(face, area), task.ready.scene.part.faces
+    pairs = np.unique(np.column_stack([face, number])[number >= 0], axis=0)[:, 0]
+    several = np.unique(pairs[1:][pairs[1:] == pairs[:-1]]).tolist()
+    return sorted((each for each in several if shape[each - 1].shape == "sculptured"), key=lambda each: -size[each])
+
+
+def _made_of(operations: Sequence[Operation], number: Ints, made: _Made, pace: Floats, area: Floats) -> tuple[_Made, Rows]:
+    """What is made of operations that samples (n,) go with now, in the order in which operations stand, and what is left."""
+    used = np.unique(number[number >= 0]).tolist()
+    size = np.bincount(number[number >= 0], area[number >= 0], len(operations))
+    used.sort(key=lambda k: (operations[k].axis is None, -size[k] if operations[k].axis is not None else k))
+    place, n = np.full(len(operations) + 1, -1, np.int32), len(number)
+    place[used] = np.arange(len(used))
+    renumbered = [replace(operations[k], name=f"op{i}", rows=np.flatnonzero(number == k)) for i, k in enumerate(used, 1)]
+    table = np.column_stack([
+        made.table[:, k] if operations[k].axis is not None else number == k for k in used
+    ]) if used else np.zeros((n, 0), bool)  # fmt: skip
+    own = np.where(number >= 0, pace[np.arange(n), np.maximum(number, 0)], np.nan) if used else np.full(n, np.nan)
+    return _Made(renumbered, place[number], table, own), np.flatnonzero((made.number >= 0) & (number < 0))
 
 
 def _moving_pace(task: Task, c: int, s: int, rows: Rows) -> Floats:
@@ -347,13 +428,40 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
     return columns.of(np.array(picked, np.int64))
 
 
-def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
-    """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
+def costs_with(task: Task, columns: Columns, *, chosen: bool = False) -> tuple[Floats, Floats]:
+    """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it.
+
+    Of columns that were `chosen` together, none cuts by its flank what others cut as a floor of their setup.
+    """
     rows, every = task.rows, task.images(columns)
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
-    cost = costs_of(every, _paces(task, every, serves), serves, area, task.cutters, task.paths)
+    may = serves & ~_floors_elsewhere(task, every, serves) if chosen else serves
+    cost = costs_of(every, _paces(task, every, serves), may, area, task.cutters, task.paths)
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
+
+
+def _floors_elsewhere(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where columns (r, k) turn the part to cut by the flank what others cut as a floor of their setup, without a turn.
+
+    Where the floor is one of the setup itself, such a wall is none anyway.
+    """
+    samples, rows, accuracy = task.ready.samples, task.rows, task.paths.accuracy
+    normal, curvature, floor = samples.normal[rows], samples.curvature[rows], np.zeros((len(task.everywhere), len(rows)), bool)
+    if len(floor) < 2 or not len(columns):
+        return np.zeros(serves.shape, bool)
+    setups = np.array([each.setup for each in task.ready.setups])[columns.setup]
+    upright = (columns.axis * setups).sum(axis=1) >= math.cos(accuracy)
+    for k in np.flatnonzero(upright).tolist():
+        cutter, s, axis = task.cutters[columns.cutter[k]], columns.setup[k], np.broadcast_to(columns.axis[k], normal.shape)
+        floor[s] |= serves[:, k] & on_floor(cutter, normal, curvature, axis, accuracy, task.paths.scallop)
+    others = np.array([np.delete(floor, s, axis=0).any(axis=0) for s in range(len(floor))])[columns.setup].T & ~upright
+    flank = np.zeros(serves.shape, bool)
+    at = np.flatnonzero((others & serves).any(axis=1))
+    if len(at):
+        by_tip = paces(columns, rows[at], samples, task.cutters, task.paths, serves[at])
+        flank[at] = task.walls.cached(columns, rows)[at] > np.nan_to_num(by_tip)
+    return others & flank
 
 
 def _paces(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
@@ -367,7 +475,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
 
     The one that saves least goes first; what it served goes with the others.
     """
-    (area, cost), columns_left = costs_with(task, columns), np.arange(len(columns))
+    (area, cost), columns_left = costs_with(task, columns, chosen=True), np.arange(len(columns))
     least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
     turn = task.together(columns) / max(1, len(columns))
     while len(columns_left) > 1:

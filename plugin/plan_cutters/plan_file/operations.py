@@ -144,12 +144,17 @@ class OperationEntry(Frozen):
 
 
 class RestEntry(Frozen):
-    """Judged samples that no operation finishes: no cutter of the plan reaches them."""
+    """Judged samples that no operation finishes: no cutter of the plan reaches them, or a step for them would be hardly any."""
 
     samples: int
     area_mm2: float
     share: float
     reason_counts: dict[str, int] = Field(description="why the first cutter of the plan does not reach them")
+    short: int = Field(
+        default=0,
+        description="of the samples, reached ones: left because a step for them would take less than 1 s, or cut less than "
+        "0.1 mm2; 0.1 % of the area together at most, and none where all else is finished",
+    )
 
 
 class AssumedEntry(Frozen):
@@ -197,6 +202,15 @@ class OperationPlanEntry(Frozen):
     )
 
 
+class OneMoreEntry(Frozen):
+    """One more orientation beside the fewest would save this much time."""
+
+    saves_seconds: float = Field(description="of the fewest plan, by a plan with it: more than a minute, and than a tenth of it")
+    cutter: str
+    setup: int = Field(description="0 for the first setup, then the others in their order")
+    angles_deg: dict[str, float]
+
+
 class FewestEntry(Frozen):
     """How few orientations there can be, with what proves it.
 
@@ -214,6 +228,9 @@ class FewestEntry(Frozen):
     candidates: int = Field(description="their angles are in operations.npz")
     spacing_deg: float = Field(description="between candidates where the weights lie")
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
+    one_more: OneMoreEntry | None = Field(
+        default=None, description="the orientation that saves most beside them; null: none saves so much, or there is no feed"
+    )
 
 
 class FastestEntry(Frozen):
@@ -264,8 +281,8 @@ class OperationsEntry(Frozen):
     notes: list[str]
 
 
-#: Causes beside the reasons for which samples are not reached: not judged, or reached but in no step.
-UNJUDGED_CAUSE, NOT_PLANNED = "unjudged", "not_planned"
+#: Causes beside the reasons for which samples are not reached: not judged, reached but in no step, or hardly a step.
+UNJUDGED_CAUSE, NOT_PLANNED, SHORT_STEP = "unjudged", "not_planned", "short_step"
 #: Why a step of the planner's own leaves something: another orientation of its cutter would reach it.
 OTHER_ORIENTATION = "orientation"
 
@@ -298,7 +315,8 @@ class RemainingEntry(Frozen):
     """An area that no step finishes, for one cause."""
 
     cause: str = Field(
-        description="a code of `reasons`; `unjudged`; `not_planned`: a cutter reaches it, and no step takes it; "
+        description="a code of `reasons`; `unjudged`; `not_planned`: a cutter reaches it, and no step takes it; `short_step`: "
+        "left because a step for it would take less than 1 s, or cut less than 0.1 mm2; "
         "`orientation`, of what a step leaves: its cutter reaches it in this setup, and not with this axis"
     )
     area_mm2: float
@@ -388,7 +406,10 @@ class NextEntry(Frozen):
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
-    steps: list[ProcessStep] = Field(description="the planner's own first, then by setup and, in a setup, by cutter")
+    steps: list[ProcessStep] = Field(
+        description="the planner's own first, then by setup; in a setup by cutter, the largest first, and with a cutter floors, "
+        "walls, other fixed orientations, simultaneous motion"
+    )
     plan: str = Field(default="", description="the name of the plan of operations that the steps are; empty: no operations")
     finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float

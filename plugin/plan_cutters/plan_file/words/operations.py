@@ -46,7 +46,8 @@ def in_short(plan: Plan) -> list[str]:
 def _rest(operations: OperationsEntry) -> Iterator[str]:
     rest = operations.plans[0].rest
     if rest.samples:
-        yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
+        short = f", but for {count(rest.short, 'sample')} for which a step would take less than 1 s" if rest.short else ""
+        yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it{short}."
     # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
     first = operations.plans[0]
     most = first.orientations if operations.fewest is None else operations.fewest.found
@@ -72,6 +73,22 @@ def _fewest(operations: OperationsEntry) -> Iterator[str]:
         return
     verb = "finishes" if few.found == 1 else "finish"
     yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{_proved(few)}"
+    if saving := one_more(operations):
+        yield saving
+
+
+def one_more(operations: OperationsEntry | None) -> str:
+    """Say what one more orientation than the fewest would save; empty where that is little, or not known."""
+    more = None if operations is None or operations.fewest is None else operations.fewest.one_more
+    plan = None if operations is None else next((each for each in operations.plans if each.name == "fewest"), None)
+    if operations is None or more is None or plan is None or plan.seconds is None:
+        return ""
+    angles = " ".join(f"{name} {angle:g}" for name, angle in more.angles_deg.items())
+    where = f" in setup {more.setup + 1}" if more.setup or _setups(operations) else ""
+    return (
+        f"One more orientation, {angles} with {more.cutter}{where}, would save {duration(more.saves_seconds)} of "
+        f"{duration(plan.seconds)} [--operations fastest]."
+    )
 
 
 def _proved(few: FewestEntry) -> str:

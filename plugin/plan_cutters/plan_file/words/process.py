@@ -12,6 +12,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
+    SHORT_STEP,
     UNJUDGED_CAUSE,
     NextEntry,
     ProcessEntry,
@@ -35,7 +36,9 @@ _LITTLE = 0.005
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
-_OTHER_CAUSES = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step"}
+_OTHER_CAUSES = {
+    UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "because a step for it would take less than 1 s"
+}  # fmt: skip
 #: Steps of the planner's own whose faults are told.
 _OWN_STEPS = 3
 #: A step that leaves less of what it is asked does all, as a share: crumbs at borders are no fault.

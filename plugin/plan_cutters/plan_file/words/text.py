@@ -15,7 +15,7 @@ from plan_cutters.plan_file.words.headline import Headline, could_not, headline
 from plan_cutters.plan_file.words.names import Line, named, short_names
 from plan_cutters.plan_file.words.next_steps import together
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import in_short, operations
+from plan_cutters.plan_file.words.operations import in_short, one_more, operations
 from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import (
     in_summary,
@@ -198,6 +198,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
         wrapped([in_summary(plan)] if process and in_summary(plan) else [], 2),
         process.table() if process else [],
+        wrapped([named(plan, one_more(plan.operations))] if plan.process and plan.process.plan == "fewest" else [], 3),
         wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],
         wrapped(list(process.next), 3) if process else [],
         wrapped(list(process.remaining[process.much :]), _LEFT) if process else [],
