@@ -130,7 +130,7 @@ def floor_patterns(
     # What no place of the tool covers is no fault of a pattern.
     covered = face.intersection(grown(grown(face, flat).difference(blocked), flat))
     border = _lines(grown(walls, 0.5 * diameter).boundary.intersection(face)) if walls else []
-    # The passes beside a first pass along the walls have the rest of the floor, the step-over away from it.
+    # The passes after a first one along the walls have the rest of the floor, the step-over away from it.
     rest = face.difference(shapely.union_all([grown(each, (2.0 * STEPOVER - 1.0) * flat) for each in border]))
     patterns: list[Iterable[list[LineString]]] = [_rings(face, flat, 0.5 * diameter), _round(face)]
     for turned, beyond in product((0.0, 90.0), (None, 0.0, 0.5 * flat)):

@@ -102,13 +102,13 @@ def blocks() -> Iterator[Case]:
 
 def leaning() -> Iterator[Case]:
     """Parts of planes that are cut in more than one orientation."""
-    lean = math.radians(15)
-    foot = 20 - 20 * math.tan(lean)
+    tilt = math.radians(15)
+    foot = 20 - 20 * math.tan(tilt)
     tail = cq.Workplane("XZ").polyline([(-foot, 0), (foot, 0), (20, 20), (-20, 20)]).close().extrude(60)
     flank, end = LineString([(0, 0), (60, 0)]), LineString([(0, 0), (40, 0)])
     path = total(
         floor(rectangle(40, 60), D16[0]),
-        wall(flank, D16[0], 20 / math.cos(lean), D16[1]).times(2),
+        wall(flank, D16[0], 20 / math.cos(tilt), D16[1]).times(2),
         wall(end, D16[0], 20, D16[1]).times(2),
     )
     yield Case("dovetail", tail, (*tools(D16), *but(tail, bottoms)), 1, 3, path)
@@ -221,8 +221,8 @@ def curved() -> Iterator[Case]:
     deep, hollow = 8.0, 25.0
     dish = block(80, 60, 30).cut(cq.Workplane().sphere(hollow).translate((0, 0, 30 + hollow - deep)))
     rim = math.sqrt(2 * hollow * deep - deep**2)
-    around = math.degrees(math.asin(rim / hollow))
-    bowl = ball_about(Profile.arc((0, hollow), hollow, -90, around - 90, hollow=True), R5, SCALLOP)
+    opening = math.degrees(math.asin(rim / hollow))
+    bowl = ball_about(Profile.arc((0, hollow), hollow, -90, opening - 90, hollow=True), R5, SCALLOP)
     top = floor(rectangle(80, 60).difference(circle(rim)), D16[0])
     path = total(top, wall(rectangle(80, 60), D16[0], 30, D16[1]), bowl)
     yield Case("mould half", dish, (*tools(D16), "--cutter", BALL, *but(dish, bottoms)), 1, 1, path)
@@ -237,7 +237,7 @@ def curved() -> Iterator[Case]:
     run = block(100, 40, 40).cut(block(100, 40, 40).edges("|X and <Y and <Z").fillet(8).translate((0, 15, 15)))
     path = ball_along(Profile.arc((0, 0), 8, 180, 270, hollow=True), 100, R5, SCALLOP)
     words = ("--cutter", BALL, *but(run, lambda f: f.geomType() != "CYLINDER"))
-    yield Case("fillet run, hollow, radius 8", run, words, 1, 1, path)
+    yield Case("hollow fillet of radius 8, three axes", run, words, 1, 1, path, UPRIGHT)
 
     boss = cq.Workplane().circle(25).extrude(20).faces(">Z").edges().fillet(4)
     path = ball_about(Profile.arc((21, 16), 4, 0, 90), R5, SCALLOP)

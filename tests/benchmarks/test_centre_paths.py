@@ -50,8 +50,8 @@ def test_the_centre_runs_round_a_pin_on_a_larger_circle_and_in_a_bore_on_a_small
 
 
 def test_a_pocket_is_shorter_for_the_centre_by_a_circle_of_the_tool_and_a_block_longer():
-    around = 2 * (60 + 40) - (8 - math.tau) * 7
-    assert wall(rectangle(60, 40, 7), 12, 10, 26, inside=True).length == pytest.approx(around - math.tau * 6, rel=1e-3)
+    girth = 2 * (60 + 40) - (8 - math.tau) * 7
+    assert wall(rectangle(60, 40, 7), 12, 10, 26, inside=True).length == pytest.approx(girth - math.tau * 6, rel=1e-3)
     for radius in (0.0, 3.0):
         boss = wall(rectangle(60, 40, radius), 12, 10, 26)
         assert boss.length == pytest.approx(200 - (8 - math.tau) * radius + math.tau * 6, rel=1e-3)
