@@ -11,8 +11,9 @@ from plan_cutters.scene.obstacles import Obstacles
 Rows = NDArray[np.int64]
 #: Directions in which a face is measured at a sample, over half a turn from that of the larger curvature.
 DIRECTIONS = 12
-#: Samples of a face at which it is measured, at most about; others take what the nearest one has.
-_OF_A_FACE = 200
+#: Samples of a face at which it is measured, at most about, and of one of many triangles, by how many these are together; others
+#: take what the nearest one has.
+_OF_A_FACE, _AT_LEAST, _TOGETHER = 200, 16, 100_000
 
 
 class Extents:
@@ -74,7 +75,8 @@ class Extents:
         vertex = np.ascontiguousarray(triangles.vertex[triangles.face == number])
         if not len(known) or not len(vertex):
             return
-        some = known[:: 1 + len(known) // _OF_A_FACE]
+        most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
+        some = known[:: 1 + len(known) // most]
         first, second = self._frame(some)
         point, normal = np.ascontiguousarray(samples.point[some]), np.ascontiguousarray(samples.normal[some])
         near = 2.0 * triangles.chord_error + 1e-6

@@ -10,6 +10,8 @@ from plan_cutters.kernels.linear.vectors import cross
 
 #: Distances from the plane below which a corner lies in it, mm.
 _IN_PLANE = 1e-9
+#: Ends of pieces are the same within this, mm.
+_SAME = 1e-7
 
 
 class _Pieces(NamedTuple):
@@ -22,13 +24,18 @@ class _Pieces(NamedTuple):
 @kernel
 def _crossing(triangle, point, frame, ends):
     """Write the piece of a triangle in the plane of two of a frame (3, 3): along, over, across; whether there is one."""
-    found = 0
+    found, through = 0, 0.0
+    for k in range(3):
+        through += point[k] * frame[2, k]
+    first = triangle[0, 0] * frame[2, 0] + triangle[0, 1] * frame[2, 1] + triangle[0, 2] * frame[2, 2] - through
+    second = triangle[1, 0] * frame[2, 0] + triangle[1, 1] * frame[2, 1] + triangle[1, 2] * frame[2, 2] - through
+    third = triangle[2, 0] * frame[2, 0] + triangle[2, 1] * frame[2, 1] + triangle[2, 2] * frame[2, 2] - through
+    if min(first, second, third) > _IN_PLANE or max(first, second, third) < -_IN_PLANE:
+        return False
+    off = (first, second, third)
     for i in range(3):
         j = (i + 1) % 3
-        s, t = 0.0, 0.0
-        for k in range(3):
-            s += (triangle[i, k] - point[k]) * frame[2, k]
-            t += (triangle[j, k] - point[k]) * frame[2, k]
+        s, t = off[i], off[j]
         if abs(s) <= _IN_PLANE:
             share = 0.0
         elif s * t < 0.0 and abs(t) > _IN_PLANE:
@@ -56,39 +63,34 @@ def _away(ends):
 
 
 @kernel
-def _count(pieces, many, which):
-    """Count a piece, with others that are the same; its length."""
-    ends, counted = pieces
-    for i in range(many):
-        same = True
-        for k in range(4):
-            same = same and abs(ends[i, k] - ends[which, k]) <= 1e-7
-        turned = True
-        for k in range(4):
-            turned = turned and abs(ends[i, k] - ends[which, (k + 2) % 4]) <= 1e-7
-        if same or turned:
-            counted[i] = True
-    return math.hypot(ends[which, 2] - ends[which, 0], ends[which, 3] - ends[which, 1])
+def _long(ends):
+    return math.hypot(ends[2] - ends[0], ends[3] - ends[1])
 
 
 @kernel
-def _onwards(pieces, many, x, y, gap):
-    """The length of what goes on from a place, piece by piece."""
+def _onwards(pieces, many, which, end, gap):
+    """The length of what goes on from an end, 0 or 2, of a piece. Pieces that are there twice are counted once."""
     ends, counted = pieces
     length = 0.0
     while True:
-        best, nearest, end = -1, gap, 0
+        x, y, back_x, back_y = ends[which, end], ends[which, end + 1], ends[which, 2 - end], ends[which, 3 - end]
+        best, nearest, begin = -1, gap * gap, 0
         for i in range(many):
             if counted[i]:
                 continue
             for k in (0, 2):
-                away = math.hypot(ends[i, k] - x, ends[i, k + 1] - y)
+                off_x, off_y = ends[i, k] - x, ends[i, k + 1] - y
+                away = off_x * off_x + off_y * off_y
                 if away <= nearest:
-                    best, nearest, end = i, away, k
+                    if abs(ends[i, 2 - k] - back_x) + abs(ends[i, 3 - k] - back_y) <= _SAME and away <= _SAME * _SAME:
+                        counted[i] = True
+                        break
+                    best, nearest, begin = i, away, k
         if best < 0:
             return length
-        length += _count(pieces, many, best)
-        x, y = ends[best, 2 - end], ends[best, 3 - end]
+        counted[best] = True
+        length += _long(ends[best])
+        which, end = best, 2 - begin
 
 
 @entry
@@ -125,12 +127,12 @@ def sections(point, along, normal, vertex, near, gap, connected, whole):
         if first < 0:
             continue
         pieces.counted[:many] = False
-        ends = pieces.ends
-        length = _count(pieces, many, first)
-        length += _onwards(pieces, many, ends[first, 0], ends[first, 1], gap)
-        length += _onwards(pieces, many, ends[first, 2], ends[first, 3], gap)
+        pieces.counted[first] = True
+        length = _long(pieces.ends[first])
+        for end in (0, 2):
+            length += _onwards(pieces, many, first, end, gap)
         connected[i] = length
         for k in range(many):
             if not pieces.counted[k]:
-                length += _count(pieces, many, k)
+                length += _long(pieces.ends[k])
         whole[i] = length
