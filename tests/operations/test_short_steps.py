@@ -13,8 +13,14 @@ from plan_cutters_check.asking import question_of
 from plan_cutters_check.check import check
 
 HOW = {
-    "cutters": ["D6L40F20"], "fixtures": "table", "machine": "trunnion-ac", "feed": 1000.0, "grid": 4, "area_budget": 0, "operations": "fastest",
-}  # fmt: skip
+    "cutters": ["D6L40F20"],
+    "fixtures": "table",
+    "machine": "trunnion-ac",
+    "feed": 1000.0,
+    "grid": 4,
+    "area_budget": 0,
+    "operations": "fastest",
+}
 
 
 def slivered():
