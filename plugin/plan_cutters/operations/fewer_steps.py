@@ -20,7 +20,7 @@ MINOR_SHARE, MINOR_SECONDS = 0.01, 5.0
 #: A step of less area, mm2, or of less time, s, and less than a share of the area, is none where something is left anyway.
 LEAST_AREA, LEAST_SECONDS, LEAST_SHARE = 0.1, 1.0, 0.001
 #: A step that serves so much of a face of free form takes it, where that costs no more than this share of the face's time.
-_WHOLE_FACE, _MORE = 0.95, 0.1
+WHOLE_FACE, _MORE = 0.95, 0.1
 #: Seconds that count as nothing.
 _NOTHING = 1e-9
 
@@ -104,7 +104,7 @@ def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]
             continue
         serves, area = np.isfinite(steps.cost[rows]), steps.area[rows]
         tried = [number]
-        for k in np.flatnonzero((area @ serves >= _WHOLE_FACE * area.sum()) & steps.free).tolist():
+        for k in np.flatnonzero((area @ serves >= WHOLE_FACE * area.sum()) & steps.free).tolist():
             tried.append(number.copy())
             tried[-1][rows[serves[:, k]]] = k
         total = [steps.total(each) for each in tried]

@@ -1,4 +1,4 @@
-"""What one more orientation would save beside the fewest: they are sought without a look at time."""
+"""Look for the one orientation more that saves most: the fewest are sought without a look at time."""
 
 import numpy as np
 

@@ -24,6 +24,7 @@ from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
+from plan_cutters.operations.fewer_steps import WHOLE_FACE
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.one_more import one_more
@@ -170,13 +171,23 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
     if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
         notes.append(f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.")
-    moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
+    moving = max(_moving_for_rest(ready, plan) for plan in plans)
     if options.most_operations is None and alone is not None and moving > alone:
         notes.append(
             f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
             "--most-operations with a large number takes all."
         )
     return notes
+
+
+def _moving_for_rest(ready: Prepared, plan: OperationPlan) -> int:
+    """How many samples go with simultaneous motion as the rest of fixed orientations: not those of a face that it takes whole."""
+    area, face = np.nan_to_num(ready.samples.area), ready.samples.face
+    rows = np.concatenate([np.zeros(0, np.int64), *(each.rows for each in plan.operations if each.mode == "simultaneous")])
+    cut, most = plan.label >= 0, int(face.max(initial=0)) + 1
+    mine, whole = np.bincount(face[rows], area[rows], most), np.bincount(face[cut], area[cut], most)
+    taken = (mine >= WHOLE_FACE * whole) & (whole >= MINOR_AREA * whole.sum())
+    return int((~taken[face[rows]]).sum())
 
 
 def _own(

@@ -82,7 +82,7 @@ def plan_with(
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
     may = finite.copy() if rule is None else rule(finite)
     if rule is None:
-        may[rows] &= ~_floors_elsewhere(task, columns, serves[rows])
+        may[rows] &= ~_floors_of_other_setups(task, columns, serves[rows])
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
@@ -435,13 +435,13 @@ def costs_with(task: Task, columns: Columns, *, chosen: bool = False) -> tuple[F
     """
     rows, every = task.rows, task.images(columns)
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
-    may = serves & ~_floors_elsewhere(task, every, serves) if chosen else serves
+    may = serves & ~_floors_of_other_setups(task, every, serves) if chosen else serves
     cost = costs_of(every, _paces(task, every, serves), may, area, task.cutters, task.paths)
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
 
-def _floors_elsewhere(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _floors_of_other_setups(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Where columns (r, k) turn the part to cut by the flank what others cut as a floor of their setup, without a turn.
 
     Where the floor is one of the setup itself, such a wall is none anyway.

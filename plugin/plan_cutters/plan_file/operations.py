@@ -229,7 +229,7 @@ class FewestEntry(Frozen):
     spacing_deg: float = Field(description="between candidates where the weights lie")
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
     one_more: OneMoreEntry | None = Field(
-        default=None, description="the orientation that saves most beside them; null: none saves so much, or there is no feed"
+        default=None, description="the orientation that saves most in addition; null: none saves so much, or there is no feed"
     )
 
 
