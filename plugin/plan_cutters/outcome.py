@@ -43,8 +43,8 @@ class Operation:
     orbit : int
         Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     moving : ((n, 3) float, (n,) int32), optional
-        Of a simultaneous one that was looked at between the samples: the unit tool axis of the proposed field at each sample, nan
-        where there is none; and the connected proved piece about it, the largest first, -1: nothing is proved there.
+        Of a simultaneous one: the unit tool axis of the proposed field at each sample, nan where there is none; and the connected
+        proved piece about it, the largest first, -1: nothing is proved there.
     fields : mapping
         Of its entry in the plan file, by their names, as far as they are known by now.
     """

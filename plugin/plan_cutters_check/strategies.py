@@ -35,7 +35,9 @@ def contacts_at(question: Question, reckoned: Reckoned, k: int, each: Mapping[st
     """Where the tool of an operation of plan k touches as it cuts samples (m,), with axes (m, 3): on walls as is written."""
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
     if each["mode"] != "fixed":
-        point += question.shift(each["cutter"])[rows]
+        # The posture that was found may touch elsewhere than at the sample; other axes touch there.
+        found = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
+        point[found] += question.shift(each["cutter"])[rows[found]]
     tilt_direction = reckoned.array(k, "lean")[rows].copy()
     mine = reckoned.array(k, "strategy")[rows] == WALL
     point[mine] = reckoned.array(k, "contact")[rows[mine]]

@@ -25,6 +25,7 @@ from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
     MINOR_AREA,
@@ -287,7 +288,8 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
+                Problems(ready.samples, cutters, paths, indexing, walls), walls,
+                MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths))  # fmt: skip
 
 
 def _first(task: Task, spacing: float = STEP) -> Columns:

@@ -13,7 +13,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
-from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.task import Task
@@ -85,7 +85,7 @@ def plan_with(
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
     strip = np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
-    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip, own)
+    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip, own, smooth=not times)
     operations += others
     speed = np.full(n, np.nan)
     if task.paths.feed is not None:
@@ -156,7 +156,7 @@ class Motion:
 
 
 def moving_over(task: Task, rows: Rows) -> Motion:
-    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in the posture found."""
+    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in its widest passes."""
     n = len(rows)
     motion = Motion(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, np.nan))
     for s, verdicts in enumerate(task.everywhere):
@@ -164,38 +164,41 @@ def moving_over(task: Task, rows: Rows) -> Motion:
             mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
             if len(mine):
                 motion.cutter[mine], motion.setup[mine] = c, s
-                motion.width[mine] = _moving_width(task, c, s, rows[mine])
+                motion.width[mine] = task.moving.widest(c, s, rows[mine])[1]
     return motion
 
 
 def _simultaneous(
-    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats, own: Reserved | None
-) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
-    """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
+    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats, own: Reserved | None, *,
+    smooth: bool,
+) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:  # fmt: skip
+    """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations.
+
+    With `smooth`, axes are those of a field, else those of the widest passes.
+    """
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
-    pieces = [(step, c, s, rows, _moving_width(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
+    pieces = list(own.moving if own else ())
     if own is None or not own.leave:
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
         motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
         for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
-            chosen = (motion.cutter == c) & (motion.setup == s)
-            pieces += [(0, c, s, rest[chosen], motion.width[chosen])] if c >= 0 else []
-    for step, c, s, mine, width in pieces:
+            pieces += [(0, c, s, rest[(motion.cutter == c) & (motion.setup == s)])] if c >= 0 else []
+    for step, c, s, mine in pieces:
         if not len(mine):
             continue
+        moving = None
+        if smooth:
+            axis, width = task.moving.smooth(c, s, mine)
+            moving = axis, np.full(len(number), -1, np.int32)
+        else:
+            width = task.moving.widest(c, s, mine)[1]
         number[mine], strip[mine] = before + len(operations), width
         column = np.zeros((len(number), 1), bool)
         column[mine] = True
         table = np.concatenate([table, column], axis=1)
         name = f"op{before + len(operations) + 1}"
-        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, step=step))
+        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, step=step, moving=moving))
     return number, table, strip, operations
-
-
-def _moving_width(task: Task, c: int, s: int, rows: Rows) -> Floats:
-    """Width of a pass at samples (m,), mm, by a cutter in the postures that were found for it in a setup."""
-    cutter = task.cutters[c]
-    return tip_widths(cutter, task.ready.samples, rows, task.everywhere[s][cutter].axis[rows], task.paths)[0]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -250,8 +253,8 @@ def _held(task: Task, operation: Operation) -> Verdicts:
     if operation.axis is not None:
         context = Context.of(operation.cutter, task.ready.setups[operation.setup])
         return held_at(operation.axis[None], number, samples, context)
-    verdicts = task.everywhere[operation.setup][operation.cutter]
-    return replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
+    assert operation.moving is not None, "only what is looked at closely is put down"
+    return task.moving.held(task.cutters.index(operation.cutter), operation.setup, operation.rows, operation.moving[0])
 
 
 def clearance_of(task: Task, operation: Operation) -> float | None:

@@ -11,6 +11,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.timing import Paths, Problems
@@ -40,6 +41,7 @@ class Task:
     indexing : Indexing
     problems : Problems
     walls : Walls
+    moving : MovingAxes
     symmetry : Symmetry, optional
         Under which each column stands for itself and its images; None: for itself alone.
     copies : int
@@ -56,6 +58,7 @@ class Task:
     indexing: Indexing
     problems: Problems
     walls: Walls
+    moving: MovingAxes
     symmetry: Symmetry | None = None
     copies: int = 1
 
