@@ -99,6 +99,7 @@ class PlanOptions(SceneOptions, total=False):
     change_time: float
     setup_time: float
     overlap: float
+    border_cost: float
     most_operations: int | None
     sharp_edges: SharpEdges
     effort: Effort
@@ -126,7 +127,8 @@ _LONGEST, _MOST_JOBS = 1e6, 1024
 _RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1, 1e6, "mm/min"),
              "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
              "index_step": (0.5, 90.0, "deg"), "axis_accuracy": (0.0, 1.0, "deg"), "index_time": (0.0, 1e5, "s"),
-             "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
+             "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm"),
+             "border_cost": (0.0, 1e3, "s/mm")}  # fmt: skip
 #: The least and the largest value of the other numbers, and what is said of one beyond them.
 _LIMITS = {
     "grid": (2, 5000, "must lie between 2 and 5000 samples a side"),
@@ -237,6 +239,9 @@ class Options:
         Seconds that another cutter and another setup take.
     overlap : float
         Width by which operations overlap at a common border, mm.
+    border_cost : float
+        Seconds that each mm of a border between two operations on a face that is bent in both directions counts where plans are
+        compared: the border shows as a mark. They are no part of the times that are written.
     most_operations : int, optional
         Fixed orientations at most: the rest is left to simultaneous motion.
     sharp_edges : str
@@ -314,6 +319,7 @@ class Options:
     change_time: float = 20.0
     setup_time: float = 300.0
     overlap: float = 2.0
+    border_cost: float = 0.05
     most_operations: int | None = None
     sharp_edges: SharpEdges = "asked"
     effort: Effort = "normal"

@@ -1,5 +1,6 @@
 """Answers and the plan of operations follow the verdicts: here they are, with the samples of each operation."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -97,6 +98,8 @@ class OperationPlan:
         straight. nan where it touches at the sample itself.
     cutting, other : float
         Seconds of all cutting, nan where one of them is not known; and of all orientations, of changes of cutters and of setups.
+    marks : float
+        Seconds that borders on free-form faces count where plans are compared (`--border-cost`).
     """
 
     name: str
@@ -111,11 +114,17 @@ class OperationPlan:
     contact: Floats
     cutting: float
     other: float
+    marks: float = 0.0
 
     @property
     def total(self) -> float:
         """Seconds of all that is counted; nan where they are not known."""
         return self.cutting + self.other
+
+    @property
+    def price(self) -> float:
+        """Seconds by which plans are compared: the total, and what borders on free-form faces count; infinite if not known."""
+        return self.total + self.marks if math.isfinite(self.total) else math.inf
 
     @property
     def alone(self) -> NDArray[np.bool_]:

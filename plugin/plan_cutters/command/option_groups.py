@@ -444,6 +444,13 @@ _OPTIONS = (
         "--overlap", type=float, default=2.0, metavar="MM", help="Overlap of operations at a common border.  [default: 2]"
     ),
     _operations(
+        "--border-cost",
+        type=float,
+        default=0.05,
+        metavar="S",
+        help="Seconds that a mm of border between operations on a free-form face counts in comparisons.  [default: 0.05]",
+    ),
+    _operations(
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(

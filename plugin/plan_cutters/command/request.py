@@ -95,6 +95,7 @@ class PlanningRequest(JudgingRequest):
     change_time: float
     setup_time: float
     overlap: float
+    border_cost: float
     most_operations: int | None
     max_orientations: int
     patterns: bool
@@ -203,6 +204,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "change_time": request.change_time,
         "setup_time": request.setup_time,
         "overlap": request.overlap,
+        "border_cost": request.border_cost,
         "most_operations": request.most_operations,
         "max_orientations": request.max_orientations,
         "patterns": request.patterns,

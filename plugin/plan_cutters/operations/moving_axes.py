@@ -102,8 +102,7 @@ class MovingAxes:
     def widest(self, cutter: int, setup: int, rows: Rows) -> tuple[Floats, Floats]:
         """Axes (m, 3) of wide passes at samples (m,) that a cutter reaches in a setup, and the widths (m,) of these, mm.
 
-        Each is the posture that was found, or was tested free. No pass is narrower than that of the posture that was found, but
-        where this has too little room to the gouging bound.
+        Each is the posture that was found, or was tested free, and no pass is narrower than with that by more than a tenth.
         """
         if (cutter, setup) not in self._known:
             n = len(self._samples)
@@ -189,6 +188,8 @@ def _widest(test: _Test, rows: Rows, found: Floats, along: Floats) -> Floats:
     axis = np.concatenate([found[:, None], axis.reshape(len(rows), -1, 3)], axis=1)
     every, flat = np.repeat(rows, axis.shape[1]), axis.reshape(-1, 3)
     width, room = (each(every, flat).reshape(axis.shape[:2]) for each in (test.width, test.margin))
+    # What was found is free, whatever the room: the flat of a tip on a plane has none.
+    room[:, 0] = np.inf
     good = np.isfinite(width) & (room > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         step = np.floor(np.log(width / np.where(good, width, 0.0).max(axis=1)[:, None]) / math.log(_AS_WIDE) + 1e-9)

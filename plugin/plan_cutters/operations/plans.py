@@ -66,7 +66,7 @@ def plan_with(
     columns, orbit = expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
-    area, edge = np.nan_to_num(samples.area), samples.neighbours
+    area, edge = np.nan_to_num(samples.area), task.seams.edge
     serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
     width[rows] = _widths(task, columns, serves[rows])
@@ -75,8 +75,10 @@ def plan_with(
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
-    border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
+    mark = 0.0 if task.paths.feed is None else task.ready.options.border_cost
+    border = task.seams.length * (overlap * each + mark * task.seams.shows)
     may = finite if rule is None else rule(finite)
+    may = may if task.moved is None else may & ~task.moved[:, None]
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
@@ -104,8 +106,9 @@ def plan_with(
     operations = workplanes(operations, task.ready, task.indexing)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
-        name, tuple(operations), number, table, strip, seconds, region, tilt_direction, strategy, contact, cutting, other
-    )
+        name, tuple(operations), number, table, strip, seconds, region, tilt_direction, strategy, contact, cutting, other,
+        mark * task.seams.marks(number),
+    )  # fmt: skip
 
 
 def _other(task: Task, operations: Sequence[Operation]) -> float:
@@ -308,6 +311,8 @@ def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     rows, every = task.rows, task.images(columns)
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
     cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
+    if task.moved is not None:
+        cost[task.moved[rows]] = np.inf
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
