@@ -109,8 +109,8 @@ class Trials:
         samples, name = self.question.samples, each["cutter"]
         served = samples.get(f"setup_{name}")
         there = rows if served is None else rows[served[rows] == each["setup"]]
-        found = samples[f"axis_{name}"][there]
-        return found if moving is None else np.where(np.isfinite(moving[there]), moving[there], found), there
+        own = samples[f"axis_{name}"][there]
+        return own if moving is None else np.where(np.isfinite(moving[there]), moving[there], own), there
 
     def _other_tilt_directions(self, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, at: Contacts) -> int:
         """How many written leans are not those of their axes; where an axis is the normal any across it is one, and a shorter one

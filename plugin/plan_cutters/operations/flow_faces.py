@@ -1,6 +1,6 @@
 """Free-form faces that simultaneous motion takes as a whole: where that costs less than fixed orientations and their borders."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,15 +24,14 @@ def with_moved(task: Task, faces: Sequence[int]) -> Task:
     return replace(task, moved=np.isin(task.ready.samples.face, faces))
 
 
-def flowing(task: Task, choice: Choice, plan: OperationPlan) -> tuple[list[int], OperationPlan] | None:
+def flowing(task: Task, others: Callable[[Task], Columns], plan: OperationPlan) -> tuple[list[int], OperationPlan] | None:
     """The faces that simultaneous motion takes as a whole, and the plan that follows; None where no such plan costs less.
-
-    Fixed orientations are chosen anew for the other faces, among the candidates of a choice.
 
     Parameters
     ----------
     task : Task
-    choice : Choice
+    others : callable
+        Gives fixed orientations for the samples that are not moved in a task.
     plan : OperationPlan
         The best one without.
     """
@@ -42,14 +41,14 @@ def flowing(task: Task, choice: Choice, plan: OperationPlan) -> tuple[list[int],
     made = []
     for faces in _tried(task, plan):
         own = with_moved(task, faces)
-        columns = recommended(own, worth_their_turn(own, _for_others(own, choice)))
+        columns = recommended(own, worth_their_turn(own, others(own)))
         made.append((faces, plan_with(own, "fastest", columns, times=True)))
     best = min(made, key=lambda each: each[1].price, default=None)
     return best if best is not None and best[1].price < (1.0 - WORTH) * plan.price else None
 
 
-def _for_others(task: Task, choice: Choice) -> Columns:
-    """Columns of a choice that cost little for the samples that simultaneous motion does not take."""
+def chosen_for_others(task: Task, choice: Choice) -> Columns:
+    """Columns among those of a choice that cost little for the samples that are not moved."""
     assert task.moved is not None
     rest = ~task.moved[choice.rows]
     if not rest.any():

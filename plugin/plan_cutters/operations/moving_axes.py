@@ -65,7 +65,7 @@ class _Test:
         tilt = angle_between(axis, normal)
         good = (tilt >= low) & (tilt <= high) & (self.margin(rows, axis) > 0.0)
         good[good] = conditions.allows(axis[good])
-        side = leans(axis, normal, samples.direction_max[rows])
+        side = tilt_directions(axis, normal, samples.direction_max[rows])
         met, which, some = np.full(len(rows), -2, np.int32), np.zeros(len(rows), np.int32), np.flatnonzero(good)
         point = samples.point[rows]
 
@@ -109,11 +109,11 @@ class MovingAxes:
             self._known[cutter, setup] = np.full((n, 3), np.nan), np.full(n, np.nan)
         axis, width = self._known[cutter, setup]
         new = rows[np.isnan(axis[rows, 0])]
-        test, found = self._test(cutter, setup), self._everywhere[setup][self._cutters[cutter]].axis
+        test, known = self._test(cutter, setup), self._everywhere[setup][self._cutters[cutter]].axis
         some = max(1, _AT_ONCE // (len(_TILTS) * _DIRECTIONS))
         up = np.where((self._along @ self._setups[setup].setup)[:, None] < 0.0, -self._along, self._along)
         for part in (new[k : k + some] for k in range(0, len(new), some)):
-            axis[part] = _widest(test, part, found[part], up[self._samples.face[part]])
+            axis[part] = _widest(test, part, known[part], up[self._samples.face[part]])
             width[part] = test.width(part, axis[part])
         return axis[rows], width[rows]
 
@@ -137,16 +137,16 @@ class MovingAxes:
 
     def held(self, cutter: int, setup: int, rows: Rows, axis: Floats) -> Verdicts:
         """The postures at samples (m,) with axes (n, 3) that are those found, or were tested with the contact at the sample."""
-        found, samples = self._everywhere[setup][self._cutters[cutter]], self._samples
-        new = rows[(axis[rows] != found.axis[rows]).any(axis=1)]
+        verdicts, samples = self._everywhere[setup][self._cutters[cutter]], self._samples
+        new = rows[(axis[rows] != verdicts.axis[rows]).any(axis=1)]
         verdict = np.full(len(samples), UNJUDGED, np.uint8)
-        verdict[rows] = found.verdict[rows]
-        posture = {name: getattr(found, name).copy() for name in ("axis", "tilt_direction", "tilt", "rotation", "shift")}
+        verdict[rows] = verdicts.verdict[rows]
+        posture = {name: getattr(verdicts, name).copy() for name in ("axis", "tilt_direction", "tilt", "rotation", "shift")}
         posture["axis"][new], posture["rotation"][new], posture["shift"][new] = axis[new], -1, 0.0
-        posture["tilt_direction"][new] = leans(axis[new], samples.normal[new], samples.direction_max[new])
+        posture["tilt_direction"][new] = tilt_directions(axis[new], samples.normal[new], samples.direction_max[new])
         posture["tilt"][new] = angle_between(axis[new], samples.normal[new])
         verdict[new] = ACCESSIBLE
-        return replace(found, verdict=verdict, **posture)
+        return replace(verdicts, verdict=verdict, **posture)
 
     def _test(self, cutter: int, setup: int) -> _Test:
         own = self._cutters[cutter]
@@ -163,41 +163,41 @@ def _along(samples: SurfaceSamples) -> Floats:
     return result
 
 
-def leans(axis: Floats, normal: Floats, direction: Floats) -> Floats:
+def tilt_directions(axis: Floats, normal: Floats, direction: Floats) -> Floats:
     """Unit directions (m, 3) in which axes (m, 3) lean from normals; the given ones where they do not."""
     across = axis - (axis * normal).sum(axis=1)[:, None] * normal
     length = np.linalg.norm(across, axis=1)[:, None]
     return np.asarray(np.where(length > 1e-9, across / np.maximum(length, 1e-12), direction))
 
 
-def _widest(test: _Test, rows: Rows, found: Floats, along: Floats) -> Floats:
-    """Of axes about the normals of samples (m,), and those found there (m, 3), free ones (m, 3) of about the widest passes.
+def _widest(test: _Test, rows: Rows, known: Floats, along: Floats) -> Floats:
+    """Of axes about the normals of samples (m,), and known ones there (m, 3), free ones (m, 3) of about the widest passes.
 
-    Of axes whose passes are about as wide, the one found comes first, and then those that lean most `along` (m, 3) the face.
+    Of axes whose passes are about as wide, the known one comes first, and then those that lean most `along` (m, 3) the face.
     """
     low, high = test.context.conditions.postures.tilt
     tilt = np.unique(np.clip(_TILTS, max(low, _TILTS[0]), high))
     if not test.context.conditions.postures.full_turn or not len(rows):
-        return found
+        return known
     turn = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
     normal = test.samples.normal[rows]
-    first = leans(along, normal, test.samples.direction_max[rows])
+    first = tilt_directions(along, normal, test.samples.direction_max[rows])
     other = np.cross(normal, first)
     side = np.cos(turn)[:, None] * first[:, None] + np.sin(turn)[:, None] * other[:, None]
     axis = np.cos(tilt)[:, None, None] * normal[:, None, None] + np.sin(tilt)[:, None, None] * side[:, None]
-    axis = np.concatenate([found[:, None], axis.reshape(len(rows), -1, 3)], axis=1)
+    axis = np.concatenate([known[:, None], axis.reshape(len(rows), -1, 3)], axis=1)
     every, flat = np.repeat(rows, axis.shape[1]), axis.reshape(-1, 3)
-    width, room = (each(every, flat).reshape(axis.shape[:2]) for each in (test.width, test.margin))
-    # What was found is free, whatever the room: the flat of a tip on a plane has none.
-    room[:, 0] = np.inf
-    good = np.isfinite(width) & (room > 0.0)
+    width, remainder = (each(every, flat).reshape(axis.shape[:2]) for each in (test.width, test.margin))
+    # What is known is free, whatever the room: the flat of a tip on a plane has none.
+    remainder[:, 0] = np.inf
+    good = np.isfinite(width) & (remainder > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         step = np.floor(np.log(width / np.where(good, width, 0.0).max(axis=1)[:, None]) / math.log(_AS_WIDE) + 1e-9)
     away = np.append(-1.0, np.tile(1.0 - np.cos(turn), len(tilt)))
-    rank = np.where(good, 4.0 * step + away + np.where(room < _MARGIN, 1e6, 0.0), np.inf)
-    # The posture that was found is free: what comes behind it is not looked at.
+    rank = np.where(good, 4.0 * step + away + np.where(remainder < _MARGIN, 1e6, 0.0), np.inf)
+    # The known posture is free: what comes behind it is not looked at.
     order = np.argsort(rank, axis=1, kind="stable")
-    chosen, open_ = found.copy(), np.arange(len(rows))
+    chosen, open_ = known.copy(), np.arange(len(rows))
     for place in range(axis.shape[1]):
         k = order[open_, place]
         open_, k = open_[k > 0], k[k > 0]

@@ -24,7 +24,7 @@ from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
-from plan_cutters.operations.flow_faces import flowing, with_moved
+from plan_cutters.operations.flow_faces import chosen_for_others, flowing, with_moved
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.own_steps import own_plan
@@ -100,7 +100,7 @@ def plan_operations(
         offer = _offer(task, part_of(tell, 0, _PARTS))
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
         if quick is not None:
-            plans, timed, worth, instead = quick
+            plans, timed, worth, instead = _in_motion(task, quick)
         elif options.operations == "fastest":
             some = thinned(task)
             search, few = _served(some, part_of(tell, 1, _PARTS))
@@ -221,9 +221,9 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each), times=True) for each in compared]
     best, words = _recommended(some, plans)
-    if (motion := flowing(some, choice, best)) is not None:
+    if (motion := flowing(some, partial(chosen_for_others, choice=choice), best)) is not None:
         faces, moving = motion
-        words = (_in_motion(best, moving, faces),)
+        words = (_why_in_motion(best, moving, faces),)
         best, task, some = moving, with_moved(task, faces), with_moved(some, faces)
     plan = _capped(task, some, "fastest", _columns_of(task, best), parts[2])
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=lambda each: each.price)
@@ -245,7 +245,9 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     columns = recommended(task, _columns_of(task, best))
     fixed = best.orientations
     if len(columns) == fixed:
-        return replace(best, name="fastest"), ()
+        still = [each for each in plans if not _moves(each)] if _moves(best) else []
+        sentence = (f"{_with_fixed(min(still, key=lambda each: each.price))}.",) if still else ()
+        return replace(best, name="fastest"), sentence
     tried = [plan_with(task, "fastest", columns, times=True), *(each for each in plans if few_enough(task, each))]
     chosen = min(tried, key=lambda each: each.price)
     if few_enough(task, best) and best.price <= chosen.price:
@@ -257,16 +259,37 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"With fixed orientations alone, {fixed} of them, the fastest plan would take {duration(best.total)}; simultaneous "
         f"motion is recommended in place of {many}, for {why}."
     )
-    return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+    return replace(chosen, name="fastest"), (words,) if _moves(chosen) else ()
 
 
-def _in_motion(fixed: OperationPlan, moving: OperationPlan, faces: Sequence[int]) -> str:
+def _in_motion(task: Task, quick: PlansTimed) -> PlansTimed:
+    """The plan of a part that is a pattern, with free-form faces for simultaneous motion where that costs less."""
+    (plan,), timed, worth, words = quick
+    columns = _columns_of(task, plan)
+    motion = flowing(task, lambda _: columns, plan)
+    if motion is None or timed is None:
+        return quick
+    faces, moving = motion
+    made, (entry, area) = plan_with(with_moved(task, faces), plan.name, _columns_of(task, moving)), timed
+    entry = against_bound(made.total, entry.bound_seconds, entry.at_best_seconds, entry.samples, entry.candidates)
+    return [made], (entry, area), worth, (*words, _why_in_motion(plan, made, faces))
+
+
+def _why_in_motion(fixed: OperationPlan, moving: OperationPlan, faces: Sequence[int]) -> str:
     """Say why free-form faces go with simultaneous motion."""
     named = ", ".join(f"F{face}" for face in faces[:_NAMED]) + (f" and {len(faces) - _NAMED} more" if len(faces) > _NAMED else "")
     return (
-        f"{named}: simultaneous motion cuts each as a whole, and the plan takes about {duration(moving.total)}. With "
-        f"{count(fixed.orientations, 'fixed orientation')} it would take about {duration(fixed.total)}."
+        f"{named}: simultaneous motion cuts {'it' if len(faces) == 1 else 'each'} as a whole, and the plan takes about "
+        f"{duration(moving.total)}. {_with_fixed(fixed)}."
     )
+
+
+def _with_fixed(plan: OperationPlan) -> str:
+    return f"With {count(plan.orientations, 'fixed orientation')} it would take about {duration(plan.total)}"
+
+
+def _moves(plan: OperationPlan) -> bool:
+    return any(each.mode == "simultaneous" for each in plan.operations)
 
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:
