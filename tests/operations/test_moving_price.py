@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from plan_cutters import plan
 from plan_cutters.operations import planning
+from plan_cutters.operations.fastest import against_bound
 from plan_cutters.operations.flow_faces import with_moved
 from plan_cutters.operations.moving_axes import _AS_WIDE
 from plan_cutters.operations.plans import plan_with
@@ -119,6 +120,34 @@ def test_the_dearer_borders_are_the_fewer_there_are(bumps):
     assert lengths[0] > lengths[-1]
     assert lengths == sorted(lengths, reverse=True)
     assert cutting == sorted(cutting)
+
+
+def test_motion_takes_the_place_of_a_plan_of_a_pattern_where_it_costs_less(bumps):
+    task = replace(bumps, ready=replace(bumps.ready, options=replace(bumps.ready.options, most_operations=None)))
+    fixed = plan_with(task, "fastest", planning._first(task, 0.5))
+    timed = against_bound(fixed.total, 0.9 * fixed.total, 1.0, 10, 20), 5.0
+    (made,), (entry, area), worth, words = planning._in_motion(task, ([fixed], timed, (), ("One copy.",)))
+    assert made.price < 0.98 * fixed.price
+    assert "simultaneous" in {each.mode for each in made.operations}
+    assert entry.seconds == pytest.approx(made.total)
+    assert entry.bound_seconds <= made.total + 1e-9
+    assert (area, worth, words[0]) == (5.0, (), "One copy.")
+    assert "F1: simultaneous motion cuts it as a whole" in words[1]
+    # With motion that is slow the plan stays.
+    slow = replace(task, moving=SlowMotion(task.moving))
+    quick = [fixed], timed, (), ("One copy.",)
+    assert planning._in_motion(slow, quick) is quick
+
+
+class SlowMotion:
+    """Axes whose passes are a hundredth as wide."""
+
+    def __init__(self, moving):
+        self.moving = moving
+
+    def widest(self, cutter, setup, rows):
+        axis, width = self.moving.widest(cutter, setup, rows)
+        return axis, 0.01 * width
 
 
 def chessboard(side):

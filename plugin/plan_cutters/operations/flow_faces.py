@@ -1,4 +1,4 @@
-"""Free-form faces that simultaneous motion takes as a whole: where that costs less than fixed orientations and their borders."""
+"""Sculptured faces that simultaneous motion takes as a whole: where that costs less than fixed orientations and their borders."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -11,7 +11,6 @@ from plan_cutters.operations.at_once import WORTH, recommended
 from plan_cutters.operations.choices import Choice
 from plan_cutters.operations.fastest import cheap
 from plan_cutters.operations.plans import moving_over, plan_with, worth_their_turn
-from plan_cutters.operations.seams import bent_faces
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import speed_of
 from plan_cutters.outcome import OperationPlan
@@ -57,8 +56,12 @@ def chosen_for_others(task: Task, choice: Choice) -> Columns:
 
 
 def _tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
-    """Faces that motion may take together: all that are bent in both directions, and those that it cuts for less than a plan."""
-    faces, samples = bent_faces(task.ready), task.ready.samples
+    """Faces that motion may take together: all that are sculptured, and those that it cuts for less than a plan.
+
+    Rounds and spheres are none: nobody turns while cutting for a fillet.
+    """
+    shapes, samples = [each.shape for each in task.ready.scene.part.faces], task.ready.samples
+    faces = np.array([face for face in np.unique(samples.face).tolist() if shapes[face - 1] == "sculptured"], np.int64)
     rows = task.rows[np.isin(samples.face[task.rows], faces)]
     if not len(rows):
         return
