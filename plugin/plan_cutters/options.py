@@ -100,6 +100,7 @@ class PlanOptions(SceneOptions, total=False):
     setup_time: float
     overlap: float
     link_time: float
+    border_cost: float
     most_operations: int | None
     sharp_edges: SharpEdges
     effort: Effort
@@ -128,7 +129,7 @@ _RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1,
              "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
              "index_step": (0.5, 90.0, "deg"), "axis_accuracy": (0.0, 1.0, "deg"), "index_time": (0.0, 1e5, "s"),
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "link_time": (0.0, 1e4, "s"),
-             "overlap": (0.0, 1e3, "mm")}  # fmt: skip
+             "overlap": (0.0, 1e3, "mm"), "border_cost": (0.0, 1e3, "s/mm")}  # fmt: skip
 #: The least and the largest value of the other numbers, and what is said of one beyond them.
 _LIMITS = {
     "grid": (2, 5000, "must lie between 2 and 5000 samples a side"),
@@ -241,6 +242,9 @@ class Options:
         Width by which operations overlap at a common border, mm.
     link_time : float
         Seconds from the end of a pass to the next one.
+    border_cost : float
+        Seconds that each mm of a border between two operations on a face that is bent in both directions counts where plans are
+        compared: the border shows as a mark. They are no part of the times that are written.
     most_operations : int, optional
         Fixed orientations at most: the rest is left to simultaneous motion.
     sharp_edges : str
@@ -319,6 +323,7 @@ class Options:
     setup_time: float = 300.0
     overlap: float = 2.0
     link_time: float = 1.0
+    border_cost: float = 0.05
     most_operations: int | None = None
     sharp_edges: SharpEdges = "asked"
     effort: Effort = "normal"

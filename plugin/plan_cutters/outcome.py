@@ -1,5 +1,6 @@
 """Answers and the plan of operations follow the verdicts: here they are, with the samples of each operation."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -43,8 +44,8 @@ class Operation:
     orbit : int
         Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     moving : ((n, 3) float, (n,) int32), optional
-        Of a simultaneous one that was looked at between the samples: the unit tool axis of the proposed field at each sample, nan
-        where there is none; and the connected proved piece about it, the largest first, -1: nothing is proved there.
+        Of a simultaneous one: the unit tool axis of the proposed field at each sample, nan where there is none; and the connected
+        proved piece about it, the largest first, -1: nothing is proved there.
     fields : mapping
         Of its entry in the plan file, by their names, as far as they are known by now.
     """
@@ -104,6 +105,8 @@ class OperationPlan:
         orientations, of changes of cutters and of setups.
     short : (m,) int64
         Samples that are left because a step for them would be hardly any.
+    marks : float
+        Seconds that borders on free-form faces count where plans are compared (`--border-cost`).
     """
 
     name: str
@@ -122,11 +125,17 @@ class OperationPlan:
     links: float
     other: float
     short: NDArray[np.int64]
+    marks: float = 0.0
 
     @property
     def total(self) -> float:
         """Seconds of all that is counted; nan where they are not known."""
         return self.cutting + self.links + self.other
+
+    @property
+    def price(self) -> float:
+        """Seconds by which plans are compared: the total, and what borders on free-form faces count; infinite if not known."""
+        return self.total + self.marks if math.isfinite(self.total) else math.inf
 
     @property
     def alone(self) -> NDArray[np.bool_]:

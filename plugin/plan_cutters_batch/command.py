@@ -78,7 +78,8 @@ class BatchRequest(PlanningRequest, Reported):
 )
 @options(
     "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time",
-    "change_time", "setup_time", "overlap", "link_time", "most_operations", "max_orientations", "no_patterns",
+    "change_time", "setup_time", "overlap", "link_time", "border_cost", "most_operations", "max_orientations",
+    "no_patterns",
 )  # fmt: skip
 @_many("--cluster", brief="Scheduler of a running Dask cluster, or its scheduler file.", metavar="tcp://HOST:PORT|FILE",
        type=Words("ADDRESS", files=True),

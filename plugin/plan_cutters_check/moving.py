@@ -23,9 +23,10 @@ def ill_formed(question: Question, reckoned: Reckoned) -> Iterator[Finding]:
         turning = [i for i, each in enumerate(plan["operations"]) if each["turning"] is not None]
         if any(plan["operations"][i]["mode"] == "fixed" for i in turning):
             yield Finding(False, f"The {plan['name']} plan: the axis of a fixed operation turns.")
-        mine, known, proved = np.isin(label, turning), ~np.isnan(axis).all(axis=1), piece >= 0
+        moving = [i for i, each in enumerate(plan["operations"]) if each["mode"] != "fixed"]
+        mine, known, proved = np.isin(label, moving), ~np.isnan(axis).all(axis=1), piece >= 0
         if turning or known.any() or proved.any() or (piece < -1).any():
-            wrong = (known & (~mine | ~_unit(axis))) | (proved & ~known) | (piece < -1)
+            wrong = (known & (~mine | ~_unit(axis))) | (proved & ~(known & np.isin(label, turning))) | (piece < -1)
             for i in turning:
                 each, rows = plan["operations"][i], np.flatnonzero((label == i) & proved)
                 # A piece is named where it has most of the area about a sample: of those that are counted some may have none.

@@ -36,8 +36,8 @@ def contacts_at(question: Question, reckoned: Reckoned, k: int, each: Mapping[st
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
     if each["mode"] != "fixed":
         # The posture that was found may touch elsewhere than at the sample; other axes touch there.
-        found = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
-        point[found] += question.shift(each["cutter"])[rows[found]]
+        same = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
+        point[same] += question.shift(each["cutter"])[rows[same]]
     tilt_direction = reckoned.array(k, "lean")[rows].copy()
     mine = reckoned.array(k, "strategy")[rows] == WALL
     point[mine] = reckoned.array(k, "contact")[rows[mine]]

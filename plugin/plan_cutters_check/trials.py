@@ -83,7 +83,7 @@ class Trials:
                 # In a drawn order, so that what there was no time for is no part of the surface.
                 rows = self.rng.permutation(np.flatnonzero(label == i))
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
-                axis, there = self._axes(each, rows)
+                axis, there = self._axes(each, rows, self.reckoned.array(k, "moving_axis"))
                 tally.open_ += len(rows) - len(there)
                 at = contacts_at(self.question, self.reckoned, k, each, there, axis)
                 wrong_tilts += self._other_tilt_directions(tool, there, axis, tilt_direction[there], at)
@@ -99,7 +99,7 @@ class Trials:
                 every, holds=not wrong_tilts,
             )  # fmt: skip
 
-    def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
+    def _axes(self, each: dict[str, Any], rows: Rows, moving: Floats | None = None) -> tuple[Floats, Rows]:
         """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""
         if each["mode"] == "fixed":
             degrees, setup = degrees_of(self.question, each), self.question.setups[each["setup"]]
@@ -109,7 +109,8 @@ class Trials:
         samples, name = self.question.samples, each["cutter"]
         served = samples.get(f"setup_{name}")
         there = rows if served is None else rows[served[rows] == each["setup"]]
-        return samples[f"axis_{name}"][there], there
+        own = samples[f"axis_{name}"][there]
+        return own if moving is None else np.where(np.isfinite(moving[there]), moving[there], own), there
 
     def _other_tilt_directions(self, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, at: Contacts) -> int:
         """How many written leans are not those of their axes; where an axis is the normal any across it is one, and a shorter one
@@ -253,7 +254,7 @@ class Trials:
                 claimed, tool = each["clearance_mm"], self.bench.tools[each["cutter"]]
                 self.tell(f"{plan['name']}: the clearance of {each['id']}")
                 rows = np.flatnonzero(label == i)
-                axis, there = self._axes(each, rows)
+                axis, there = self._axes(each, rows, self.reckoned.array(k, "moving_axis"))
                 if not tool.above(2.0 * tool.radius):
                     entry["plans"][k]["operations"][i]["clearance_mm"] = None
                     continue

@@ -14,6 +14,7 @@ from plan_cutters_check.clash import Clock
 from plan_cutters_check.moving import put_down
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, held
 from plan_cutters_check.reckoned import Reckoned
+from plan_cutters_check.trials import Trials
 from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
 
@@ -118,3 +119,46 @@ def test_the_machine_holds_an_axis_where_some_of_its_angles_give_it(seed):
     assert (nearest[holds] >= step).all()
     # What a fine grid comes as near to as its own step may lie a hair beyond a limit.
     assert not holds[nearest < step].any()
+
+
+@pytest.fixture(scope="module")
+def leaning(tmp_path_factory):
+    """A blade that a bull nose cuts as a whole with simultaneous motion, leaning as little as its passes want."""
+    out = tmp_path_factory.mktemp("leaning")
+    words = {**WORDS, "cutters": "D10L60rc1", "holder": "er16"}
+    plan(PART, operations="fastest", feed=1500, area_budget=0, **words).write(out, ["json", "npz"])
+    return Written(out, PART, words)
+
+
+def placed(written, arrays=None):
+    """The finding about operations that were put down at all their samples."""
+    question = written.question(None, arrays)
+    bench = Bench(question, str)
+    trials = Trials(question, Reckoned(question), bench, np.random.default_rng(0), lambda _: Clock(math.inf), lambda _: None)
+    (line,) = trials.placed()
+    return line
+
+
+def test_every_axis_of_wide_passes_stands_free_by_another_program(leaning):
+    arrays = leaning.arrays["operations.npz"]
+    label, axis = arrays["operation"], arrays["moving_axis"]
+    modes = [each["mode"] for each in leaning.document["operations"]["plans"][0]["operations"]]
+    assert modes == ["simultaneous"]
+    assert np.isfinite(axis[label >= 0]).all()
+    # These are others than those of the verdicts.
+    found = leaning.arrays["samples.npz"][f"axis_{leaning.document['cutters'][0]['id']}"]
+    assert (np.abs(axis - found).max(axis=1) > 1e-3).mean() > 0.5
+    line = placed(leaning)
+    assert line.holds, line.words
+    assert f"put down at {(label >= 0).sum()} samples; at 0 " in line.words
+
+
+def test_an_axis_that_is_not_free_is_found_though_nothing_is_proved_about_it(leaning):
+    _, arrays = leaning.copies()
+    forged, normal = arrays["operations.npz"], arrays["samples.npz"]["normal"]
+    axis = -normal
+    able = np.flatnonzero(held(leaning.question().machine, leaning.question().setups[0], axis) & (forged["operation"] >= 0))[:20]
+    forged["moving_axis"][able] = axis[able]
+    line = placed(leaning, arrays)
+    assert line.holds is False
+    assert f"at {len(able)} the tool is too deep" in line.words

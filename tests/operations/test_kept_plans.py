@@ -7,6 +7,7 @@ import math
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import cadquery as cq
 import numpy as np
@@ -16,11 +17,10 @@ from plan_cutters import Machine, operations, plan
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.judging.nodes import tensors
 from plan_cutters.operations import at_once, canonical, choices, companions, moving_axes, planning, plans
 from plan_cutters.operations.thinned import thinned
+from plan_cutters.operations.timing import Paths
 from plan_cutters.options import Options
-from plan_cutters.scene.conditions import Context
 from tests.support.patterns import impeller
 from tests.support.shapes import Patch
 from tests.support.traced import traced
@@ -201,11 +201,13 @@ def test_choices_of_columns_are_what_they_were(keeps):
 def test_motion_whose_time_is_not_known_is_as_slow_as_the_slowest_column(keeps):
     task = task_of("wedge", feed=870.0, index_time=0.7, operations="both")
     lost = np.arange(len(task.ready.samples)) % 3 == 0
-    everywhere = []
-    for verdicts in task.everywhere:
-        axes = {cutter: np.where(lost[:, None], np.nan, each.axis) for cutter, each in verdicts.items()}
-        everywhere.append({cutter: replace(each, axis=axes[cutter]) for cutter, each in verdicts.items()})
-    task = replace(task, everywhere=tuple(everywhere))
+    widest = task.moving.widest
+
+    def partly_known(cutter, setup, rows):
+        axis, width = widest(cutter, setup, rows)
+        return axis, np.where(lost[rows], np.nan, width)
+
+    task = replace(task, moving=SimpleNamespace(widest=partly_known))
     keeps(
         "unknown",
         [[(len(some), total) for some, total in at_once.fewer(task, columns_at(task, *written))] for written in WRITTEN],
@@ -217,14 +219,15 @@ def test_moving_axes_are_what_they_were(keeps):
     ready, everywhere, *_ = judged("wedge")
     samples, rng, found = ready.samples, np.random.default_rng(8), {}
     for cutter in ready.cutters:
-        context, verdicts = Context.of(cutter, ready.setups[0]), everywhere[0][cutter]
+        verdicts = everywhere[0][cutter]
         rows = np.flatnonzero(verdicts.reached)
-        tensor = tensors(samples.normal, samples.direction_max, samples.curvature).reshape(len(samples), 3, 3)
-        test = moving_axes._Test(samples, context, tensor)
+        paths = Paths(0.01, 0.75, None, 1e-3)
+        moving = moving_axes.MovingAxes(samples, ready.cutters, ready.setups, everywhere, paths)
+        test, k = moving._test(ready.cutters.index(cutter), 0), ready.cutters.index(cutter)
         tried = verdicts.axis[rows] + 0.5 * rng.normal(size=(len(rows), 3))
         tried[::9] = samples.normal[rows[::9]]
         tried /= np.linalg.norm(tried, axis=1)[:, None]
-        axis = moving_axes.moving_axes(samples, rows, verdicts, context)
+        axis, _ = moving.smooth(k, 0, rows)
         free = [test.free(rows, each) for each in (tried, verdicts.axis[rows], axis[rows])]
         found[cutter.id] = [axis, test.margin(rows, tried), free, sorted(moving_axes.fields(samples, axis))]
     keeps("axes_moving", found)

@@ -526,11 +526,14 @@ def test_axes_are_drawn_smooth(keeps):
     axis = units(rng, 42) * 0.5 + np.array([0.0, 0.0, 1.0])
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tests = {
-        "free": SimpleNamespace(free=lambda rows, way: np.ones(len(rows), bool), margin=lambda rows, way: np.ones(len(rows))),
+        "free": SimpleNamespace(free=lambda rows, way: np.ones(len(rows), bool), margin=lambda rows, way: np.ones(len(rows)),
+                                width=lambda rows, way: np.ones(len(rows))),
         "limited": SimpleNamespace(free=lambda rows, way: (way[:, 2] >= 0.9) & (rows % 5 != 3),
-                                   margin=lambda rows, way: 0.6 * way[:, 2] - 0.45 + 0.01 * (rows % 3)),
+                                   margin=lambda rows, way: 0.6 * way[:, 2] - 0.45 + 0.01 * (rows % 3),
+                                   width=lambda rows, way: way[:, 2]),
     }  # fmt: skip
-    keeps("smooth", {name: list(moving_axes._smoothed(test, np.arange(2, 42), edge[(edge > 1).all(axis=1)], axis.copy()))
+    keeps("smooth", {name: list(moving_axes._smoothed(test, np.arange(2, 42), edge[(edge > 1).all(axis=1)], axis.copy(),
+                                                      np.full(42, -1.0)))
                      for name, test in tests.items()})  # fmt: skip
 
 

@@ -23,7 +23,8 @@ def chain(count):
 def free_everywhere(**how):
     """A stand-in for the certified test: free where `free` says so of rows and axes, and with the same room everywhere."""
     free = how.get("free", lambda rows, axis: np.ones(len(rows), bool))
-    return SimpleNamespace(free=free, margin=how.get("margin", lambda rows, axis: np.ones(len(rows))))
+    ones = lambda rows, axis: np.ones(len(rows))  # noqa: E731
+    return SimpleNamespace(free=free, margin=how.get("margin", ones), width=how.get("width", ones))
 
 
 def tilted(degrees):
@@ -37,13 +38,13 @@ def bends(axis):
 
 def test_axes_are_drawn_to_those_around_them_and_stay_unit():
     axis = tilted([0.0, 0.0, 30.0, 0.0, 0.0, 0.0])
-    made = _smoothed(free_everywhere(), np.arange(6), chain(6), axis.copy())
+    made = _smoothed(free_everywhere(), np.arange(6), chain(6), axis.copy(), np.zeros(len(axis)))
     assert np.linalg.norm(made, axis=1) == pytest.approx(1.0)
     assert bends(made).max() < 0.5 * bends(axis).max()
     # What is not in the operation, or has no neighbour, stays.
-    some = _smoothed(free_everywhere(), np.array([0, 1, 2]), chain(3), axis.copy())
+    some = _smoothed(free_everywhere(), np.array([0, 1, 2]), chain(3), axis.copy(), np.zeros(len(axis)))
     assert np.array_equal(some[3:], axis[3:])
-    alone = _smoothed(free_everywhere(), np.array([5]), np.zeros((0, 2), np.int64), axis.copy())
+    alone = _smoothed(free_everywhere(), np.array([5]), np.zeros((0, 2), np.int64), axis.copy(), np.zeros(len(axis)))
     assert np.array_equal(alone, axis)
 
 
@@ -62,14 +63,14 @@ def test_no_axis_moves_to_where_the_tool_is_not_free_or_has_less_room_than_it_ha
         seen.append((rows[good], wanted[good]))
         return good
 
-    made = _smoothed(free_everywhere(free=free), np.arange(count), chain(count), axis.copy())
+    made = _smoothed(free_everywhere(free=free), np.arange(count), chain(count), axis.copy(), np.zeros(len(axis)))
     assert (made[:, 2] >= math.cos(math.radians(25.0)) - 1e-12).all()
     assert np.array_equal(made[3::4], axis[3::4])
     for row in range(count):
         tried = [wanted[rows == row][0] for rows, wanted in seen if (rows == row).any()]
         assert any(np.array_equal(made[row], each) for each in [axis[row], *tried])
     narrow = free_everywhere(margin=lambda rows, wanted: -np.arccos(wanted[:, 2]))
-    kept = _smoothed(narrow, np.arange(count), chain(count), axis.copy())
+    kept = _smoothed(narrow, np.arange(count), chain(count), axis.copy(), np.zeros(len(axis)))
     assert (kept[:, 2] >= axis[:, 2] - 1e-9).all()
 
 

@@ -447,6 +447,13 @@ _OPTIONS = (
         "--link-time", type=float, default=1.0, metavar="S", help="Seconds from the end of a pass to the next.  [default: 1]"
     ),
     _operations(
+        "--border-cost",
+        type=float,
+        default=0.05,
+        metavar="S",
+        help="Seconds that a mm of border between operations on a free-form face counts in comparisons.  [default: 0.05]",
+    ),
+    _operations(
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(

@@ -96,6 +96,7 @@ class PlanningRequest(JudgingRequest):
     setup_time: float
     overlap: float
     link_time: float
+    border_cost: float
     most_operations: int | None
     max_orientations: int
     patterns: bool
@@ -205,6 +206,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "setup_time": request.setup_time,
         "overlap": request.overlap,
         "link_time": request.link_time,
+        "border_cost": request.border_cost,
         "most_operations": request.most_operations,
         "max_orientations": request.max_orientations,
         "patterns": request.patterns,

@@ -205,7 +205,7 @@ def face_words() -> Sequence[str]:
 
 #: Options that count in a plan of operations alone: without one they must not be ignored.
 OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
-                 "overlap", "link_time", "most_operations", "max_orientations")  # fmt: skip
+                 "overlap", "link_time", "border_cost", "most_operations", "max_orientations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 

@@ -110,6 +110,15 @@ def free_form_share(faces: Iterable[tuple[str, float]]) -> float:
     return math.fsum(area for (shape, _), area in zip(known, sizes, strict=True) if shape in _BENT) / whole
 
 
+def is_bent(shape: str) -> bool:
+    """Whether a face of this shape is bent in both directions.
+
+    >>> is_bent("sculptured"), is_bent("cylinder")
+    (True, False)
+    """
+    return shape in _BENT
+
+
 def is_free_form(share: float) -> bool:
     """Whether free-form faces are enough of the targets to decide which kind of cutter is wanted first."""
     return share >= FREE_FORM

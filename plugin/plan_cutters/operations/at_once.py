@@ -19,7 +19,7 @@ from plan_cutters.outcome import OperationPlan
 Rows = NDArray[np.int64]
 #: Simultaneous motion is taken for less than what is recommended where it saves this share of the time: what it costs to turn
 #: while cutting is not known.
-_WORTH = 0.02
+WORTH = 0.02
 #: Columns that are left out in turn to find the one without which a plan takes least, at most.
 _TRIED = 12
 
@@ -111,7 +111,7 @@ def recommended(task: Task, columns: Columns) -> Columns:
     while stay:
         others, (total, cut) = min(times.without_one(stay), key=lambda each: each[1][0])
         # Turns alone are no reason: what the axes take on the way is in no time of simultaneous motion.
-        worth = total < (1.0 - _WORTH) * now and cut < cutting
+        worth = total < (1.0 - WORTH) * now and cut < cutting
         if len(stay) <= options.max_orientations and not worth:
             break
         stay, now, cutting = others, total, cut

@@ -38,8 +38,10 @@ class Choice:
         All that were compared.
     problem : Problem
         What samples cost with them.
+    rows : (n,) int64
+        These samples.
     area : float
-        That these samples stand for, mm2.
+        That they stand for, mm2.
     chosen, known : (k,) int64
         The choice, and a choice that was known before: of the columns.
     whole : bool
@@ -48,6 +50,7 @@ class Choice:
 
     columns: Columns
     problem: Problem
+    rows: Rows
     area: float
     chosen: Rows
     known: Rows
@@ -145,7 +148,7 @@ def _tested(
         chosen, rounds = choose(problem, known), rounds - 1
         rest = _remaining(task, columns.of(chosen), search, minor=minor)
         if not len(rest) or not rounds:
-            return Choice(columns, problem, area, chosen, known, not len(rest))
+            return Choice(columns, problem, search.rows, area, chosen, known, not len(rest))
         search.require(_few(rest))
 
 

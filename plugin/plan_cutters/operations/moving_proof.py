@@ -13,7 +13,7 @@ from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.judging.axis_field import angle_between
 from plan_cutters.judging.between import Between, between
-from plan_cutters.operations.moving_axes import fields, moving_axes
+from plan_cutters.operations.moving_axes import fields
 from plan_cutters.outcome import Operation
 from plan_cutters.plan_file.operations import TurningEntry
 from plan_cutters.scene.conditions import Context
@@ -55,7 +55,9 @@ def proved_moving(
     kinematics = context.conditions.kinematics
     if last - first < 2.0 * math.pi - 1e-9 or (kinematics is not None and len(kinematics.turning()[1]) < 2):
         return operation
-    axis = moving_axes(samples, operation.rows, verdicts, context)
+    if operation.moving is None:
+        return operation
+    axis = operation.moving[0]
     own = np.zeros(len(samples) + 1, bool)
     own[operation.rows] = True
     result = between(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.figures import duration, percent
+from plan_cutters.domain.figures import count, duration, percent
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
@@ -26,7 +26,9 @@ from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewer_steps import WHOLE_FACE
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
+from plan_cutters.operations.flow_faces import chosen_for_others, flowing, with_moved
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.one_more import one_more
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.passes import Paths
@@ -44,6 +46,7 @@ from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import with_and_without, worths
+from plan_cutters.operations.seams import Seams
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import at_some, thinned
 from plan_cutters.operations.timing import Problems
@@ -61,6 +64,8 @@ _PARTS = 4
 _PRICED = 200
 #: How often canonical orientations are sought by some samples, with so many more of what they leave, before it is by all.
 _AGAIN, _AT_ONCE = 4, 200
+#: Faces that are named in a note, at most.
+_NAMED = 6
 #: No columns.
 _NONE = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
 
@@ -99,7 +104,7 @@ def plan_operations(
         offer = _offer(task, part_of(tell, 0, _PARTS))
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
         if quick is not None:
-            plans, timed, worth, instead = quick
+            plans, timed, worth, instead = _in_motion(task, quick)
         elif options.operations == "fastest":
             some = thinned(task)
             search, few = _served(some, part_of(tell, 1, _PARTS))
@@ -233,8 +238,12 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each), times=True) for each in compared]
     best, words = _recommended(some, plans)
+    if (motion := flowing(some, partial(chosen_for_others, choice=choice), best)) is not None:
+        faces, moving = motion
+        words = (_why_in_motion(best, moving, faces),)
+        best, task, some = moving, with_moved(task, faces), with_moved(some, faces)
     plan = _capped(task, some, "fastest", _columns_of(task, best), parts[2])
-    quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
+    quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=lambda each: each.price)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
     at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
@@ -249,14 +258,16 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     It is the one of all plans that takes the least time; of those with more fixed orientations than are recommended the area of
     some is left to simultaneous motion first.
     """
-    best = min(plans, key=_seconds)
+    best = min(plans, key=lambda each: each.price)
     columns = recommended(task, _columns_of(task, best))
     fixed = best.orientations
     if len(columns) == fixed:
-        return replace(best, name="fastest"), ()
+        still = [each for each in plans if not _moves(each)] if _moves(best) else []
+        sentence = (f"{_with_fixed(min(still, key=lambda each: each.price))}.",) if still else ()
+        return replace(best, name="fastest"), sentence
     tried = [plan_with(task, "fastest", columns, times=True), *(each for each in plans if few_enough(task, each))]
-    chosen = min(tried, key=_seconds)
-    if few_enough(task, best) and _seconds(best) <= _seconds(chosen):
+    chosen = min(tried, key=lambda each: each.price)
+    if few_enough(task, best) and best.price <= chosen.price:
         return replace(best, name="fastest"), ()
     many, why = fixed - sum(each.mode == "fixed" for each in chosen.operations), "it takes less time"
     if not few_enough(task, best):
@@ -265,12 +276,37 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"With fixed orientations alone, {fixed} of them, the fastest plan would take {duration(best.total)}; simultaneous "
         f"motion is recommended in place of {many}, for {why}."
     )
-    return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+    return replace(chosen, name="fastest"), (words,) if _moves(chosen) else ()
 
 
-def _seconds(plan: OperationPlan) -> float:
-    """Seconds of a plan, infinite where they are not known."""
-    return float(np.nan_to_num(plan.total, nan=np.inf))
+def _in_motion(task: Task, quick: PlansTimed) -> PlansTimed:
+    """The plan of a part that is a pattern, with free-form faces for simultaneous motion where that costs less."""
+    (plan,), timed, worth, words = quick
+    columns = _columns_of(task, plan)
+    motion = flowing(task, lambda _: columns, plan)
+    if motion is None or timed is None:
+        return quick
+    faces, moving = motion
+    made, (entry, area) = plan_with(with_moved(task, faces), plan.name, _columns_of(task, moving)), timed
+    entry = against_bound(made.total, entry.bound_seconds, entry.at_best_seconds, entry.samples, entry.candidates)
+    return [made], (entry, area), worth, (*words, _why_in_motion(plan, made, faces))
+
+
+def _why_in_motion(fixed: OperationPlan, moving: OperationPlan, faces: Sequence[int]) -> str:
+    """Say why free-form faces go with simultaneous motion."""
+    named = ", ".join(f"F{face}" for face in faces[:_NAMED]) + (f" and {len(faces) - _NAMED} more" if len(faces) > _NAMED else "")
+    return (
+        f"{named}: simultaneous motion cuts {'it' if len(faces) == 1 else 'each'} as a whole, and the plan takes about "
+        f"{duration(moving.total)}. {_with_fixed(fixed)}."
+    )
+
+
+def _with_fixed(plan: OperationPlan) -> str:
+    return f"With {count(plan.orientations, 'fixed orientation')} it would take about {duration(plan.total)}"
+
+
+def _moves(plan: OperationPlan) -> bool:
+    return any(each.mode == "simultaneous" for each in plan.operations)
 
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:
@@ -309,7 +345,8 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
+                Problems(ready.samples, cutters, paths, indexing, walls), walls,
+                MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths), Seams.of(ready))  # fmt: skip
 
 
 def _first(task: Task, spacing: float = STEP) -> Columns:
@@ -338,6 +375,8 @@ def _stored(task: Task, rows: Rows) -> Columns:
 
 def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress) -> OperationPlan:
     """The plan of columns that are worth an orientation; by some samples first, so that few columns are tested at all."""
+    if not len(columns):
+        return plan_with(task, name, columns)
     columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
     columns = accompanied(task, columns) if name == "fewest" else columns
     return plan_with(task, name, columns)

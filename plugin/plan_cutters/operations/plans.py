@@ -15,7 +15,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
-from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.fewer_steps import Steps, in_one_step, without_minor_steps
 from plan_cutters.operations.labels import joined, labelled, regions_of
@@ -70,7 +70,7 @@ def plan_with(
     columns, orbit = expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
-    area, edge = np.nan_to_num(samples.area), samples.neighbours
+    area, edge = np.nan_to_num(samples.area), task.seams.edge
     serves, pace = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
     pace[rows] = _paces(task, columns, serves[rows])
@@ -79,10 +79,12 @@ def plan_with(
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
-    border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
+    mark = 0.0 if task.paths.feed is None else task.ready.options.border_cost
+    border = task.seams.length * (overlap * each + mark * task.seams.shows)
     may = finite.copy() if rule is None else rule(finite)
     if rule is None:
         may[rows] &= ~_floors_of_other_setups(task, columns, serves[rows])
+    may = may if task.moved is None else may & ~task.moved[:, None]
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
@@ -101,7 +103,8 @@ def plan_with(
     operations, number, table, moving = made
     region = regions_of(number, edge, area)
     if times:
-        return _only_timed(task, name, operations, number, table, region, moving, short)
+        return _only_timed(task, name, operations, number, table, region, moving, short, mark * task.seams.marks(number))
+    operations = [_moving_in_a_field(task, each) for each in operations]
     strip, length, link = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     for k, operation in enumerate(operations):
@@ -120,12 +123,21 @@ def plan_with(
     return OperationPlan(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
         sum(each.fields["link_seconds"] for each in operations), other, short,
+        mark * task.seams.marks(number),
     )  # fmt: skip
+
+
+def _moving_in_a_field(task: Task, operation: Operation) -> Operation:
+    """A simultaneous operation with the axes of its field; others as they are."""
+    if operation.axis is not None:
+        return operation
+    axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
+    return replace(operation, moving=(axis, np.full(len(axis), -1, np.int32)))
 
 
 def _only_timed(
     task: Task, name: str, operations: Sequence[Operation], number: NDArray[np.int32], table: NDArray[np.bool_], region: Ints,
-    pace: Floats, short: Rows,
+    pace: Floats, short: Rows, marks: float,
 ) -> OperationPlan:  # fmt: skip
     """A plan whose times alone are known: links are in the seconds of samples, but for those to its pieces."""
     n, area = len(number), np.nan_to_num(task.ready.samples.area)
@@ -137,7 +149,7 @@ def _only_timed(
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
         name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, none[:, 0],
-        cutting, links, other, short,
+        cutting, links, other, short, marks,
     )  # fmt: skip
 
 
@@ -203,7 +215,7 @@ class Motion:
 
 
 def moving_over(task: Task, rows: Rows) -> Motion:
-    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in the posture found."""
+    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in its widest passes."""
     n = len(rows)
     motion = Motion(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, np.nan))
     for s, verdicts in enumerate(task.everywhere):
@@ -211,7 +223,7 @@ def moving_over(task: Task, rows: Rows) -> Motion:
             mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
             if len(mine):
                 motion.cutter[mine], motion.setup[mine] = c, s
-                motion.pace[mine] = _moving_pace(task, c, s, rows[mine])
+                motion.pace[mine] = task.moving.widest(c, s, rows[mine])[1]
     return motion
 
 
@@ -220,7 +232,7 @@ def _simultaneous(
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
     """Give what no fixed operation takes to simultaneous ones: number, what serves, paces and operations."""
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
-    pieces = [(step, c, s, rows, _moving_pace(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
+    pieces = [(step, c, s, rows, task.moving.widest(c, s, rows)[1]) for step, c, s, rows in (own.moving if own else ())]
     if own is None or not own.leave:
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
         motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
@@ -268,7 +280,7 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
         if not each.step:
             mine = task.rows[(verdicts[each.setup][each.cutter].reached & open_[each.setup])[task.rows]]
         column = np.full((len(number), 2), np.nan)
-        column[mine, 0] = _moving_pace(task, c, each.setup, mine)
+        column[mine, 0] = task.moving.widest(c, each.setup, mine)[1]
         with np.errstate(divide="ignore", invalid="ignore"):
             column[mine, 1] = area[mine] / (column[mine, 0] * task.paths.speeds([each.cutter])[0])
         pace = np.column_stack([pace, column[:, 0]])
@@ -311,16 +323,6 @@ def _made_of(operations: Sequence[Operation], number: Ints, made: _Made, pace: F
     return _Made(renumbered, place[number], table, own), np.flatnonzero((made.number >= 0) & (number < 0))
 
 
-def _moving_pace(task: Task, c: int, s: int, rows: Rows) -> Floats:
-    """What a mm of path cuts at samples (m,), mm2, by a cutter in the postures that were found for it in a setup."""
-    return _moving_cut(task, task.cutters[c], s, rows).pace(task.paths, task.cutters[c])
-
-
-def _moving_cut(task: Task, cutter: Cutter, s: int, rows: Rows) -> Cut:
-    axis = task.everywhere[s][cutter].axis[rows]
-    return cut_by_tip(cutter, task.ready.samples, rows, axis, task.paths, turning=True)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stands:
     """How a tool stands at the samples of an operation.
@@ -350,7 +352,8 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     """How the tool of an operation stands at its samples."""
     samples, rows, held = task.ready.samples, operation.rows, _held(task, operation)
     if operation.axis is None:
-        cut = _moving_cut(task, operation.cutter, operation.setup, rows)
+        assert operation.moving is not None, "it has been looked at closely"
+        cut = cut_by_tip(operation.cutter, samples, rows, operation.moving[0][rows], task.paths, turning=True)
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter = operation.axis, operation.cutter
     tip = cut_by_tip(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
@@ -378,8 +381,8 @@ def _held(task: Task, operation: Operation) -> Verdicts:
     if operation.axis is not None:
         context = Context.of(operation.cutter, task.ready.setups[operation.setup])
         return held_at(operation.axis[None], number, samples, context)
-    verdicts = task.everywhere[operation.setup][operation.cutter]
-    return replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
+    assert operation.moving is not None, "only what is looked at closely is put down"
+    return task.moving.held(task.cutters.index(operation.cutter), operation.setup, operation.rows, operation.moving[0])
 
 
 def clearance_of(task: Task, operation: Operation) -> float | None:
@@ -437,6 +440,8 @@ def costs_with(task: Task, columns: Columns, *, chosen: bool = False) -> tuple[F
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
     may = serves & ~_floors_of_other_setups(task, every, serves) if chosen else serves
     cost = costs_of(every, _paces(task, every, serves), may, area, task.cutters, task.paths)
+    if task.moved is not None:
+        cost[task.moved[rows]] = np.inf
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 

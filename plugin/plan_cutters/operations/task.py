@@ -11,8 +11,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.seams import Seams
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.timing import Problems
 from plan_cutters.operations.walls import Walls
@@ -41,10 +43,14 @@ class Task:
     indexing : Indexing
     problems : Problems
     walls : Walls
+    moving : MovingAxes
+    seams : Seams
     symmetry : Symmetry, optional
         Under which each column stands for itself and its images; None: for itself alone.
     copies : int
         How many equal copies the samples stand for: their areas and times count so often.
+    moved : (n,) bool, optional
+        Samples that go with simultaneous motion whatever else serves them; None: none.
     """
 
     ready: Prepared
@@ -57,8 +63,11 @@ class Task:
     indexing: Indexing
     problems: Problems
     walls: Walls
+    moving: MovingAxes
+    seams: Seams
     symmetry: Symmetry | None = None
     copies: int = 1
+    moved: NDArray[np.bool_] | None = None
 
     def images(self, columns: Columns) -> Columns:
         """The columns that some stand for: each and its images, as many of each."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import Problems, shared_area
+from plan_cutters.operations.timing import Problems, nearest, shared_area
 
 #: Samples at which choices are compared, at most about.
 SOME = 2500
@@ -36,10 +36,11 @@ def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
     ready = task.ready
     area = np.zeros(len(ready.samples))
     area[rows] = shared_area(ready.samples, task.rows, rows)
-    samples = replace(ready.samples, area=area)
+    samples, stands_for = replace(ready.samples, area=area), np.full(len(area), -1, np.int64)
+    stands_for[task.rows] = rows[nearest(ready.samples, task.rows, rows)] if len(rows) else -1
     probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred)
     walls = task.walls.of_probes(probes)
     return replace(
-        task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls,
+        task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls, seams=task.seams.among(stands_for),
         problems=Problems(samples, task.cutters, task.paths, task.indexing, walls),
     )  # fmt: skip

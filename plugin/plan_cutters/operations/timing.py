@@ -59,10 +59,14 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     """The area (r,) that some samples stand for when each of all gives its own to the nearest of them, on its face if it can."""
     if not len(rows):
         return np.zeros(0)
+    return np.bincount(nearest(samples, all_rows, rows), np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
+
+
+def nearest(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> NDArray[np.intp]:
+    """Which of some samples (r,) is the nearest to each of all (m,), on its face if it can."""
     size = float(np.linalg.norm(np.ptp(samples.point[all_rows], axis=0))) or 1.0
     place = np.column_stack([samples.point, samples.face * (_OTHER_FACE * size)])
-    nearest = cKDTree(place[rows]).query(place[all_rows])[1]
-    return np.bincount(nearest, np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
+    return np.asarray(cKDTree(place[rows]).query(place[all_rows])[1])
 
 
 class Problems:

@@ -85,6 +85,7 @@ class Effective(Frozen):
     setup_time_s: float = 300.0
     overlap_mm: float = Field(default=2.0, description="of operations at a common border")
     link_time_s: float = Field(default=1.0, description="from the end of a pass to the next one")
+    border_cost: float = Field(default=0.05, description="seconds that a mm of border on a free-form face counts in comparisons")
     most_operations: int | None = None
     process: dict[str, Any] | None = Field(
         default=None, description="the planner's own steps, as a file has them (`process.toml`); null: all steps were planned"
