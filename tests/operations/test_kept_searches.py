@@ -527,10 +527,10 @@ def test_axes_are_drawn_smooth(keeps):
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tests = {
         "free": SimpleNamespace(free=lambda rows, way: np.ones(len(rows), bool), margin=lambda rows, way: np.ones(len(rows)),
-                                width=lambda rows, way: np.ones(len(rows))),
+                                pace=lambda rows, way: np.ones(len(rows))),
         "limited": SimpleNamespace(free=lambda rows, way: (way[:, 2] >= 0.9) & (rows % 5 != 3),
                                    margin=lambda rows, way: 0.6 * way[:, 2] - 0.45 + 0.01 * (rows % 3),
-                                   width=lambda rows, way: way[:, 2]),
+                                   pace=lambda rows, way: way[:, 2]),
     }  # fmt: skip
     keeps("smooth", {name: list(moving_axes._smoothed(test, np.arange(2, 42), edge[(edge > 1).all(axis=1)], axis.copy(),
                                                       np.full(42, -1.0)))

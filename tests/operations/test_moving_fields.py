@@ -24,7 +24,7 @@ def free_everywhere(**how):
     """A stand-in for the certified test: free where `free` says so of rows and axes, and with the same room everywhere."""
     free = how.get("free", lambda rows, axis: np.ones(len(rows), bool))
     ones = lambda rows, axis: np.ones(len(rows))  # noqa: E731
-    return SimpleNamespace(free=free, margin=how.get("margin", ones), width=how.get("width", ones))
+    return SimpleNamespace(free=free, margin=how.get("margin", ones), pace=how.get("pace", ones))
 
 
 def tilted(degrees):

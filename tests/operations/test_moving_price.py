@@ -34,8 +34,8 @@ def seen(monkeypatch):
     return tasks
 
 
-def seconds(task, width):
-    return float((task.ready.samples.area[task.rows] / width).sum() / (WORDS["feed"] / 60.0))
+def seconds(task, pace):
+    return float((task.ready.samples.area[task.rows] / pace).sum() / (WORDS["feed"] / 60.0))
 
 
 @pytest.mark.parametrize("shape", [dome(20.0), patch(3)], ids=["dome", "patch"])
@@ -43,10 +43,10 @@ def test_where_nothing_is_in_the_way_motion_takes_hardly_more_than_the_bound_of_
     result = plan(shape, **WORDS)
     (task,) = seen
     best = result.plan.operations.fastest.at_best_seconds
-    _, width = task.moving.smooth(0, 0, task.rows)
-    assert 0.6 * best <= seconds(task, width) <= 1.5 * best
-    found = task.moving._test(0, 0).width(task.rows, task.everywhere[0][task.cutters[0]].axis[task.rows])
-    assert seconds(task, width) <= seconds(task, found) / _AS_WIDE**2
+    pace = task.moving._test(0, 0).pace(task.rows, task.moving.smooth(0, 0, task.rows)[task.rows])
+    assert 0.6 * best <= seconds(task, pace) <= 1.5 * best
+    found = task.moving._test(0, 0).pace(task.rows, task.everywhere[0][task.cutters[0]].axis[task.rows])
+    assert seconds(task, pace) <= seconds(task, found) / _AS_WIDE**2
 
 
 @pytest.mark.parametrize("shape", [dome(20.0), bowl(14.0), trough(9.0, 10.0)], ids=["dome", "bowl", "trough"])
@@ -56,9 +56,10 @@ def test_no_pass_is_narrower_than_that_of_the_posture_that_was_found(shape, seen
     rows, test = task.rows, task.moving._test(0, 0)
     found = task.everywhere[0][task.cutters[0]].axis[rows]
     axis, widest = task.moving.widest(0, 0, rows)
-    assert (widest >= _AS_WIDE * test.width(rows, found) * (1.0 - 1e-9)).all()
-    smooth, width = task.moving.smooth(0, 0, rows)
-    assert (width >= _AS_WIDE * widest * (1.0 - 1e-9)).all()
+    assert (widest >= _AS_WIDE * test.pace(rows, found) * (1.0 - 1e-9)).all()
+    smooth = task.moving.smooth(0, 0, rows)
+    pace = test.pace(rows, smooth[rows])
+    assert (pace >= _AS_WIDE * widest * (1.0 - 1e-9)).all()
     # What is none of the postures found was tested at its sample.
     for each in (axis, smooth[rows]):
         new = (each != found).any(axis=1)
@@ -77,6 +78,7 @@ def test_a_face_that_is_moved_goes_with_simultaneous_motion_as_a_whole(seen):
     result = plan(patch(3), **WORDS)
     (task,) = seen
     made = result.answers.operations.plans[0]
+    task = unjoined(task)
     columns = planning._columns_of(task, plan_with(task, "fastest", planning._first(task, 0.6)))
     assert len(columns)
     whole = plan_with(with_moved(task, np.unique(task.ready.samples.face)), "fastest", columns)
@@ -100,10 +102,15 @@ def bumps():
     return tasks[0]
 
 
+def unjoined(task, **options):
+    """The task with other options, whose plans keep the orientations that they are made of."""
+    options = replace(task.ready.options, most_operations=99, **options)
+    return replace(task, ready=replace(task.ready, options=options))
+
+
 def at_cost(task, cost, overlap=2.0):
     """A plan of the patch by a coarse grid of orientations, where borders cost so much."""
-    options = replace(task.ready.options, border_cost=cost, overlap=overlap, most_operations=None)
-    own = replace(task, ready=replace(task.ready, options=options))
+    own = unjoined(task, border_cost=cost, overlap=overlap)
     return plan_with(own, "fastest", planning._first(own, 0.5), times=True)
 
 
@@ -124,7 +131,7 @@ def test_the_dearer_borders_are_the_fewer_there_are(bumps):
 
 def test_motion_takes_the_place_of_a_plan_of_a_pattern_where_it_costs_less(bumps):
     task = replace(bumps, ready=replace(bumps.ready, options=replace(bumps.ready.options, most_operations=None)))
-    fixed = plan_with(task, "fastest", planning._first(task, 0.5))
+    fixed = plan_with(unjoined(task), "fastest", planning._first(task, 0.5))
     timed = against_bound(fixed.total, 0.9 * fixed.total, 1.0, 10, 20), 5.0
     (made,), (entry, area), worth, words = planning._in_motion(task, ([fixed], timed, (), ("One copy.",)))
     assert made.price < 0.98 * fixed.price
@@ -146,8 +153,8 @@ class SlowMotion:
         self.moving = moving
 
     def widest(self, cutter, setup, rows):
-        axis, width = self.moving.widest(cutter, setup, rows)
-        return axis, 0.01 * width
+        axis, pace = self.moving.widest(cutter, setup, rows)
+        return axis, 0.01 * pace
 
 
 def chessboard(side):
