@@ -326,7 +326,8 @@ def test_a_sample_given_to_an_operation_that_does_not_serve_it_is_found(written)
     question = written.question(document, arrays)
     plan = document["operations"]["plans"][0]
     label, normal = arrays["operations.npz"]["operation"], arrays["samples.npz"]["normal"]
-    axes = np.array([each["axis"] for each in plan["operations"]])
+    # Those with a fixed axis come first.
+    axes = np.array([each["axis"] for each in plan["operations"] if each["axis"] is not None])
     away = np.flatnonzero((label >= 0) & ((normal @ axes.T).min(axis=1) < -0.05))
     assert len(away)
     label[away] = (normal[away] @ axes.T).argmin(axis=1)

@@ -19,7 +19,7 @@ from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
 
 PART = str(SAMPLES / "blade.step")
-WORDS = {"cutters": "D4L40rc2", "machine": "trunnion-ac", "spacing": 8.0}
+WORDS = {"cutters": "D4L40rc2", "machine": "trunnion-ac", "spacing": 8.0, "faces": "all"}
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ _LISTED = (
     ("the models are not read", "operations.plans[].operations[].", "colour"),
     ("numbers of orbits are names", "operations.plans[].operations[].", "orbit"),
     ("it is not proved by weights alone", "operations.fewest.", "at_least"),
+    ("other plans are not made", "operations.fewest.", "one_more**"),
     ("the best weights are not looked for", "operations.fewest.", "lp"),
     ("how near candidates are where the weights lie is not looked at", "operations.fewest.", "spacing_deg"),
     ("the time was over", "operations.fewest.", "alone"),
