@@ -196,3 +196,14 @@ def test_a_pass_takes_the_feed_over_the_acceleration_of_the_slowest_axis_beside_
     paths = Paths(0.01, 0.75, {cutter: 6000.0}, 0.0, None, 1.5, machine.acceleration)
     assert paths.link_of(cutter) == pytest.approx(1.5 + 100.0 / 800.0)
     assert replace(paths, feed=None).link_of(cutter) == 0.0
+
+
+@pytest.mark.parametrize("cut", [8.0, 27.3])
+def test_a_face_that_is_cut_in_two_takes_no_less(cut):
+    """The top of a block under a ball, whole and in two faces: passes of each end at its own border."""
+    whole = cq.Workplane().box(40, 20, 5, centered=False)
+    halves = cq.Workplane().box(cut, 20, 5, centered=False)
+    halves = halves.union(cq.Workplane().box(40 - cut, 20, 5, centered=False).translate((cut, 0, 0)), clean=False)
+    one, two = (planned(each.val(), "D10L50rc5F20", faces=on(each.val(), top(5.0))) for each in (whole, halves))
+    assert two.cut_length_mm >= one.cut_length_mm * (1.0 - 1e-6)
+    assert two.cut_length_mm <= one.cut_length_mm + 2.0 * 40.0
