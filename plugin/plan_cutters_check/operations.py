@@ -149,7 +149,7 @@ def _ratio(document: Mapping[str, Any], fixed: Sequence[Mapping[str, Any]]) -> A
     timed = document["operations"]["fastest"]
     if timed is None or not timed["at_best_seconds"] > 0.0 or any(each["seconds"] is None for each in fixed):
         return None
-    ratio = max(1.0, sum(each["seconds"] for each in fixed) / timed["at_best_seconds"])
+    ratio = max(1.0, sum(each["seconds"] + each["link_seconds"] for each in fixed) / timed["at_best_seconds"])
     return Loose(ratio, ratio, 1e-6 * ratio)
 
 

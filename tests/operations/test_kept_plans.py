@@ -18,8 +18,9 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.operations import at_once, canonical, choices, companions, moving_axes, planning, plans
+from plan_cutters.operations.extent import Extents
+from plan_cutters.operations.passes import Paths
 from plan_cutters.operations.thinned import thinned
-from plan_cutters.operations.timing import Paths
 from plan_cutters.options import Options
 from tests.support.patterns import impeller
 from tests.support.shapes import Patch
@@ -221,13 +222,13 @@ def test_moving_axes_are_what_they_were(keeps):
     for cutter in ready.cutters:
         verdicts = everywhere[0][cutter]
         rows = np.flatnonzero(verdicts.reached)
-        paths = Paths(0.01, 0.75, None, 1e-3)
+        paths = Paths(0.01, 0.75, None, 1e-3, Extents(samples, ready.conditions.obstacles))
         moving = moving_axes.MovingAxes(samples, ready.cutters, ready.setups, everywhere, paths)
         test, k = moving._test(ready.cutters.index(cutter), 0), ready.cutters.index(cutter)
         tried = verdicts.axis[rows] + 0.5 * rng.normal(size=(len(rows), 3))
         tried[::9] = samples.normal[rows[::9]]
         tried /= np.linalg.norm(tried, axis=1)[:, None]
-        axis, _ = moving.smooth(k, 0, rows)
+        axis = moving.smooth(k, 0, rows)
         free = [test.free(rows, each) for each in (tried, verdicts.axis[rows], axis[rows])]
         found[cutter.id] = [axis, test.margin(rows, tried), free, sorted(moving_axes.fields(samples, axis))]
     keeps("axes_moving", found)

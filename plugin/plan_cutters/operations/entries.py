@@ -114,13 +114,13 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
 
 
 def _ratio(operations: Sequence[OperationEntry], timed: Timed | None) -> float | None:
-    """Cutting of the fixed operations over that at best; only where both are about the same area."""
+    """Cutting and links of the fixed operations over those at best; only where both are about the same area."""
     fixed = [each for each in operations if each.mode == "fixed"]
     if timed is None or timed[0].at_best_seconds <= 0.0 or any(each.seconds is None for each in fixed):
         return None
     if abs(sum(each.area_mm2 for each in fixed) - timed[1]) > _SAME_AREA * timed[1]:
         return None
-    return max(1.0, sum(each.seconds or 0.0 for each in fixed) / timed[0].at_best_seconds)
+    return max(1.0, sum((each.seconds or 0.0) + each.link_seconds for each in fixed) / timed[0].at_best_seconds)
 
 
 def _operation(

@@ -188,7 +188,7 @@ class OperationPlanEntry(Frozen):
     changes: int = Field(description="of cutters")
     pieces: int = Field(description="connected regions of its operations")
     ratio_at_most: float | None = Field(
-        description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
+        description="cutting and links of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
         "long as simultaneous motion, by the samples compared; null where that is not known"
     )
     proved_share: float | None = Field(

@@ -157,9 +157,9 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
     for plan in operations.plans:
         again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
         if plan.ratio_at_most is not None and not again:
-            cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
+            cutting = sum((each.seconds or 0.0) + each.link_seconds for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
-            yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
+            yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
     few = operations.fewest
     some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
