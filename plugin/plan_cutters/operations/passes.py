@@ -98,17 +98,26 @@ def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats
     floor = on_floor(cutter, normal, curvature, axis, paths.accuracy, paths.scallop)
     feed, either = widest.feed.copy(), floor | widest.any_feed
     feed[either] = paths.extents.longest(rows[either])
-    breadth, length = (paths.extents.along(rows, way)[0] for way in (cross(normal, feed), feed))
     flat = flat_of(cutter)
-    apart = np.where(floor, paths.stepover * flat, widest.width)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        # On a floor the outer passes cut all of the flat.
-        count = np.ceil((breadth - np.where(floor, flat, apart)) / apart - NOTHING) + 1.0
-        share = breadth / np.maximum(1.0, count)
-        strip = np.where(np.isfinite(share) & (apart > 0.0), share, apart)
-        path = np.where(floor, 1.0, centre_path(cutter, normal, direction, curvature, axis, feed, turning=turning)) / strip
-        links = np.where(np.isfinite(length), 1.0 / (strip * length), 0.0)
-    return Cut(strip, path, np.where(np.isnan(strip), np.nan, links), floor)
+
+    def fed(feed: Floats, apart: Floats) -> Cut:
+        breadth, length = (paths.extents.along(rows, way)[0] for way in (cross(normal, feed), feed))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            # On a floor the outer passes cut all of the flat.
+            count = np.ceil((breadth - np.where(floor, flat, apart)) / apart - NOTHING) + 1.0
+            share = breadth / np.maximum(1.0, count)
+            strip = np.where(np.isfinite(share) & (apart > 0.0), share, apart)
+            run = np.where(floor, 1.0, centre_path(cutter, normal, direction, curvature, axis, feed, turning=turning))
+            links = np.where(np.isfinite(length), 1.0 / (strip * length), 0.0)
+            return Cut(strip, run / strip, np.where(np.isnan(strip), np.nan, links), floor)
+
+    wide, narrow = (
+        fed(feed, np.where(floor, paths.stepover * flat, widest.width)),
+        fed(cross(normal, feed), np.where(either, np.nan, widest.narrow)),
+    )
+    # The centre may run less far in narrower strips: along a round edge and not across it.
+    better = narrow.pace(paths, cutter) > wide.pace(paths, cutter)
+    return Cut(*(np.where(better, mine, others) for mine, others in zip(narrow, wide, strict=True)))
 
 
 def flank_of(cutter: Cutter) -> tuple[float, float] | None:

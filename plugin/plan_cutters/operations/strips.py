@@ -42,6 +42,8 @@ class Strips(Record):
     free_width : (n,) float
         Largest eigenvalue of `D^-1`, mm, the radius of a ball that leaves the same gap; infinite where curvatures match. The
         smaller it is, the farther is the tool from gouging.
+    narrow : (n,) float
+        Width of the strip that is fed at right angles to that, mm.
     any_feed : (n,) bool
         Whether the strip is as wide in all feed directions.
     """
@@ -49,6 +51,7 @@ class Strips(Record):
     width: Floats
     feed: Floats
     free_width: Floats
+    narrow: Floats
     any_feed: NDArray[np.bool_]
 
 
@@ -94,16 +97,27 @@ def strips_at(
     matched = (det <= 0.0) | (largest <= 0.0) | (trace <= 0.0)
     free_width = np.where(matched, np.inf, largest)
     most = stepover * 2.0 * cutter.radius
-    with np.errstate(invalid="ignore"):
-        width = 2.0 * np.sqrt(2.0 * scallop * free_width)
-        bent = ((width > _WIDE * cutter.radius) | (offset == 0.0)) & np.isfinite(width)
-        width[bent] = _section(width[bent], curvature[bent], offset[bent], radius[bent], sine[bent], scallop)
-        width = np.minimum(most, width)
+    other = np.where(matched, largest, np.maximum(0.0, gap[:, 0, 0] + gap[:, 1, 1] - largest))
+
+    def width_of(free: Floats, curvature: Floats) -> Floats:
+        with np.errstate(invalid="ignore"):
+            width = 2.0 * np.sqrt(2.0 * scallop * np.maximum(0.0, free))
+            bent = ((width > _WIDE * cutter.radius) | (offset == 0.0)) & np.isfinite(width)
+            width[bent] = _section(width[bent], curvature[bent], offset[bent], radius[bent], sine[bent], scallop)
+            return np.minimum(most, width)
+
+    width, narrow = width_of(free_width, curvature), width_of(other, curvature[:, ::-1])
     feed = e[:, :1] * t - e[:, 1:] * f
     known = np.isfinite(radius) & np.isfinite(axis).all(axis=1)
     with np.errstate(invalid="ignore"):
         round_gap = np.hypot(gap[:, 0, 1], 0.5 * (gap[:, 0, 0] - gap[:, 1, 1])) <= _ROUND * np.abs(largest)
-    return Strips(np.where(known, width, np.nan), feed, np.where(known, free_width, np.nan), known & round_gap)
+    return Strips(
+        np.where(known, width, np.nan),
+        feed,
+        np.where(known, free_width, np.nan),
+        np.where(known, narrow, np.nan),
+        known & round_gap,
+    )
 
 
 def centre_path(

@@ -188,8 +188,8 @@ class OperationPlanEntry(Frozen):
     changes: int = Field(description="of cutters")
     pieces: int = Field(description="connected regions of its operations")
     ratio_at_most: float | None = Field(
-        description="cutting and links of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
-        "long as simultaneous motion, by the samples compared; null where that is not known"
+        description="cutting and links of the fixed operations over at_best_seconds of the fastest: they take at most so many "
+        "times as long as simultaneous motion, by the samples compared; null where that is not known"
     )
     proved_share: float | None = Field(
         description="of the area of the operations that were looked at, proved between the samples"
@@ -242,7 +242,7 @@ class FastestEntry(Frozen):
         "orientations, cutters and setups"
     )
     at_best_seconds: float = Field(
-        description="cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best, "
+        description="cutting and links, each sample with its own best axis among the candidates: simultaneous motion at its best, "
         "without its rotary speeds"
     )
     gap: float | None = Field(
