@@ -92,7 +92,8 @@ class Process:
             return {name: made[name] for name in made if name not in ("alone_mm2", "take", "own", "below_mm2")}
         return self._turned_to(step, number) | {
             "setup": step["setup"] - 1, "mode": step["mode"], "cutter": step["cutter"], "strategy": "point", "repeat": 1,
-            "repeat_deg": None, "area_mm2": 0.0, "share": 0.0, "below_mm2": 0.0, "seconds": 0.0, "clearance_mm": None,
+            "repeat_deg": None,
+            "area_mm2": 0.0, "share": 0.0, "below_mm2": 0.0, "seconds": 0.0, "link_seconds": 0.0, "clearance_mm": None,
             "operation": "", "rows": np.zeros(0, np.int64), "same": (),
         }  # fmt: skip
 
@@ -115,6 +116,7 @@ class Process:
         step: dict[str, Any] = {
             **{name: first[name] for name in _REPEATED}, **size, "operation": first["id"], "take": "share", "own": None,
             "rows": rows, "same": same,
+            "link_seconds": sum(e["link_seconds"] for e in each),
             "seconds": None if None in seconds else sum(seconds), "clearance_mm": None if None in clearances else min(clearances),
             "alone_mm2": first["exclusive_mm2"] if alone else Loose(0.0, size["area_mm2"]),
             "below_mm2": self._below(first, rows, size["area_mm2"]),

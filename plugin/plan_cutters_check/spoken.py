@@ -59,7 +59,7 @@ def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
 def _step(row: re.Match[str], step: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:
     if not _in(_share(row["share"]), step["share"]):
         yield "another share"
-    if not _in(_time(row["took"]), step["seconds"]):
+    if not _in(_time(row["took"]), None if step["seconds"] is None else step["seconds"] + step["link_seconds"]):
         yield "another time"
     if step["mode"] == "fixed":
         for name, angle in step["angles_deg"].items():

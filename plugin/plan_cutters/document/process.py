@@ -351,7 +351,8 @@ class _Parts:
             single = len(same) == 1 and not operations.own
             repeat, by = repeats(self.ready, same, mine)
             planned.append(self.step(
-                mine, same[0], seconds=_sum([each.seconds for each in same]), repeat=repeat, repeat_deg=by, take="share",
+                mine, same[0], seconds=_sum([each.seconds for each in same]),
+                link_seconds=sum(each.link_seconds for each in same), repeat=repeat, repeat_deg=by, take="share",
                 clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
                 alone_mm2=same[0].exclusive_mm2 if single else float(self.area[gone].sum()),
             ))  # fmt: skip

@@ -242,8 +242,8 @@ class FastestEntry(Frozen):
         "orientations, cutters and setups"
     )
     at_best_seconds: float = Field(
-        description="cutting and links, each sample with its own best axis among the candidates: simultaneous motion at its best, "
-        "without its rotary speeds"
+        description="cutting and links, each sample with its own best axis among the candidates: simultaneous motion at its "
+        "best, without its rotary speeds"
     )
     gap: float | None = Field(
         description="how far seconds are above bound_seconds, as a share of these, 0 or more; null as they are"
@@ -379,6 +379,7 @@ class ProcessStep(Frozen):
     area_mm2: float
     share: float = Field(description="of what is requested, 0 to 1")
     seconds: float | None = Field(description="cutting alone; null where it is not known")
+    link_seconds: float = Field(default=0.0, description="of links between its passes and to its pieces")
     below_mm2: float = Field(
         default=0.0, description="of its area, cut from below: the tool's axis points under the plane across the setup axis"
     )

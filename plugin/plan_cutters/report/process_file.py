@@ -54,7 +54,7 @@ def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
     return [
         step.model_copy(update={
             "angles_deg": each.angles_deg, "axis": each.axis, "faces": [face.face for face in each.faces],
-            "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds,
+            "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds, "link_seconds": each.link_seconds,
         })
         for each in operations
         if each.orbit == orbit
@@ -62,7 +62,7 @@ def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
 
 
 def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:
-    took = f", {duration(step.seconds)}" if step.seconds is not None else ""
+    took = f", {duration(step.seconds + step.link_seconds)}" if step.seconds is not None else ""
     turned = "" if step.mode == "fixed" else f'mode = "{step.mode}"\n'
     if step.angles_deg is not None:
         turned = f"angles = {{ {', '.join(f'{toml_key(name)} = {angle!r}' for name, angle in step.angles_deg.items())} }}\n"

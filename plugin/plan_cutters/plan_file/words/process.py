@@ -156,7 +156,7 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         turned=times + turned,
         cutter=what if len(what) <= _name_width(fixed) else f"{what[: _name_width(fixed) - 3]}...",
         share=percent(step.share, some=step.area_mm2 > 0.0),
-        took=duration(step.seconds),
+        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
         faces=step.faces,
         alone="" if step.alone_mm2 is None else area(step.alone_mm2),
         operation=step.operation,
