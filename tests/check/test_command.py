@@ -34,7 +34,7 @@ def test_a_plan_that_holds_ends_with_0(copied):
 @pytest.mark.slow("checks a plan many times")
 def test_a_forged_plan_ends_with_1(copied):
     document = json.loads((copied / "plan.json").read_text())
-    document["operations"]["plans"][0]["operations"][0]["angles_deg"] = {"C": 0.0, "A": 45.0}
+    document["operations"]["plans"][0]["operations"][0]["angles_deg"] = {"C": 0.0, "B": 45.0}
     (copied / "plan.json").write_text(json.dumps(document))
     done = checked(copied)
     assert done.returncode == 1

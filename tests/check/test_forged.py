@@ -240,7 +240,7 @@ class TestTheForgeriesOfTheTrial:
         ("word", "value"),
         [("frame", {"origin": [0.0, 0.0, 0.0], "x": [0.6, 0.8, 0.0], "z": [0.0, 0.0, 1.0]}), ("clearance_mm", 50.0),
          ("axis", [0.0, 0.6, 0.8]), ("axis", [float("nan")] * 3), ("setup", -1), ("setup", 1), ("samples", 1),
-         ("other_angles_deg", {"C": 1.0, "A": 1.0}), ("cutter", "R2L40rc2F10S3HR16L60"), ("mode", "simultaneous")],
+         ("other_angles_deg", {"C": 1.0, "B": 1.0}), ("cutter", "R2L40rc2F10S3HR16L60"), ("mode", "simultaneous")],
     )  # fmt: skip
     def test_an_operation(self, written, word, value):
         document, _ = written.copies()

@@ -18,10 +18,10 @@ from tests.support.places import ROOT
 
 PART = str(ROOT / "samples/pocket_top.step")
 WORDS = {"cutters": ["R3L40rc1F12S3", "R2L40rc2F10S3"], "holder": "er16", "fixtures": "table", "faces": "all", "grid": 3,
-         "machine": "trunnion-ac", "tilt": (0.0, math.radians(60.0))}  # fmt: skip
+         "machine": "trunnion-bc", "tilt": (0.0, math.radians(60.0))}  # fmt: skip
 #: The same on a command line.
 TYPED = ("--cutter", "R3L40rc1F12S3", "--cutter", "R2L40rc2F10S3", "--holder", "er16", "--fixture", "table", "--faces", "all",
-         "--grid", "3", "--machine", "trunnion-ac", "--tilt", "0:60")  # fmt: skip
+         "--grid", "3", "--machine", "trunnion-bc", "--tilt", "0:60")  # fmt: skip
 FILES = ("operations.npz", "samples.npz")
 
 
