@@ -16,7 +16,7 @@ HOW = {
     "cutters": ["D6L40F20"],
     "fixtures": "table",
     "machine": "trunnion-ac",
-    "feed": 1000.0,
+    "feed": 3000.0,
     "grid": 4,
     "area_budget": 0,
     "operations": "fastest",

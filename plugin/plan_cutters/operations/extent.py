@@ -13,7 +13,7 @@ Rows = NDArray[np.int64]
 DIRECTIONS = 12
 #: Samples of a face at which it is measured, at most about, and of one of many triangles, by how many these are together; others
 #: take what the nearest one has.
-_OF_A_FACE, _AT_LEAST, _TOGETHER = 200, 16, 100_000
+_OF_A_FACE, _AT_LEAST, _TOGETHER = 100, 16, 60_000
 
 
 class Extents:

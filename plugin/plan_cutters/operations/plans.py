@@ -17,7 +17,7 @@ from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.fewer_steps import Steps, in_one_step, without_minor_steps
+from plan_cutters.operations.fewer_steps import MINOR_SECONDS, MINOR_SHARE, Steps, in_one_step, without_minor_steps
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task
@@ -275,10 +275,13 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
             for s in range(len(task.everywhere)) for cutter in task.cutters if (cutter, s) not in there
         ]  # fmt: skip
     verdicts, open_ = task.everywhere if own is None else own.others, task.ready.machinable
+    may_move = np.isin(samples.face, free_form) | _little(made, area, _speed(task, made.operations, number))
     for each in operations[cost.shape[1] :]:
         c, mine = task.cutters.index(each.cutter), each.rows
         if not each.step:
-            mine = task.rows[(verdicts[each.setup][each.cutter].reached & open_[each.setup])[task.rows]]
+            able = verdicts[each.setup][each.cutter].reached & open_[each.setup] & may_move
+            able[mine] = True
+            mine = task.rows[able[task.rows]]
         column = np.full((len(number), 2), np.nan)
         column[mine, 0] = task.moving.widest(c, each.setup, mine)[1]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -297,6 +300,17 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     fewer = in_one_step(steps, number, samples.face, free_form)
     fewer = without_minor_steps(steps, fewer, incomplete=bool((task.ready.finished & ~somewhere).any()))
     return (made, task.rows[:0]) if np.array_equal(fewer, number) else _made_of(operations, fewer, made, pace, area)
+
+
+def _little(made: _Made, area: Floats, speed: Floats) -> NDArray[np.bool_]:
+    """The samples (n,) of operations of little area or time, which may be joined to others."""
+    mine = np.flatnonzero(made.number >= 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        seconds = area / (made.pace * speed)
+    many = len(made.operations)
+    size, time = (np.bincount(made.number[mine], each[mine], many) for each in (area, seconds))
+    little = (size < MINOR_SHARE * size.sum()) | (time < MINOR_SECONDS)
+    return np.append(little, False)[made.number]
 
 
 def _free_form(task: Task, number: NDArray[np.int32]) -> list[int]:

@@ -28,7 +28,7 @@ Rows = NDArray[np.int64]
 #: Share of the scallop height by which the floor may leave a flat tip, or a wall the flutes: rounding stays below it.
 _WITHIN = 1.0 - 1e-6
 #: Halvings by which it is found where a strip above an obstacle begins.
-_HALVINGS = 7
+_HALVINGS = 5
 #: In a corner of its own radius the centre stands still: it counts as running by this share of what the contact runs.
 _STANDS_STILL = 0.01
 
@@ -153,19 +153,23 @@ class Walls:
         """
         raised = np.full(len(rows), np.nan)
         known = np.isfinite(low)
+        # Kept off by what the surface may be off, so that a shank as wide as the flutes does not touch the wall above.
+        lower, off = self._tangent(rows, ruling), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance) * square
 
-        def free(which: Rows, height: Floats) -> NDArray[np.bool_]:
-            return self._stands(c, s, axis, rows[which], square[which], ruling[which], low[which] + height)[1]
+        def free(which: Rows, height: Floats, away: Floats) -> NDArray[np.bool_]:
+            point = self._probes.samples.point[rows[which]] + (low[which] + height)[:, None] * lower[which] + away[which]
+            return self._free(c, s, axis, rows[which], point, square[which])
 
         for start in starts:
-            open_ = np.flatnonzero(known & np.isnan(raised) & (-low >= start - NOTHING))
-            raised[open_[free(open_, np.full(len(open_), start))]] = start
+            for away in (0.0 * off, off):
+                open_ = np.flatnonzero(known & np.isnan(raised) & (-low >= start - NOTHING))
+                raised[open_[free(open_, np.full(len(open_), start), away)]] = start
         blocked, free_at = np.full(len(rows), starts[-1]), -low
         open_ = np.flatnonzero(known & np.isnan(raised) & (free_at > blocked + NOTHING))
-        open_ = open_[free(open_, free_at[open_])]
+        open_ = open_[free(open_, free_at[open_], off)]
         for _ in range(_HALVINGS):
             middle = 0.5 * (blocked[open_] + free_at[open_])
-            good = free(open_, middle)
+            good = free(open_, middle, off)
             free_at[open_[good]], blocked[open_[~good]] = middle[good], middle[~good]
         raised[open_] = free_at[open_]
         return raised
@@ -205,12 +209,11 @@ class Walls:
         return result
 
     def _stands(
-        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, strip: Floats | None = None
+        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, high: Floats
     ) -> tuple[Floats, NDArray[np.bool_]]:
         """Where a tool touches (m, 3) at the lower ends of strips, mm along the ruling from samples, and where it is free."""
         tangent = self._tangent(rows, ruling)
         out = (tangent * square).sum(axis=1)
-        high = np.zeros(len(rows)) if strip is None else strip
         # The flutes touch where the wall stands out farthest over the strip.
         point = self._probes.samples.point[rows] + low[:, None] * tangent + np.maximum(0.0, high * out)[:, None] * square
         free = self._free(c, s, axis, rows, point, square)
