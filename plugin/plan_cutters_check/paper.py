@@ -184,7 +184,7 @@ class Paper:
             tool = self.question.tools[each["cutter"]]
             # Along walls the flutes are the limit: `Strategies` compares strips with these.
             # A floor that is no wider than the tip is cut in one pass.
-            by_tip = np.where(floors[mine], 1.0, assumed["stepover"]) * 2.0 * tool.radius
+            by_tip = np.where(floors[mine] | (each["axis"] is None), 1.0, assumed["stepover"]) * 2.0 * tool.radius
             widest[mine] = np.where(walls[mine], tool.flutes, by_tip)
         own = label >= 0
         same = np.isclose(seconds[own], wanted[own], rtol=1e-9, atol=1e-12, equal_nan=True).all()

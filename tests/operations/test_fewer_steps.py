@@ -12,12 +12,12 @@ from plan_cutters.operations.fewer_steps import Steps, in_one_step, without_mino
 INF = math.inf
 
 
-def steps_of(cost, area, *, group=None, free=None, timed=True, turn=5.0):
+def steps_of(cost, area, *, group=None, free=None, moving=None, timed=True, turn=5.0):
     cost = np.array(cost, float)
     many = cost.shape[1]
     return Steps(
         cost, np.arange(many) if group is None else np.array(group), np.ones(many, bool) if free is None else np.array(free),
-        np.array(area, float), timed, lambda used: turn * len(used),
+        np.zeros(many, bool) if moving is None else np.array(moving), np.array(area, float), timed, lambda used: turn * len(used),
     )  # fmt: skip
 
 
@@ -98,6 +98,14 @@ def test_a_face_of_free_form_goes_into_the_step_that_serves_nearly_all_of_it(ser
     assert in_one_step(steps, number, np.ones(n, np.int32), []).tolist() == number.tolist()
 
 
+def test_a_fixed_step_of_a_large_area_does_not_go_with_motion():
+    """However short: nobody turns the axes while a table top is faced. A small one does."""
+    short = steps_of([[2.0, 2.0], [INF, 2.0]], [900.0, 0.8], moving=[False, True])
+    assert without_minor_steps(short, numbers(0, 1), incomplete=False).tolist() == [0, 1]
+    little = steps_of([[2.0, 2.0], [INF, 90.0]], [8.0, 900.0], moving=[False, True])
+    assert without_minor_steps(little, numbers(0, 1), incomplete=False).tolist() == [1, 1]
+
+
 @settings(max_examples=150, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_samples_go_with_what_serves_them_and_the_minutes_do_not_rise(seed):
@@ -107,7 +115,7 @@ def test_samples_go_with_what_serves_them_and_the_minutes_do_not_rise(seed):
     cost[np.arange(n), rng.integers(0, many, n)] = 1.0
     group = rng.integers(0, many, many)
     area, face = 10.0 ** rng.uniform(-2, 3, n), rng.integers(1, 4, n).astype(np.int32)
-    steps = Steps(cost, group, (rng.random(many) < 0.8)[group], area, True, lambda used: 4.0 * len(used))
+    steps = Steps(cost, group, (rng.random(many) < 0.8)[group], np.zeros(many, bool), area, True, lambda used: 4.0 * len(used))
     number = cost.argmin(axis=1).astype(np.int32)
     whole = in_one_step(steps, number, face, [1, 2])
     assert np.isfinite(cost[np.arange(n), whole]).all()

@@ -207,3 +207,15 @@ def test_a_face_that_is_cut_in_two_takes_no_less(cut):
     one, two = (planned(each.val(), "D10L50rc5F20", faces=on(each.val(), top(5.0))) for each in (whole, halves))
     assert two.cut_length_mm >= one.cut_length_mm * (1.0 - 1e-6)
     assert two.cut_length_mm <= one.cut_length_mm + 2.0 * 40.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_sample_takes_a_longer_path_than_its_face_goes_on(seed):
+    """Faces with slivers at their borders: a sample's area stands for no more than a pass along all of its face."""
+    rng = np.random.default_rng(seed)
+    corner = [(0, 0), (30, 0), *((30 - 5 * k, 8 + float(rng.uniform(-6, 6))) for k in range(6)), (0, 1e-3)]
+    shape = cq.Workplane().polyline(corner).close().extrude(5.0).val()
+    result = plan(shape, cutters="D12L60F26", **{**OPTIONS, "faces": on(shape, top(5.0)), "grid": 21})
+    made = result.answers.operations.plans[0]
+    longest = np.linalg.norm(np.ptp(result.samples.point, axis=0))
+    assert np.nanmax(made.length) <= longest

@@ -17,6 +17,7 @@ HOW = {
     "fixtures": "table",
     "machine": "trunnion-ac",
     "feed": 3000.0,
+    "link_time": 0.1,
     "grid": 4,
     "area_budget": 0,
     "operations": "fastest",
@@ -61,6 +62,6 @@ def test_a_sliver_is_left_where_something_is_left_anyway(short, tmp_path):
     for name in ("operations.npz", "samples.npz"):
         with np.load(tmp_path / name) as archive:
             arrays[name] = {each: archive[each] for each in archive.files}
-    options = Options.of({word: value for word, value in asked.items() if word not in ("operations", "feed")})
+    options = Options.of({word: value for word, value in asked.items() if word not in ("operations", "feed", "link_time")})
     checked = check(question_of(part, options, document, arrays), seconds=10)
     assert checked.holds, checked.lines

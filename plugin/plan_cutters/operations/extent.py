@@ -87,3 +87,8 @@ class Extents:
             connected, whole = np.empty((2, len(some)))
             sections(point, along, normal, vertex, near, near, connected, whole)
             self._length[0, known, k], self._length[1, known, k] = connected[nearest], whole[nearest]
+        # A sample has its area there: what the triangles about a border say is no less than that allows.
+        longest = np.nan_to_num(self._length[0, known]).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            least = np.nan_to_num(samples.area[known] / longest, posinf=0.0)
+        self._length[:, known] = np.maximum(self._length[:, known], least[:, None])

@@ -37,6 +37,8 @@ class Steps:
         Steps of one number are images of each other: to a machinist one step.
     free : (k,) bool
         Whether a step was planned: a person's own keeps its samples, and takes no others.
+    moving : (k,) bool
+        Whether it is simultaneous motion, which takes no step of a large area that a fixed orientation cuts.
     area : (n,) float
         Of the samples, mm2.
     timed : bool
@@ -48,6 +50,7 @@ class Steps:
     cost: Floats
     group: NDArray[np.int64]
     free: NDArray[np.bool_]
+    moving: NDArray[np.bool_]
     area: Floats
     timed: bool
     spent: Callable[[tuple[int, ...]], float]
@@ -148,6 +151,8 @@ def _joined(steps: Steps, number: Ints, rows: Rows, more: float | None) -> Ints 
     """
     used = np.unique(number[number >= 0])
     others = used[steps.free[used] & ~np.isin(steps.group[used], steps.group[number[rows]])]
+    if not steps.moving[number[rows]].any() and steps.area[rows].sum() >= MINOR_SHARE * steps.area[number >= 0].sum():
+        others = others[~steps.moving[others]]
     if not len(others):
         return None
     cost = steps.cost[np.ix_(rows, others)]

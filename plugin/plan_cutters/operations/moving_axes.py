@@ -49,7 +49,7 @@ class _Test:
     paths: Paths
 
     def pace(self, rows: Rows, axis: Floats) -> Floats:
-        """What a mm of path cuts (m,) at samples with axes (m, 3), mm2; nan where the tool does not touch."""
+        """Give what a mm of path cuts (m,) at samples with axes (m, 3), mm2; nan where the tool does not touch."""
         return cut_by_tip(self.context.cutter, self.samples, rows, axis, self.paths, turning=True).pace(
             self.paths, self.context.cutter
         )

@@ -1,4 +1,4 @@
-"""What passes take: the width of a strip, the path of the tool's centre, and the links between passes."""
+"""Passes take this: the width of a strip, the path of the tool's centre, and the links between passes."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -61,7 +61,7 @@ class Paths:
 
 
 class Cut(NamedTuple):
-    """What cutting at samples (m,) takes; nan where the tool does not touch.
+    """Cutting at samples (m,) takes this; nan where the tool does not touch.
 
     Attributes
     ----------
@@ -81,14 +81,14 @@ class Cut(NamedTuple):
     floor: NDArray[np.bool_]
 
     def pace(self, paths: Paths, cutter: Cutter) -> Floats:
-        """What a mm of path cuts, mm2/mm, with links counted as the path that is run meanwhile."""
+        """Give what a mm of path cuts, mm2/mm, with links counted as the path that is run meanwhile."""
         link = paths.link_of(cutter)
         with np.errstate(divide="ignore"):
             return np.asarray(1.0 / (self.path + (0.0 if link == 0.0 else link * paths.speeds([cutter])[0]) * self.links))
 
 
 def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False) -> Cut:
-    """What passes by the tip take at samples (m,) with axes (m, 3), fixed or turning with the surface.
+    """Find what passes by the tip take at samples (m,) with axes (m, 3), fixed or turning with the surface.
 
     A face is cut in as many passes as there must be, at least one: they are as wide as their share of it. On a floor passes
     are the step-over apart, as a share of the flat part: what its corner cuts beside that is not counted.

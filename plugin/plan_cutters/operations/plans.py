@@ -295,7 +295,8 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     def spent(used: tuple[int, ...]) -> float:
         return _other(task, workplanes([operations[k] for k in used], task.ready, task.indexing))
 
-    steps = Steps(cost, group, planned, area, task.paths.feed is not None, spent)
+    moving = np.array([each.axis is None for each in operations])
+    steps = Steps(cost, group, planned, moving, area, task.paths.feed is not None, spent)
     somewhere = np.logical_or.reduce([its[each].reached & open_[s] for s, its in enumerate(verdicts) for each in task.cutters])
     fewer = in_one_step(steps, number, samples.face, free_form)
     fewer = without_minor_steps(steps, fewer, incomplete=bool((task.ready.finished & ~somewhere).any()))

@@ -30,7 +30,7 @@ def paces(
     paths: Paths,
     where: NDArray[np.bool_] | None = None,
 ) -> Floats:
-    """What a mm of path by the tip cuts (rows, columns), mm2, whether a column serves there or not; nan where it does not touch.
+    """Find what a mm of path by the tip cuts (rows, columns), mm2, wherever a column serves; nan where it does not touch.
 
     With `where` (rows, columns) it is nan elsewhere, too.
     """

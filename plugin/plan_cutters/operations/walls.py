@@ -61,7 +61,7 @@ class Passes(Record):
 
     @property
     def cut(self) -> Cut:
-        """What cutting takes."""
+        """Give what cutting takes."""
         return Cut(self.strip, self.path, self.links, np.zeros(len(self.strip), bool))
 
 

@@ -24,7 +24,7 @@ class _Pieces(NamedTuple):
 @kernel
 def _crossing(triangle, point, frame, ends):
     """Write the piece of a triangle in the plane of two of a frame (3, 3): along, over, across; whether there is one."""
-    found, through = 0, 0.0
+    many, through = 0, 0.0
     for k in range(3):
         through += point[k] * frame[2, k]
     first = triangle[0, 0] * frame[2, 0] + triangle[0, 1] * frame[2, 1] + triangle[0, 2] * frame[2, 2] - through
@@ -47,10 +47,10 @@ def _crossing(triangle, point, frame, ends):
             x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
             along += x * frame[0, k]
             over += x * frame[1, k]
-        if found < 2:
-            ends[2 * found], ends[2 * found + 1] = along, over
-        found += 1
-    return found >= 2 and math.hypot(ends[2] - ends[0], ends[3] - ends[1]) > _IN_PLANE
+        if many < 2:
+            ends[2 * many], ends[2 * many + 1] = along, over
+        many += 1
+    return many >= 2 and math.hypot(ends[2] - ends[0], ends[3] - ends[1]) > _IN_PLANE
 
 
 @kernel
