@@ -143,11 +143,11 @@ def test_every_axis_of_wide_passes_stands_free_by_another_program(leaning):
     arrays = leaning.arrays["operations.npz"]
     label, axis = arrays["operation"], arrays["moving_axis"]
     modes = [each["mode"] for each in leaning.document["operations"]["plans"][0]["operations"]]
-    assert modes == ["simultaneous"]
-    assert np.isfinite(axis[label >= 0]).all()
+    moved = label == modes.index("simultaneous")
+    assert np.isfinite(axis[moved]).all()
     # These are others than those of the verdicts.
     found = leaning.arrays["samples.npz"][f"axis_{leaning.document['cutters'][0]['id']}"]
-    assert (np.abs(axis - found).max(axis=1) > 1e-3).mean() > 0.5
+    assert (np.abs(axis - found).max(axis=1)[moved] > 1e-3).mean() > 0.5
     line = placed(leaning)
     assert line.holds, line.words
     assert f"put down at {(label >= 0).sum()} samples; at 0 " in line.words
