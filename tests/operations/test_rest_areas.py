@@ -137,7 +137,7 @@ def test_plans_of_two_cutters_agree_with_themselves():
 
 
 def test_a_ball_in_a_plane_trough_takes_the_seconds_of_its_width():
-    """In a cylinder, fed along it, the section is a circle in a circle; across it, where the centre runs less far, a circle on a line."""
+    """Along a cylinder the section is a circle in a circle; across, where the centre runs less far, a circle on a line."""
     c, radius, feed = -10.0, 6.0, 1000.0
     cosine = ((c + radius) ** 2 + (c + 0.01) ** 2 - radius**2) / (2 * (c + radius) * (c + 0.01))
     along, across = 2.0 * abs(c) * math.acos(cosine), 2.0 * math.sqrt(2.0 * radius * 0.01 - 0.01**2)

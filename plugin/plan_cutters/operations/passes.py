@@ -83,7 +83,7 @@ class Cut(NamedTuple):
     def pace(self, paths: Paths, cutter: Cutter) -> Floats:
         """Give what a mm of path cuts, mm2/mm, with links counted as the path that is run meanwhile."""
         link = paths.link_of(cutter)
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(1.0 / (self.path + (0.0 if link == 0.0 else link * paths.speeds([cutter])[0]) * self.links))
 
 
@@ -113,7 +113,7 @@ def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats
 
     wide, narrow = (
         fed(feed, np.where(floor, paths.stepover * flat, widest.width)),
-        fed(cross(normal, feed), np.where(either, np.nan, widest.narrow)),
+        fed(cross(normal, feed), np.where(either | ~(widest.narrow > 0.0), np.nan, widest.narrow)),
     )
     # The centre may run less far in narrower strips: along a round edge and not across it.
     better = narrow.pace(paths, cutter) > wide.pace(paths, cutter)
