@@ -148,6 +148,11 @@ class OperationPlan:
         fixed = [each.orbit for each in self.operations if each.mode == "fixed"]
         return len({orbit for orbit in fixed if orbit >= 0}) + sum(orbit < 0 for orbit in fixed)
 
+    @property
+    def moves(self) -> bool:
+        """Whether some of it is simultaneous motion."""
+        return any(each.mode == "simultaneous" for each in self.operations)
+
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""
         mine, others = (

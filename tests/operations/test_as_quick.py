@@ -22,7 +22,9 @@ def plan_of(seconds, *, moving=0, untimed=0, other=0.0, name="plan"):
     if moving:
         operations.append(SimpleNamespace(mode="simultaneous", rows=np.flatnonzero(label == 1)))
     total = math.nan if untimed else seconds + other
-    return SimpleNamespace(label=label, seconds=each, other=other, total=total, operations=operations, orientations=3, name=name)
+    return SimpleNamespace(
+        label=label, seconds=each, other=other, total=total, operations=operations, orientations=3, name=name, moves=moving > 0
+    )
 
 
 def offer_of(*plans, reckoned=None):

@@ -98,9 +98,10 @@ def even(limits: tuple[float, float] | None, *, turns: bool) -> bool:
     return low == -high or abs(low + high) <= _EVEN or (turns and high - low >= 2.0 * math.pi)
 
 
-def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None) -> Axis:
+def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None,
+           acceleration: float | None = None) -> Axis:  # fmt: skip
     """X, Y or Z as ISO 841 has it."""
-    return Axis(name, "linear", carries, ISO[name], limits, rate=rate)
+    return Axis(name, "linear", carries, ISO[name], limits, rate=rate, acceleration=acceleration)
 
 
 def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: tuple[float, float] | None = None,

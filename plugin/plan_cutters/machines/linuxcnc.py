@@ -6,7 +6,6 @@ Only kinematics whose sources were read are taken (src/emc/kinematics of LinuxCN
 """
 
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -318,7 +317,7 @@ class _Reading:
 
     def linear(self, letter: str) -> Axis:
         rate, change = (self.least(letter, word) for word in ("MAX_VELOCITY", "MAX_ACCELERATION"))
-        return replace(chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), rate), acceleration=change)
+        return chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), rate, change)
 
     def rotary(self, letter: str, carries: str, against: bool, point: chain.Vector) -> Axis:
         direction = chain.opposite(chain.ISO[letter]) if against else chain.ISO[letter]

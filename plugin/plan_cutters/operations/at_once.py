@@ -50,8 +50,7 @@ class _Times:
     def of(cls, task: Task, columns: Columns) -> "_Times":
         area, cost = costs_with(task, columns)
         motion = moving_over(task, task.rows)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moving = area / (motion.pace * task.paths.speeds(task.cutters)[motion.cutter])
+        moving = motion.costs(task, area)
         # Where its time is not known, motion is taken to be as slow as the slowest column: it must not look quick.
         slowest = np.where(np.isfinite(cost), cost, 0.0).max(axis=1, initial=0.0)
         return cls(task, columns, cost, np.where(np.isfinite(moving), moving, slowest), motion.cutter, motion.setup)

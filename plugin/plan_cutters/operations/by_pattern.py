@@ -204,7 +204,7 @@ def as_quick(
 
 def _without_repeats(plan: OperationPlan) -> str:
     """Say what a plan takes that was compared with one of repeated steps."""
-    moving = " and simultaneous motion" if any(each.mode == "simultaneous" for each in plan.operations) else ""
+    moving = " and simultaneous motion" if plan.moves else ""
     return f"Without repeated steps {count(plan.orientations, 'orientation')}{moving} would take {duration(plan.total)}."
 
 

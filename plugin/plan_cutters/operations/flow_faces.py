@@ -64,9 +64,7 @@ def _tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
     rows = task.rows[np.isin(samples.face[task.rows], faces)]
     if not len(rows):
         return
-    motion = moving_over(task, rows)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        seconds = samples.area[rows] / (motion.pace * task.paths.speeds(task.cutters)[motion.cutter])
+    seconds = moving_over(task, rows).costs(task, samples.area[rows])
     known = [face for face in faces.tolist() if np.isfinite(seconds[samples.face[rows] == face]).all()]
     if known:
         yield known

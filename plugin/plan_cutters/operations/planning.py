@@ -262,7 +262,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     columns = recommended(task, _columns_of(task, best))
     fixed = best.orientations
     if len(columns) == fixed:
-        still = [each for each in plans if not _moves(each)] if _moves(best) else []
+        still = [each for each in plans if not each.moves] if best.moves else []
         sentence = (f"{_with_fixed(min(still, key=lambda each: each.price))}.",) if still else ()
         return replace(best, name="fastest"), sentence
     tried = [plan_with(task, "fastest", columns, times=True), *(each for each in plans if few_enough(task, each))]
@@ -276,7 +276,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"With fixed orientations alone, {fixed} of them, the fastest plan would take {duration(best.total)}; simultaneous "
         f"motion is recommended in place of {many}, for {why}."
     )
-    return replace(chosen, name="fastest"), (words,) if _moves(chosen) else ()
+    return replace(chosen, name="fastest"), (words,) if chosen.moves else ()
 
 
 def _in_motion(task: Task, quick: PlansTimed) -> PlansTimed:
@@ -303,10 +303,6 @@ def _why_in_motion(fixed: OperationPlan, moving: OperationPlan, faces: Sequence[
 
 def _with_fixed(plan: OperationPlan) -> str:
     return f"With {count(plan.orientations, 'fixed orientation')} it would take about {duration(plan.total)}"
-
-
-def _moves(plan: OperationPlan) -> bool:
-    return any(each.mode == "simultaneous" for each in plan.operations)
 
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:

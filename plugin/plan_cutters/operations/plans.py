@@ -102,28 +102,32 @@ def plan_with(
         made, short = _fewer(task, made, np.where(may, cost, np.inf)[:, order], pace[:, order], own)
     operations, number, table, moving = made
     region = regions_of(number, edge, area)
-    if times:
-        return _only_timed(task, name, operations, number, table, region, moving, short, mark * task.seams.marks(number))
-    operations = [_moving_in_a_field(task, each) for each in operations]
     strip, length, link = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
-    for k, operation in enumerate(operations):
-        stands, mine = _stands(task, operation), operation.rows
-        strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
-        if task.paths.feed is not None:
-            link[mine] = area[mine] * stands.cut.links * task.paths.link_of(operation.cutter)
-        tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
-        strategy[mine] = stands.strategy
-        clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
-        linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
-        operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
+    if times:
+        # Links between passes are in the pace, and so in the seconds of samples.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            strip, length = moving, area / moving
+        links = sum(_to_pieces(task, region[each.rows]) for each in operations)
+    else:
+        operations = [_moving_in_a_field(task, each) for each in operations]
+        for k, operation in enumerate(operations):
+            stands, mine = _stands(task, operation), operation.rows
+            strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
+            if task.paths.feed is not None:
+                link[mine] = area[mine] * stands.cut.links * task.paths.link_of(operation.cutter)
+            tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
+            strategy[mine] = stands.strategy
+            clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
+            linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
+            operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
+        links = sum(each.fields["link_seconds"] for each in operations)
     operations = workplanes(operations, task.ready, task.indexing)
     seconds = length / _speed(task, operations, number)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
-        sum(each.fields["link_seconds"] for each in operations), other, short,
-        mark * task.seams.marks(number),
+        links, other, short, mark * task.seams.marks(number),
     )  # fmt: skip
 
 
@@ -133,24 +137,6 @@ def _moving_in_a_field(task: Task, operation: Operation) -> Operation:
         return operation
     axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
     return replace(operation, moving=(axis, np.full(len(axis), -1, np.int32)))
-
-
-def _only_timed(
-    task: Task, name: str, operations: Sequence[Operation], number: NDArray[np.int32], table: NDArray[np.bool_], region: Ints,
-    pace: Floats, short: Rows, marks: float,
-) -> OperationPlan:  # fmt: skip
-    """A plan whose times alone are known: links are in the seconds of samples, but for those to its pieces."""
-    n, area = len(number), np.nan_to_num(task.ready.samples.area)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        length = area / pace
-    operations = workplanes(operations, task.ready, task.indexing)
-    seconds, none = length / _speed(task, operations, number), np.full((n, 3), np.nan)
-    links = sum(_to_pieces(task, region[each.rows]) for each in operations)
-    cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
-    return OperationPlan(
-        name, tuple(operations), number, table, pace, length, seconds, region, none, np.zeros(n, np.uint8), none, none[:, 0],
-        cutting, links, other, short, marks,
-    )  # fmt: skip
 
 
 def _to_pieces(task: Task, region: Ints) -> float:
@@ -212,6 +198,11 @@ class Motion:
     cutter: Rows
     setup: Rows
     pace: Floats
+
+    def costs(self, task: Task, area: Floats) -> Floats:
+        """Seconds with links (m,), or mm of path without a feed, of samples with an area (m,); not finite where not known."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(area / (self.pace * task.paths.speeds(task.cutters)[self.cutter]))
 
 
 def moving_over(task: Task, rows: Rows) -> Motion:

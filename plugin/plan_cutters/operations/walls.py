@@ -192,14 +192,24 @@ class Walls:
         good = np.flatnonzero((strip > self._scallop) & (above >= -NOTHING) & (above <= most + NOTHING))
         if not len(good):
             return result
-        point, free = self._stands(c, s, axis, rows[good], square[good], ruling[good], -above[good], strip[good])
+        tangent, jut = tangent[good], strip[good] * out[good]
+        # The flutes touch where the wall stands out farthest over the strip.
+        point = self._probes.samples.point[rows[good]] - above[good, None] * tangent
+        point += np.maximum(0.0, jut)[:, None] * square[good]
+        free = self._free(c, s, axis, rows[good], point, square[good])
+        # A shank as wide as the flutes may not touch the wall above them: kept off by what the surface may be off, it does not.
+        # What a strip leaves already, for the wall is not quite along the flutes, counts as well.
+        met, off = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)
+        point[met] += np.maximum(0.0, off - np.abs(jut[met]))[:, None] * square[good[met]]
+        free[met] = self._free(c, s, axis, rows[good[met]], point[met], square[good[met]])
+        tangent = tangent[free]
         good, point = good[free], point[free]
         result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]
         # A window in a wall is no wall: strips are as high as what there is along them.
-        there = self._paths.extents.along(rows[good], tangent[good])[1]
+        there = self._paths.extents.along(rows[good], tangent)[1]
         there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
         samples, cutter = self._probes.samples, self._probes.cutters[c]
-        feed = cross(samples.normal[rows[good]], tangent[good])
+        feed = cross(samples.normal[rows[good]], tangent)
         shape = samples.normal[rows[good]], samples.direction_max[rows[good]], samples.curvature[rows[good]]
         side = np.full(len(good), cutter.radius), np.zeros(len(good))
         axes = np.broadcast_to(axis, (len(good), 3))
@@ -207,23 +217,6 @@ class Walls:
         length = self._paths.extents.along(rows[good], feed)[0]
         result.links[good] = np.where(np.isfinite(length), 1.0 / (there * length), 0.0)
         return result
-
-    def _stands(
-        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, high: Floats
-    ) -> tuple[Floats, NDArray[np.bool_]]:
-        """Where a tool touches (m, 3) at the lower ends of strips, mm along the ruling from samples, and where it is free."""
-        tangent = self._tangent(rows, ruling)
-        out = (tangent * square).sum(axis=1)
-        # The flutes touch where the wall stands out farthest over the strip.
-        point = self._probes.samples.point[rows] + low[:, None] * tangent + np.maximum(0.0, high * out)[:, None] * square
-        free = self._free(c, s, axis, rows, point, square)
-        # A shank as wide as the flutes may not touch the wall above them: kept off by what the surface may be off, it does not.
-        # What a strip leaves already, for the wall is not quite along the flutes, counts as well.
-        met, off = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)
-        keep = np.maximum(0.0, off - high[met] * np.abs(out[met]))
-        point[met] += keep[:, None] * square[met]
-        free[met] = self._free(c, s, axis, rows[met], point[met], square[met])
-        return point, free
 
     def _tangent(self, rows: Rows, ruling: Floats) -> Floats:
         """Unit directions (m, 3) in the face nearest to those of the flutes."""

@@ -10,7 +10,26 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot
 
 #: Distances from the plane of a line below which a corner lies in it, mm.
-_IN_PLANE = 1e-9
+IN_PLANE = 1e-9
+
+
+@kernel
+def crossing(s, t):
+    """Where on an edge a plane lies, from 0 to 1, by the distances of its ends from it; -1 where it does not cross the edge."""
+    if abs(s) <= IN_PLANE:
+        return 0.0
+    return s / (s - t) if s * t < 0.0 and abs(t) > IN_PLANE else -1.0
+
+
+@kernel
+def place_on(triangle, i, share, point, ruling, normal):
+    """Give a place on the edge from corner i, as (along, over) a line through a point."""
+    j, along, over = (i + 1) % 3, 0.0, 0.0
+    for k in range(3):
+        x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
+        along += x * ruling[k]
+        over += x * normal[k]
+    return along, over
 
 
 @kernel
@@ -26,17 +45,10 @@ def _piece(triangle, point, ruling, normal, side, ends):
         for k in range(3):
             s += (triangle[i, k] - point[k]) * side[k]
             t += (triangle[j, k] - point[k]) * side[k]
-        if abs(s) <= _IN_PLANE:
-            share = 0.0
-        elif s * t < 0.0 and abs(t) > _IN_PLANE:
-            share = s / (s - t)
-        else:
+        share = crossing(s, t)
+        if share < 0.0:
             continue
-        along, over = 0.0, 0.0
-        for k in range(3):
-            x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
-            along += x * ruling[k]
-            over += x * normal[k]
+        along, over = place_on(triangle, i, share, point, ruling, normal)
         if not crosses or along < ends[0, 0]:
             ends[0, 0], ends[0, 1] = along, over
         if not crosses or along > ends[1, 0]:
@@ -68,7 +80,7 @@ def _apart(box, node, along, offset, most):
 
     `offset`: of the plane along its normal. What rounding may do is on the side of not being apart.
     """
-    at, half, size = -offset, 2.0 * _IN_PLANE + 1e-9 * box[node, DIAGONAL] + most, abs(offset)
+    at, half, size = -offset, 2.0 * IN_PLANE + 1e-9 * box[node, DIAGONAL] + most, abs(offset)
     for k in range(3):
         at += along[k] * box[node, CENTRE + k]
         size += abs(box[node, CENTRE + k])

@@ -6,10 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.rulings import IN_PLANE, crossing, place_on
 from plan_cutters.kernels.linear.vectors import cross
 
-#: Distances from the plane below which a corner lies in it, mm.
-_IN_PLANE = 1e-9
 #: Ends of pieces are the same within this, mm.
 _SAME = 1e-7
 
@@ -30,27 +29,17 @@ def _crossing(triangle, point, frame, ends):
     first = triangle[0, 0] * frame[2, 0] + triangle[0, 1] * frame[2, 1] + triangle[0, 2] * frame[2, 2] - through
     second = triangle[1, 0] * frame[2, 0] + triangle[1, 1] * frame[2, 1] + triangle[1, 2] * frame[2, 2] - through
     third = triangle[2, 0] * frame[2, 0] + triangle[2, 1] * frame[2, 1] + triangle[2, 2] * frame[2, 2] - through
-    if min(first, second, third) > _IN_PLANE or max(first, second, third) < -_IN_PLANE:
+    if min(first, second, third) > IN_PLANE or max(first, second, third) < -IN_PLANE:
         return False
     off = (first, second, third)
     for i in range(3):
-        j = (i + 1) % 3
-        s, t = off[i], off[j]
-        if abs(s) <= _IN_PLANE:
-            share = 0.0
-        elif s * t < 0.0 and abs(t) > _IN_PLANE:
-            share = s / (s - t)
-        else:
+        share = crossing(off[i], off[(i + 1) % 3])
+        if share < 0.0:
             continue
-        along, over = 0.0, 0.0
-        for k in range(3):
-            x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
-            along += x * frame[0, k]
-            over += x * frame[1, k]
         if many < 2:
-            ends[2 * many], ends[2 * many + 1] = along, over
+            ends[2 * many], ends[2 * many + 1] = place_on(triangle, i, share, point, frame[0], frame[1])
         many += 1
-    return many >= 2 and math.hypot(ends[2] - ends[0], ends[3] - ends[1]) > _IN_PLANE
+    return many >= 2 and math.hypot(ends[2] - ends[0], ends[3] - ends[1]) > IN_PLANE
 
 
 @kernel
