@@ -23,7 +23,8 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import material
 from plan_cutters.kernels.area import cover
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.linear import lanes, tree
+from plan_cutters.kernels.linear import tree
+from plan_cutters.kernels.linear import tree as lanes
 from plan_cutters.kernels.maps import free_map, free_tilts, passes
 from plan_cutters.kernels.rows import Contacts, Frame, VerdictArrays
 from plan_cutters.kernels.search import place, search

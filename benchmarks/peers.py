@@ -44,7 +44,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.judging.access import access
 from plan_cutters.kernels.maps.free_map import free_map
-from plan_cutters.kernels.maps.points import local_gouge_range
+from plan_cutters.kernels.maps.free_tilts import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotary_of, tool_of

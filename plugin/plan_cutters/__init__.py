@@ -12,7 +12,7 @@ _HOME = {
     "Segment": ".domain.holder",
     "Stage": ".domain.holder",  # its former name
     "Machine": ".domain.machine",
-    "Axis": ".domain.axis",
+    "Axis": ".domain.machine",
     "Placement": ".domain.placement",
     "Fixture": ".domain.fixture",
     "Options": ".options",

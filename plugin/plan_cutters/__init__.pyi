@@ -1,10 +1,9 @@
 """What type checkers see of the names that `__init__.py` hands on lazily."""
 
-from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder, Segment, Stage
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError

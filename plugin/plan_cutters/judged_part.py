@@ -18,11 +18,10 @@ from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.setups import OtherSetup, OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fillet import Fit
-from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.spec import notation
+from plan_cutters.domain.dimensions import notation
+from plan_cutters.domain.standard_tools import Fit
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
+from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts, over_setups
 from plan_cutters.judging.between import in_each
 from plan_cutters.judging.decompose import march_differs
 from plan_cutters.judging.judge import judge

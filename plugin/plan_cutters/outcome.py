@@ -9,13 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from plan_cutters.domain.change import Advice
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.answers import Advice, LeastSet, RadiusMap
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.least_set import LeastSet
-from plan_cutters.domain.own_process import Mode
-from plan_cutters.domain.own_results import OwnResult
-from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.operations import Columns
+from plan_cutters.domain.own_process import Mode, OwnResult
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.plan_file.operations import OperationsEntry
 

@@ -9,17 +9,13 @@ import numpy as np
 
 from cad_io.sample import locate
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.checks import number, numbers, radians
+from plan_cutters.domain.checks import Angle, in_radians, number, numbers, radians, spelled_out
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.degrees import Angle, in_radians
-from plan_cutters.domain.host_axes import Heading
-from plan_cutters.domain.intervals import complement
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import PostureRange, Range
+from plan_cutters.domain.posture import Heading, PostureRange, Range, complement
 from plan_cutters.domain.shapes import largest_tilt
-from plan_cutters.domain.signatures import spelled_out
-from plan_cutters.domain.tolerance import nominal_depth
+from plan_cutters.domain.verdicts import nominal_depth
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_map import SETTLED, PostureMap, moved, posture_map_of
 from plan_cutters.options import Options, PointOptions, machine_option

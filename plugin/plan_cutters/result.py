@@ -14,8 +14,7 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import counts
 from plan_cutters.document.setups import OverSetups
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.over_setups import positions
+from plan_cutters.domain.kinematics import Kinematics, positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.travel import Travel

@@ -17,7 +17,7 @@ def tools_in(output: bytes) -> tuple[list[ToolRow], list[str]]:
 
 def built_in_tools() -> list[ToolRow]:
     """The tools that are judged where none are named."""
-    from plan_cutters.domain.default_tools import builtin
+    from plan_cutters.domain.standard_tools import builtin
     from plan_cutters.plan_file.words.names import kind
 
     return [

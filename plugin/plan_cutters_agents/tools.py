@@ -197,7 +197,7 @@ async def _spec(name: str, question: requests.Conditions, call: Call) -> str:
         try:
             Cutter.parse(name)
         except CutterError as error:
-            from plan_cutters.domain.default_tools import builtin
+            from plan_cutters.domain.standard_tools import builtin
 
             known = [(each.id, each.name) for each in builtin()]
             try:

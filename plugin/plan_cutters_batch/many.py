@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Unpack
 
-from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.domain.checks import spelled_out
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options, PlanOptions
 from plan_cutters_base.user_files import noted

@@ -244,7 +244,7 @@ def _fits(
     part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
 ) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
-    from plan_cutters.domain.tolerance import effective_tolerance
+    from plan_cutters.domain.verdicts import effective_tolerance
     from plan_cutters.errors import OptionError
 
     effective = document["effective"]

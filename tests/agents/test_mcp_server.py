@@ -212,8 +212,8 @@ def test_what_one_plan_wins_the_other_one_loses(server):
 
 
 def test_tools_and_machines_are_listed(server):
-    from plan_cutters.domain.default_tools import builtin
     from plan_cutters.domain.machine import builtin_machines
+    from plan_cutters.domain.standard_tools import builtin
 
     found = server.call("list_tools_and_machines")
     assert [each["id"] for each in found["tools"]] + [None] * found["more_tools"] == [

@@ -7,7 +7,7 @@ import pytest
 from cad_io import read_part
 from plan_cutters import Cutter, plan
 from plan_cutters.answers.steps import worth
-from plan_cutters.domain.spec import is_spec
+from plan_cutters.domain.dimensions import is_spec
 from plan_cutters.domain.standard_tools import INCH, METRIC, MOST, slenderness
 from tests.support import shapes
 from tests.support.advice import answered, asked, followed, left, steps_of, strip, wall

@@ -15,8 +15,8 @@ from cad_io import read_part
 from cad_io.kernel.components import corner
 from plan_cutters import Cutter, Machine
 from plan_cutters.answers.largest_radius import largest_radius
+from plan_cutters.domain.answers import PERCENTILES, RadiusMap
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.radius_map import PERCENTILES, RadiusMap
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, NO_REASON, REASONS, UNDECIDED, UNJUDGED
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import judge

@@ -16,7 +16,7 @@ from plan_cutters.answers.areas import Finished, patches
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.steps import NEEDS
 from plan_cutters.document.clock import Clock
-from plan_cutters.domain.area import Patch
+from plan_cutters.domain.answers import Patch
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.plan_file.words.next_steps import is_excluded, patch, step_text, together
 from tests.support import shapes

@@ -7,10 +7,9 @@ from plan_cutters import plan
 from plan_cutters.answers.state import State, on_table
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.stick_out import held
-from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
+from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, over_setups
 from plan_cutters.judging.judge import judge
 from tests.support.cad_parts import box
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two

@@ -23,8 +23,8 @@ from plan_cutters.command.codes import CODES
 from plan_cutters.command.progress import Display
 from plan_cutters.command.summary import _distinct
 from plan_cutters.command.terminal import show
-from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.figures import percent
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.words.face import others
 from plan_cutters.plan_file.words.text import story_of, with_text

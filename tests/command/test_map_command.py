@@ -17,7 +17,7 @@ from cad_io.errors import SampleError
 from cad_io.sample import nearest
 from plan_cutters import posture_map
 from plan_cutters.command import map as of_a_point
-from plan_cutters.domain.intervals import without
+from plan_cutters.domain.posture import without
 from plan_cutters.plan_file.reasons import CAUSES, NO_CONTACT
 from plan_cutters.report.drawing.posture_map import DPI, figure, fitting, forbidden, write
 from tests.support.forked import run as run_copied

@@ -6,7 +6,7 @@ from typing import get_args
 
 import pytest
 
-from plan_cutters.domain.change import MEANS
+from plan_cutters.domain.answers import MEANS
 from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.notes import NoteCode

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import Axis, Cutter, Machine, Options, PostureMap, PostureRange, posture_map
-from plan_cutters.domain.degrees import Angle, in_radians
+from plan_cutters.domain.checks import Angle, in_radians
 from plan_cutters.errors import CutterError, MachineError, OptionError
 from plan_cutters.options import ANGLES
 from tests.support.places import SAMPLES

@@ -4,7 +4,7 @@ import numpy as np
 
 import plan_cutters
 from plan_cutters.domain import holder, verdicts
-from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.answers import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 
 

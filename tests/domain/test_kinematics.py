@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
-from plan_cutters.domain.machine import Machine, builtin_machines
+from plan_cutters.domain.machine import Axis, Machine, builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.errors import MachineError
 from plan_cutters.kernels import limits

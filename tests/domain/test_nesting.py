@@ -10,7 +10,7 @@ from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Compound
 
 from plan_cutters import Cutter, plan
-from plan_cutters.domain.nesting import handed, inside, order
+from plan_cutters.domain.preference import handed, inside, order
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE
 from tests.support.places import SAMPLES
 from tests.support.reference import depth_in_cutter, posture, random_frame

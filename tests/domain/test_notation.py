@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from plan_cutters.answers.means_tool import longer
 from plan_cutters.answers.option import spoken
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.dimensions import is_spec, spelled, typed
+from plan_cutters.domain.figures import Notation, across, length
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.lengths import Notation, across, length
-from plan_cutters.domain.spec import is_spec, spelled, typed
 from plan_cutters.domain.standard_tools import USUAL, smaller
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options

@@ -5,7 +5,7 @@ import pytest
 
 from plan_cutters import Cutter, CutterError, Holder, Options, Stage
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.nesting import inside
+from plan_cutters.domain.preference import inside
 from plan_cutters.domain.shapes import MOST_PIECES, pieces_at_most
 from tests.support.tool_reference import random_cutter
 

@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from plan_cutters import plan, posture_map
 from plan_cutters.command.summary import _NAME, _distinct
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import NOSES, TAPERS, Holder, Stage, words
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.standard_holders import NOSES, TAPERS, words
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.errors import CutterError, OptionError
 from plan_cutters.library.raw_tool import Entry, Library
 from plan_cutters.library.read import holder_of

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plan_cutters import Cutter
+from plan_cutters.domain.dimensions import spelled
 from plan_cutters.domain.shapes import stages
-from plan_cutters.domain.spec import spelled
 from plan_cutters.domain.standard_tools import CORNERS, INCH, INCH_CORNERS, METRIC, MOST, USUAL, slenderness, smaller
 
 WORDS = ("D12L60rc6F26S12", "D12L60F26S12Her20", "D10L50rc1.5F22S10Her16", "R8L60rc2", "D1inL4inrc0.5in")

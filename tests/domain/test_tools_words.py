@@ -6,9 +6,9 @@ import math
 import pytest
 
 from plan_cutters import Cutter, CutterError, Holder, OptionError, Options, Stage, plan
-from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.shapes import flute_length, modes
+from plan_cutters.domain.standard_tools import builtin
 from tests.support.forked import run
 from tests.support.places import SAMPLES
 

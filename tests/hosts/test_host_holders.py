@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from cad_io import ReadError
 from plan_cutters import CutterError, Holder, OptionError, plan
-from plan_cutters.domain.revolution import enclosing_segments
+from plan_cutters.domain.holder import enclosing_segments
 from plan_cutters.hosts import holder
 
 CHUCK = "R13:15L2+R15L28+R20L40"

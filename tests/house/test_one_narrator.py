@@ -13,8 +13,7 @@ UNIT = re.compile(r"\s?(?:mm²|mm2|mm3|mm|%|deg|°)(?![a-z])")
 #: Files whose texts have units of their own, and why.
 APART = {
     "plan_cutters_check": "it shares nothing with what it checks",
-    "plan_cutters/domain/figures.py": "how numbers are written, each form once",
-    "plan_cutters/domain/lengths.py": "lengths as they are typed, in mm or inches",
+    "plan_cutters/domain/figures.py": "how numbers are written, each form once, and lengths as they are typed",
     "plan_cutters/library/cutting.py": "fields of a tool file, in the file's unit",
     "plan_cutters/report/drawing/tool.py": "dimensions of a drawing, and lengths of SVG",
 }

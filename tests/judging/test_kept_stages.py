@@ -7,10 +7,9 @@ import pytest
 from cad_io.part.inside_edges import inside_edges
 from plan_cutters import Cutter, Options
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.verdicts import CONVEX
+from plan_cutters.domain.preference import handed, order
+from plan_cutters.domain.verdicts import CONVEX, over_setups
 from plan_cutters.judging.between import in_each
 from plan_cutters.judging.decompose import march_differs
 from plan_cutters.judging.judge import judge

@@ -12,9 +12,8 @@ from plan_cutters import Cutter, Holder, Machine, plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
 from plan_cutters.domain.figures import size
-from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
+from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED, over_setups
 from plan_cutters.judging import reasons as finding
 from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options

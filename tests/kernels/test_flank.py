@@ -8,7 +8,7 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Segment
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.kernels.search.flank import FREE, NONE, UNKNOWN, along_flank
+from plan_cutters.kernels.search.flats_and_flanks import FREE, NONE, UNKNOWN, along_flank
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.domain.intervals import common, complement, join, without
-from plan_cutters.kernels import intervals as compiled
+from plan_cutters.domain.posture import common, complement, join, without
+from plan_cutters.kernels.tool import arcs as compiled
 
 #: Ends on a coarse grid meet often, as an ulp apart they do not.
 ENDS = st.integers(0, 12).map(float)

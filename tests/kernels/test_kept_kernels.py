@@ -12,16 +12,16 @@ from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import cells, material
+from plan_cutters.kernels import material
 from plan_cutters.kernels.limits import any_axis
-from plan_cutters.kernels.linear.rulings import OneFace, extents
+from plan_cutters.kernels.linear import within as cells
+from plan_cutters.kernels.linear.sections import OneFace, extents
 from plan_cutters.kernels.maps.free_tilts import free_tilts
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.kernels.search import search
 from plan_cutters.kernels.search.fixed_axis import served
-from plan_cutters.kernels.search.flank import along_flank
-from plan_cutters.kernels.search.postures import free
-from plan_cutters.kernels.search.upright import upright
+from plan_cutters.kernels.search.flats_and_flanks import along_flank, upright
+from plan_cutters.kernels.search.search import free
 from plan_cutters.scene.conditions import rotary_of, tool_of, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from tests.support import shapes, waves

@@ -12,7 +12,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.linear import tree
 from plan_cutters.kernels.maps import free_tilts
-from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
+from plan_cutters.kernels.maps.free_tilts import axis_intervals, local_gouge_range
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.kernels.search import place, search

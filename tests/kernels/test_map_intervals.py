@@ -6,8 +6,9 @@ The reference is containment of points, tilt by tilt, in the frame of the tool; 
 import numpy as np
 import pytest
 
-from plan_cutters.kernels.linear import lanes
-from plan_cutters.kernels.maps import intervals, passes
+from plan_cutters.kernels.linear import tree as lanes
+from plan_cutters.kernels.maps import passes
+from plan_cutters.kernels.maps import passes as intervals
 from tests.support import waves
 
 TILTS = 181

@@ -17,7 +17,7 @@ from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import INACCESSIBLE
-from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
+from plan_cutters.kernels.maps.free_tilts import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search import search
 from plan_cutters.kernels.tool import apart, hit

@@ -6,8 +6,8 @@ The reference is bodies without a dent, which are known by the planes of their f
 import numpy as np
 import pytest
 
-from plan_cutters.kernels.cells import mark_shell
 from plan_cutters.kernels.linear import tree
+from plan_cutters.kernels.linear.within import mark_shell
 from plan_cutters.kernels.material import Solids, far_inside, moments, near_shell, windings
 from plan_cutters.kernels.rows import Tree
 from tests.support.distances import closest

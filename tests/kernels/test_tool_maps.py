@@ -5,8 +5,9 @@ import pytest
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels.linear import lanes
-from plan_cutters.kernels.maps import bounds, cuts, planes
+from plan_cutters.kernels.linear import tree as lanes
+from plan_cutters.kernels.maps import cuts, planes
+from plan_cutters.kernels.maps import planes as bounds
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import tool_of
 from tests.support import slow_map, waves

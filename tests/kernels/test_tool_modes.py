@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels.tool import tool_arcs
+from plan_cutters.kernels.tool import arcs as tool_arcs
 from plan_cutters.kernels.tool.arcs import local_gouge
 from plan_cutters.kernels.tool.pieces import inset
 from tests.support.reference import random_frame

@@ -8,11 +8,13 @@ import pytest
 from plan_cutters import Cutter, CutterError
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Stage
-from plan_cutters.domain.nesting import inside
-from plan_cutters.kernels.area import moved_cutter, zone
+from plan_cutters.domain.preference import inside
+from plan_cutters.kernels.area import cover as moved_cutter
+from plan_cutters.kernels.area import zone
 from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.tool import apart, extrusion, hit
+from plan_cutters.kernels.tool import apart, hit
+from plan_cutters.kernels.tool import hit as extrusion
 from plan_cutters.scene.conditions import tool_of
 from tests.support import waves
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter

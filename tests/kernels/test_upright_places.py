@@ -8,8 +8,8 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.codes import OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
+from plan_cutters.kernels.search.flats_and_flanks import FORBIDDEN, PLACED, upright
 from plan_cutters.kernels.search.search import probe
-from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
 

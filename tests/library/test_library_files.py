@@ -11,11 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import LibraryError, PlanError
-from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.library import read_library, to_toml
-from plan_cutters.library.formats import FORMATS
-from plan_cutters.library.read import listing
+from plan_cutters.library.read import FORMATS, listing
 from tests.support.tool_files import REAL, fusion, hsmlib, write_bit, write_csv, write_hsmlib, write_json, write_tools
 
 

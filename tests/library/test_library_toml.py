@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import Cutter, Holder, LibraryError, Stage
-from plan_cutters.domain.default_tools import builtin
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.read import listing
 from tests.support.tool_files import fusion, write_json

@@ -10,8 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.command.machines import main
-from plan_cutters.domain.axis import Axis
-from plan_cutters.domain.machine import Machine, builtin_machines
+from plan_cutters.domain.machine import Axis, Machine, builtin_machines
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import machine_of, plain, read_machine, to_toml
 from plan_cutters.machines.explain import share, solutions, tool_axis

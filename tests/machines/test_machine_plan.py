@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Machine, Options, plan, posture_map
-from plan_cutters.domain.axis import Axis
-from plan_cutters.domain.machine import builtin_machines
+from plan_cutters.domain.machine import Axis, builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.judging.judge import judge

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.domain.columns import columns_of
+from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import planning
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.scene.fixed_axis import serves

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.domain.columns import columns_of
+from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations.cover import Cover, fewest
 from plan_cutters.operations.fewest import Search, search_fewest, spread
 

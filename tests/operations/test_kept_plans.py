@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from plan_cutters import Machine, operations, plan
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.placement import Placement
 from plan_cutters.operations import at_once, canonical, choices, companions, moving_axes, planning, plans
 from plan_cutters.operations.extent import Extents

@@ -13,8 +13,8 @@ import pytest
 
 from cad_io.arrays import FaceGrid, Triangles
 from plan_cutters import Machine, PostureRange, operations
-from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import canonical, cover, fastest, fewest, moving_axes, moving_proof, passes, strips, symmetry, timing
 from plan_cutters.operations.candidates import Orientations, _multiples, apart, candidates, directions, neighbours
 from plan_cutters.operations.fastest import Reach, bounded, cheap, exchanged, lagrange

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from plan_cutters import Machine, PostureRange
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.candidates import DIGITS, Orientations
 from plan_cutters.operations.fastest import bounded, cheap
 from plan_cutters.operations.indexing import Indexing

@@ -10,7 +10,7 @@ import pytest
 from cad_io import read_part
 from cad_io.part.motion import Motion
 from plan_cutters import plan
-from plan_cutters.domain.columns import columns_of
+from plan_cutters.domain.operations import columns_of
 from plan_cutters.judging.judge import judge
 from plan_cutters.operations import planning
 from plan_cutters.operations.by_pattern import planned_by_pattern

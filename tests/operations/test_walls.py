@@ -13,8 +13,8 @@ from cad_io.arrays import Triangles
 from plan_cutters import plan
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import STRATEGIES
-from plan_cutters.kernels.linear import rulings
-from plan_cutters.kernels.linear.rulings import OneFace, extents
+from plan_cutters.kernels.linear import sections as rulings
+from plan_cutters.kernels.linear.sections import OneFace, extents
 from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.passes import Paths, flank_of, flat_of
 from plan_cutters.operations.probes import Probes

@@ -9,7 +9,7 @@ from OCP.TopoDS import TopoDS_Shell
 
 from cad_io.kernel import faces
 from plan_cutters import Machine, plan
-from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.machine import Axis
 from plan_cutters.domain.placement import Placement
 from plan_cutters.library.read import read_library
 from plan_cutters.plan_file.words.notes import doubts

@@ -8,7 +8,7 @@ import pytest
 from plan_cutters import Cutter, OptionError, Options, plan
 from plan_cutters.command.summary import summary
 from plan_cutters.domain import figures as numbers
-from plan_cutters.domain.lengths import Notation, in_inches, reported_in
+from plan_cutters.domain.figures import Notation, in_inches, reported_in
 from plan_cutters.library import read_library
 from plan_cutters.plan_file.words.names import called
 from tests.support.cad_parts import pocketed

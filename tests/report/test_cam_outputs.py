@@ -13,7 +13,7 @@ import trimesh
 
 import plan_cutters.report.axes as to_csv
 from plan_cutters import Cutter, plan, posture_map
-from plan_cutters.domain.clearance import MOST, grown, working_height
+from plan_cutters.domain.assembly import MOST, grown, working_height
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics

@@ -18,8 +18,8 @@ from scipy.spatial import cKDTree
 
 from cad_io import read_part
 from plan_cutters import plan
-from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
 from plan_cutters.plan_file.reasons import operation_colour, parts, rgb

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import Cutter, Holder, Stage
-from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.outline import outline
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.report.drawing.posture_map import printable
 from plan_cutters.report.drawing.tool import draw, length, width_of, wrapped
 from tests.support.places import DATA

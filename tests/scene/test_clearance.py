@@ -11,7 +11,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Options
-from plan_cutters.domain.clearance import FINEST, SHARE
+from plan_cutters.domain.assembly import FINEST, SHARE
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.kernels.codes import HOLDER
 from plan_cutters.pipeline import prepare

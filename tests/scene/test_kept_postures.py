@@ -7,7 +7,7 @@ import pytest
 
 from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.machine import Axis
 from plan_cutters.domain.verdicts import UNDECIDED, UNJUDGED, blank
 from plan_cutters.judging.judge import judge
 from plan_cutters.scene.clearance import clearances, clearances_over, least_clearance

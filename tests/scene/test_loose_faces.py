@@ -12,8 +12,7 @@ import plan_cutters.scene.surroundings as surroundings
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import plan
-from plan_cutters.domain.tolerance import CHORD_REQUESTED, CHORD_SHARE
-from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
+from plan_cutters.domain.verdicts import ACCESSIBLE, CHORD_REQUESTED, CHORD_SHARE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from tests.support.cad_parts import real
 from tests.support.distances import ROUNDING, farthest_from, surface_points
 

@@ -11,8 +11,7 @@ from cad_io.arrays import Triangles
 from plan_cutters import Cutter, Scene
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.material import far_inside, near_shell, plainly_outside, windings
-from plan_cutters.kernels.search.postures import free
-from plan_cutters.kernels.search.search import probe
+from plan_cutters.kernels.search.search import free, probe
 from plan_cutters.kernels.search.stick_out import least_stick_outs
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles

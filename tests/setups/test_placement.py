@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Machine, Options, plan
-from plan_cutters.domain.axis import Axis
-from plan_cutters.domain.machine import builtin_machines
+from plan_cutters.domain.machine import Axis, builtin_machines
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import tips, travel, unjudged

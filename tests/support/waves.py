@@ -5,7 +5,8 @@ from scipy.spatial import ConvexHull
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels.linear import lanes, tree
+from plan_cutters.kernels.linear import tree
+from plan_cutters.kernels.linear import tree as lanes
 from plan_cutters.kernels.maps import free_map
 from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
 from plan_cutters.scene.conditions import rotary_of, tool_of

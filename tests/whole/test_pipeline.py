@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from cad_io import read_part
 from plan_cutters import Cutter, OptionError, Options, Scene, plan, posture_map
-from plan_cutters.domain.nesting import handed
+from plan_cutters.domain.preference import handed
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE
 from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
-from plan_cutters.domain.area import Patch, weights
+from plan_cutters.domain.answers import Patch, weights
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]

@@ -10,14 +10,11 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.in_setups import radius_in_any, stick_out_in_each
 from plan_cutters.answers.mend import mend
-from plan_cutters.domain.change import Advice
+from plan_cutters.domain.answers import Advice, LeastSet, RadiusMap
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.least_set import LeastSet
-from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import Verdicts, over_setups
 from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.scene.preparation import Prepared

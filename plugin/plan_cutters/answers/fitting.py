@@ -10,8 +10,7 @@ from plan_cutters.answers.areas import Rows
 from plan_cutters.answers.scan import HALF, NEARLY
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fillet import Fit
-from plan_cutters.domain.standard_tools import MOST, smaller
+from plan_cutters.domain.standard_tools import MOST, Fit, smaller
 from plan_cutters.scene.preparation import Prepared
 
 #: Samples on which sizes are compared, at most.

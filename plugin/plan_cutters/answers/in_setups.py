@@ -9,8 +9,8 @@ import numpy as np
 from cad_io.arrays import Ints
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.answers.stick_out import least_stick_out
+from plan_cutters.domain.answers import RadiusMap, Shape
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts
 from plan_cutters.scene.preparation import Prepared

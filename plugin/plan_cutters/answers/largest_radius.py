@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.domain.answers import RadiusMap, Shape
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.checks import number, shown
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.radius_map import RadiusMap, Shape
-from plan_cutters.domain.tolerance import JUDGED_SHARE
-from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, INSIDE, UNJUDGED, blank
+from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, INSIDE, JUDGED_SHARE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, in_chunks
 
 if TYPE_CHECKING:
-    from plan_cutters.kernels.search.radius import Ladder
+    from plan_cutters.kernels.search.search import Ladder
 
 #: Smallest radius that is looked at unless one is requested, mm; of small parts this share of the largest.
 _LEAST, _SHARE = 0.1, 0.01
@@ -59,7 +58,7 @@ def largest_radius(
     OptionError
         An argument has no meaning, or the tolerance is too coarse for every radius asked for.
     """
-    from plan_cutters.kernels.search.radius import largest
+    from plan_cutters.kernels.search.search import largest
 
     cutters = _cutters(ready, shape, ratio, step, least, most)
     radii = np.array([cutter.radius for cutter in cutters])
@@ -120,7 +119,7 @@ def _cutters(ready: Prepared, shape: Shape, ratio: float, step: float, least: fl
 
 def _ladder(made: list[Assembly]) -> "Ladder":
     """Tools as the search takes them. They have as many pieces each: a tool with fewer has one of them twice."""
-    from plan_cutters.kernels.search.radius import Ladder
+    from plan_cutters.kernels.search.search import Ladder
 
     count = max(each.piece.shape[1] for each in made)
     piece = [each.piece[:, [min(k, each.piece.shape[1] - 1) for k in range(count)]] for each in made]

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
+from plan_cutters.domain.answers import LeastSet, Run, essential_rows
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.least_set import LeastSet, Run
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
-from plan_cutters.domain.set_cover import essential_rows
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import stood_on

@@ -12,7 +12,7 @@ from plan_cutters.answers.option import Axis
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
 from plan_cutters.answers.state import SetupOf, State
 from plan_cutters.answers.trial import Case
-from plan_cutters.domain.change import Move
+from plan_cutters.domain.answers import Move
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED

@@ -8,12 +8,11 @@ import numpy as np
 
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Rows, Scan
 from plan_cutters.answers.state import State
-from plan_cutters.domain.change import Move
+from plan_cutters.domain.answers import Move
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.holder import NOSES, Holder, chuck
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import SAME, flute_length
-from plan_cutters.domain.standard_holders import NOSES, chuck
 from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.words import next_steps

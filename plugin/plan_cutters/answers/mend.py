@@ -8,7 +8,7 @@ from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.undecidable import undecidable
-from plan_cutters.domain.change import Advice
+from plan_cutters.domain.answers import Advice
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words.next_steps import samples

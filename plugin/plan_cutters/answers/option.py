@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
-from plan_cutters.domain.spec import is_spec, spelled, written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions

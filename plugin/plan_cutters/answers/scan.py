@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.state import Judgements, State
-from plan_cutters.domain.change import Move
+from plan_cutters.domain.answers import Move
 from plan_cutters.domain.cutter import Cutter
 
 Rows = NDArray[np.int64]

@@ -15,8 +15,7 @@ from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import MEANS, Advice, Means, Move, Step
+from plan_cutters.domain.answers import MEANS, Advice, Means, Move, Patch, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts

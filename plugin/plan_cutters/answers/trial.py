@@ -11,8 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    CONVEX,
+    FIXTURE,
+    INACCESSIBLE,
+    INSIDE,
+    TOLERANCE,
+    UNDECIDED,
+    Verdicts,
+    blank,
+    over_setups,
+)
 from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, contacts_of, over_plane

@@ -202,8 +202,8 @@ def _text(values: Iterable[float]) -> str:
 
 def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
+    from plan_cutters.domain.dimensions import notation, parted
     from plan_cutters.domain.figures import angle, capital, mm
-    from plan_cutters.domain.spec import notation, parted
     from plan_cutters.plan_file.words.names import called
     from plan_cutters.report.drawing.posture_map import printable
 

@@ -168,7 +168,7 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -
     """Print the default tool set, one cutter a line, and end."""
     if not requested or ctx.resilient_parsing:
         return
-    from plan_cutters.domain.default_tools import builtin
+    from plan_cutters.domain.standard_tools import builtin
 
     click.echo("Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm.")
     for cutter in builtin():

@@ -66,8 +66,7 @@ def command(request: ToolsRequest) -> int:
 
     It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, and TOML.
     """
-    from plan_cutters.library.read import holder_of, listing, nothing
-    from plan_cutters.library.words import of_words
+    from plan_cutters.library.read import holder_of, listing, nothing, of_words
 
     if request.list_holders:
         return _holders(request)
@@ -105,7 +104,7 @@ def command(request: ToolsRequest) -> int:
 
 def _holders(request: ToolsRequest) -> int:
     """The built-in holders: listed, and drawn where that is requested."""
-    from plan_cutters.library.words import pinned, standard
+    from plan_cutters.library.read import pinned, standard
 
     words = ("cutter", "holder", "assume_stickout", "to_toml")
     others = [*request.files, *(f"--{word.replace('_', '-')}" for word in words if getattr(request, word))]
@@ -233,7 +232,7 @@ def _to_toml(libraries: "Sequence[Library]", path: Path) -> None:
 
 
 def _draw(libraries: "Sequence[Library]", folder: Path) -> None:
-    from plan_cutters.domain.spec import is_spec
+    from plan_cutters.domain.dimensions import is_spec
     from plan_cutters.plan_file.words.names import called
 
     draw = import_module("plan_cutters.report.drawing.tool").draw

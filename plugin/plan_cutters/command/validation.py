@@ -182,13 +182,13 @@ def machine_names() -> Sequence[str]:
 
 
 def cutter_ids() -> Sequence[str]:
-    from plan_cutters.domain.default_tools import builtin
+    from plan_cutters.domain.standard_tools import builtin
 
     return [cutter.id for cutter in builtin()]
 
 
 def holder_words() -> Sequence[str]:
-    from plan_cutters.domain.standard_holders import words
+    from plan_cutters.domain.holder import words
 
     return [*words(), "none"]
 

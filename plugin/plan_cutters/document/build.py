@@ -16,7 +16,7 @@ from cad_io.arrays import SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from cad_io.read.mesh import Mesh
 from plan_cutters import __version__
-from plan_cutters.domain.area import weights
+from plan_cutters.domain.answers import weights
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of

@@ -14,12 +14,12 @@ from cad_io.part.motion import Motion
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.document.setups import OverSetups
-from plan_cutters.domain.change import Step
+from plan_cutters.domain.answers import Step
 from plan_cutters.domain.figures import exact
-from plan_cutters.domain.fillet import Fit, Fitting
 from plan_cutters.domain.operations import Strategy
-from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.own_process import OwnResult
 from plan_cutters.domain.preference import by_radius
+from plan_cutters.domain.standard_tools import Fit, Fitting
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE
 from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import filled, vector

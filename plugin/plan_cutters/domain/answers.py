@@ -1,9 +1,16 @@
-"""The answers that may be requested after the plan."""
+"""The answers that may be requested after the plan: their words, and the records of what each says."""
 
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.domain.answer_kinds import ANSWERS
 from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import Bytes
 from plan_cutters.errors import OptionError
 
 
@@ -31,3 +38,314 @@ def answers_of(value: Any) -> tuple[str, ...]:
     for word in sorted(result - {*ANSWERS, "all"}, key=str):
         raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
     return tuple(word for word in ANSWERS if word in result or "all" in result)
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """Connected samples of one kind.
+
+    Attributes
+    ----------
+    area : float
+        That they stand for, mm2.
+    share : float
+        Of the finished area, 0 to 1.
+    samples : int
+    faces : tuple of str
+        Ids, the one with the most of it first.
+    place : (float, float, float)
+        The sample nearest to its middle, mm.
+    across : float
+        Its largest extent, mm, from sample to sample; 0 of a single one.
+    """
+
+    area: float
+    share: float
+    samples: int
+    faces: tuple[str, ...]
+    place: tuple[float, float, float]
+    across: float
+
+
+def weights(area: Floats) -> Floats:
+    """Take areas as weights: an area that is not known weighs nothing, and where none is known each weighs as much.
+
+    >>> weights(np.array([2.0, np.nan])).tolist(), weights(np.zeros(2)).tolist()
+    ([2.0, 0.0], [1.0, 1.0])
+    """
+    known = np.where(np.isfinite(area), area, 0.0).clip(min=0.0)
+    return known if known.sum() > 0.0 else np.ones(len(area))
+
+
+#: What a step may change, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted,
+#: how it is held, another tool, how the part is clamped, another machine, an area that is left to other means. What asks for
+#: least comes first among steps that leave as much.
+Means = Literal[
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
+    "tilt_limit", "area"
+]  # fmt: skip
+MEANS: tuple[Means, ...] = (
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
+    "tilt_limit", "area"
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """One change of a step: of what, from which value to which (mm, deg, a direction, the id of a cutter), and in words."""
+
+    means: Means
+    now: float | tuple[float, ...] | str | None
+    asked: float | tuple[float, ...] | str | None
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step is a thing to do next; its gain was judged on every sample.
+
+    Attributes
+    ----------
+    moves : tuple of Move
+        One change, or two.
+    before, after : float
+        Share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample was judged.
+    gained, left : int
+        Samples that it frees, and that are still not reached.
+    cutters : tuple of Cutter
+        That do it together, the one that is mended, or what becomes of it, first.
+    setups : tuple of (float, float, float)
+        Setup axes in which they do.
+    option : str, optional
+        The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
+        where no option says it.
+    remains : tuple of Patch
+        The largest areas that are still not reached.
+    freed : (m,) int64
+        The samples that it frees.
+    """
+
+    moves: tuple[Move, ...]
+    before: float
+    after: float
+    gained: int
+    left: int
+    cutters: tuple[Cutter, ...]
+    setups: tuple[tuple[float, float, float], ...]
+    option: str | None
+    remains: tuple[Patch, ...]
+    freed: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """Advice names what to do next with one cutter.
+
+    Attributes
+    ----------
+    cutter : str
+        Its id.
+    lost, buried : int
+        Samples that are inaccessible or undecided now, and those of them that lie within another body of the part: these are no
+        surface of the finished part, and nothing is asked about them.
+    why : str
+        Why no steps were looked for; empty where they were.
+    share : float
+        Of the finished area that is not reached now, in all setups of the plan.
+    steps : tuple of Step
+        The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
+    areas : tuple of Patch
+        Connected areas that are not reached now, the largest first, and how many more there are.
+    uncompared : int
+        Changes that promised less than those judged and were not judged, and kinds of changes that were not looked at, since the
+        work for advice was spent.
+    unsure : bool
+        Faces are missing from what is in the way, so that no gain is sure.
+    """
+
+    cutter: str
+    lost: int
+    buried: int
+    why: str
+    share: float = 0.0
+    steps: tuple[Step, ...] = ()
+    areas: tuple[Patch, ...] = ()
+    more_areas: int = 0
+    uncompared: int = 0
+    unsure: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A cutter in a setup, and what it takes: what no run before it reaches.
+
+    Attributes
+    ----------
+    cutter : Cutter
+    setup : (float, float, float)
+        Its axis.
+    number : int
+        Of the setup, 0 for the first one.
+    samples : int
+    area, share : float
+        mm2, and of the finished area, 0 to 1.
+    faces : tuple of str
+        Ids of those on which it takes samples, ascending.
+    alone : int
+        Samples that it reaches and no other run of the set.
+    """
+
+    cutter: Cutter
+    setup: tuple[float, float, float]
+    number: int
+    samples: int
+    area: float
+    share: float
+    faces: tuple[str, ...]
+    alone: int
+
+
+@dataclass(frozen=True, slots=True)
+class LeastSet:
+    """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters.
+
+    Attributes
+    ----------
+    runs : tuple of Run
+        In the order of setups, then of rank; none where nothing is reached.
+    reached, left : int
+        Samples of the finished surface that they reach, and that nothing given reaches for sure.
+    share, left_share : float
+        Of the finished area, 0 to 1.
+    proven : bool
+        Whether it is proved that no fewer do.
+    """
+
+    runs: tuple[Run, ...]
+    reached: int
+    left: int
+    share: float
+    left_share: float
+    proven: bool
+
+
+#: Rows that are compared with each other, at most.
+_COMPARED = 3000
+
+
+def essential_rows(table: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Rows (k,), ascending, such that whatever covers these covers all rows of a table (n, m).
+
+    A row that holds all columns of another one is covered with it; of equal rows the first stands for all.
+
+    >>> essential_rows(np.array([[1, 0], [1, 1], [1, 0]], bool)).tolist()
+    [0]
+    """
+    packed = np.packbits(table, axis=1)
+    first = np.unique(packed, axis=0, return_index=True)[1]
+    if len(first) <= _COMPARED:
+        some = table[first].astype(np.float32)
+        size = some.sum(axis=1)
+        both = some @ some.T
+        holds = both >= size[None, :] - 0.5
+        np.fill_diagonal(holds, False)
+        first = first[~holds.any(axis=1)]
+    return np.sort(first)
+
+
+Shape = Literal["flat", "ball"]
+
+#: Percentiles that are told.
+PERCENTILES = (0, 5, 25, 50, 75, 95)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class RadiusMap(Record):
+    """Of a row of radii, each larger than the one before by a step, the largest that reaches each sample.
+
+    Attributes
+    ----------
+    shape : str
+        `flat` or `ball`: a bare end mill, which cuts over all of its length.
+    ratio : float
+        Its length over its radius.
+    step : float
+        By which share each radius is larger than the one before.
+    least, most : float
+        Radii looked at, from and to, mm.
+    radius : (n,) float
+        mm. 0 where not even the least one reaches a sample; `most` where that one does: the largest is no less. nan where
+        the sample is not judged.
+    beyond : (n,) uint8
+        The verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
+    reason : (n,) uint8
+        Why that one does not reach the sample, an index into REASONS; else NO_REASON.
+    axis, tilt_direction : (n, 3) float
+        Unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
+    tilt : (n,) float
+        rad, nan where there is none.
+    rotation : (n,) int32
+        Index into the posture range's rotations, -1 where there is none.
+    """
+
+    shape: Shape
+    ratio: float
+    step: float
+    least: float
+    most: float
+    radius: Floats
+    beyond: Bytes
+    reason: Bytes
+    axis: Floats
+    tilt_direction: Floats
+    tilt: Floats
+    rotation: Ints
+
+    @property
+    def lean(self) -> Floats:
+        """The former name of `tilt_direction`."""
+        return self.tilt_direction
+
+    @property
+    def judged(self) -> NDArray[np.bool_]:
+        """Samples (n,) of which something is known."""
+        return ~np.isnan(self.radius)
+
+    @property
+    def no_less(self) -> NDArray[np.bool_]:
+        """Samples (n,) that even the largest radius looked at reaches: theirs is no less."""
+        return np.asarray(self.radius == self.most)
+
+    @property
+    def less(self) -> NDArray[np.bool_]:
+        """Samples (n,) that not even the least radius looked at reaches."""
+        return np.asarray(self.radius == 0.0)
+
+    @property
+    def bottleneck(self) -> int | None:
+        """The first of the samples with the smallest radius; None if none is judged."""
+        return int(np.nanargmin(self.radius)) if self.judged.any() else None
+
+    def percentiles(self, area: Floats | None = None) -> dict[int, float]:
+        """Radii, mm, by percentile q: at least q % of the judged samples have that one or a smaller one as their largest.
+
+        Parameters
+        ----------
+        area : (n,) float, optional
+            What each sample counts, mm2 for instance; all count the same by default.
+
+        Returns
+        -------
+        dict of int to float
+            For each of PERCENTILES; empty if no sample that counts is judged.
+        """
+        weight = np.ones(len(self.radius)) if area is None else area
+        counts = self.judged & (weight > 0.0)
+        if not counts.any():
+            return {}
+        radius, weight = self.radius[counts], weight[counts]
+        order = np.argsort(radius, kind="stable")
+        share = np.cumsum(weight[order])
+        # What rounding adds up must not move a percentile past a sample.
+        at = np.searchsorted(share, share[-1] * (np.array(PERCENTILES) / 100.0 - 1e-12))
+        return {q: float(radius[order[i]]) for q, i in zip(PERCENTILES, at, strict=True)}

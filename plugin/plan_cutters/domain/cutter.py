@@ -6,15 +6,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.checks import items
-from plan_cutters.domain.degrees import Angle, degrees_too
-from plan_cutters.domain.dimensions import AboveTip, Attributes, Dimensions, Shape, points_of
+from plan_cutters.domain.checks import Angle, degrees_too, items, spelled_out
+from plan_cutters.domain.dimensions import AboveTip, Attributes, Dimensions, Shape, dimensions, parted, points_of, typed, written
+from plan_cutters.domain.figures import text_of
 from plan_cutters.domain.holder import Holder, Segment, positive
-from plan_cutters.domain.lengths import text_of
 from plan_cutters.domain.shapes import Part, check, flute_length, stages
-from plan_cutters.domain.signatures import spelled_out
-from plan_cutters.domain.spec import dimensions, parted, typed, written
-from plan_cutters.domain.tolerance import JUDGED_SHARE
+from plan_cutters.domain.verdicts import JUDGED_SHARE
 from plan_cutters.errors import CutterError
 
 

@@ -3,11 +3,16 @@
 import math
 import re
 from dataclasses import dataclass
-from typing import Any
+from difflib import get_close_matches
+from itertools import pairwise
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items, name, number, shown
-from plan_cutters.domain.lengths import LENGTH, Notation, across, length
-from plan_cutters.domain.standard_holders import chuck
+from plan_cutters.domain.figures import LENGTH, Notation, across, length
 from plan_cutters.errors import CutterError
 
 _STAGE = re.compile(rf"(?P<by>[RD])(?P<lower>{LENGTH})(?::(?P<upper>{LENGTH}))?L(?P<length>{LENGTH})", re.IGNORECASE)
@@ -148,3 +153,323 @@ class Holder:
     def of(cls, given: Any) -> "Holder":
         """A holder, or what `parse` makes of a text."""
         return given if isinstance(given, cls) else cls.parse(given)
+
+
+class Nose(NamedTuple):
+    """A clamping nut for ER collets, mm: the widest one's diameter, the shortest one's length, the largest shank."""
+
+    diameter: float
+    length: float
+    bore: float
+
+
+class Taper(NamedTuple):
+    """The dimensions of a holder below its gauge line, mm: the flange, the body behind it, and the usual gauge length.
+
+    flange, depth : float
+        Diameter, and how far it reaches down from the gauge line or the contact face.
+    body : float
+        Diameter that the body between flange and nut may have.
+    gauge : float
+        From the gauge line to the nose, of the shortest of the usual chucks: so the flange stands no higher than it does.
+    """
+
+    name: str
+    flange: float
+    depth: float
+    body: float
+    gauge: float
+
+
+#: ISO 15488 (DIN 6499): collets and their nuts, plain and slotted, whichever is wider.
+NOSES = {
+    "er11": Nose(19.1, 11.0, 7.0),
+    "er16": Nose(32.0, 17.0, 10.0),
+    "er20": Nose(35.0, 18.5, 13.0),
+    "er25": Nose(42.1, 19.5, 16.0),
+    "er32": Nose(50.1, 22.0, 20.0),
+    "er40": Nose(63.1, 25.0, 26.0),
+}
+#: ISO 12164-1 (DIN 69893): flange d1, its height f1, and the room d10 that is kept for the gripper behind it.
+#: ISO 7388-1 (DIN 69871, ASME B5.50): flange, down to its front face, and the body's largest diameter before 35 mm.
+#: ISO 7388-2 (JIS B 6339, MAS 403): the same; it leaves the body open, so it is as wide as the flange.
+TAPERS = {
+    "hsk32a": Taper("HSK32A", 32.0, 20.0, 26.0, 50.0),
+    "hsk40a": Taper("HSK40A", 40.0, 20.0, 34.0, 60.0),
+    "hsk50a": Taper("HSK50A", 50.0, 26.0, 42.0, 70.0),
+    "hsk63a": Taper("HSK63A", 63.0, 26.0, 53.0, 70.0),
+    "hsk100a": Taper("HSK100A", 100.0, 29.0, 85.0, 80.0),
+    "hsk32e": Taper("HSK32E", 32.0, 20.0, 26.0, 50.0),
+    "hsk40e": Taper("HSK40E", 40.0, 20.0, 34.0, 60.0),
+    "hsk50e": Taper("HSK50E", 50.0, 26.0, 42.0, 70.0),
+    "sk30": Taper("SK30", 50.0, 19.1, 45.0, 50.0),
+    "sk40": Taper("SK40", 63.55, 19.1, 50.0, 60.0),
+    "sk50": Taper("SK50", 97.5, 19.1, 80.0, 70.0),
+    "cat40": Taper("CAT40", 63.6, 19.1, 50.0, 59.0),
+    "cat50": Taper("CAT50", 98.6, 19.1, 80.0, 70.0),
+    "bt30": Taper("BT30", 46.0, 22.0, 46.0, 50.0),
+    "bt40": Taper("BT40", 63.0, 27.0, 63.0, 60.0),
+    "bt50": Taper("BT50", 100.0, 38.0, 100.0, 70.0),
+}
+#: How far a nose alone is drawn unless it is said, mm; and the longest holder.
+_ALONE, _LONGEST = 60.0, 500.0
+#: Other spellings: HSK-A63 and A63 for hsk63a, DIN 69871's SK and ISO's own short names.
+_SPELLED = ((r"(?:hsk)?([ae])(32|40|50|63|100)", r"hsk\2\1"), (r"ct(40|50)", r"cat\1"), (r"(?:iso|dv)(30|40|50)", r"sk\1"))
+_WORD = re.compile(rf"(?:(?P<taper>[a-z0-9]+?))?(?P<nose>er[0-9]+)(?:x(?P<length>{LENGTH}))?")
+
+
+class Chuck(NamedTuple):
+    """A holder of the tables: its name, its sections from the nose up (radius, length), and the largest shank; mm."""
+
+    name: str
+    stages: tuple[tuple[float, float], ...]
+    bore: float
+
+
+def words() -> list[str]:
+    """Every word of the tables, noses alone first."""
+    return [*NOSES, *(f"{taper}-{nose}" for taper in TAPERS for nose in NOSES)]
+
+
+def chuck(text: str) -> Chuck | None:
+    """The holder that a word names; None for a text that looks like no such word.
+
+    Raises
+    ------
+    CutterError
+        It looks like one and is none, or is too short for its own flange and nut.
+
+    Examples
+    --------
+    >>> chuck("ER16"), chuck("HSK-A63/ER32x100").name
+    (Chuck(name='ER16', stages=((16.0, 60.0),), bore=10.0), 'HSK63A-ER32x100')
+    """
+    plain = re.sub(r"[-_/\s]+", "", text.lower())
+    if not re.match(r"er[0-9]|hsk|bt[0-9]|sk[0-9]|cat|ct[0-9]|iso[0-9]|dv[0-9]|[ae][0-9]{2,3}er", plain):
+        return None
+    match = _WORD.fullmatch(plain)
+    nose = NOSES.get(match["nose"]) if match else None
+    taper = _taper(match["taper"]) if match and match["taper"] else None
+    if match is None or nose is None or (match["taper"] and taper is None):
+        raise CutterError(f"no holder is called {text!r}; {_near(plain)}")
+    short = match["nose"].upper()
+    high = _ALONE if taper is None else taper.gauge
+    if match["length"]:
+        high = length(match["length"])
+    least = nose.length if taper is None else nose.length + taper.depth
+    if not least <= high <= _LONGEST:
+        what = "its nut takes" if taper is None else "its nut and its flange take"
+        raise CutterError(
+            f"holder {text!r}: {what} {least:g} mm; give a length from that to {_LONGEST:g} mm, as "
+            f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100"
+        )
+    if taper is None:
+        return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
+    body = max(nose.diameter, taper.body)
+    sections = [(nose.diameter, nose.length), (body, high - least), (max(taper.flange, 0.0), taper.depth)]
+    return Chuck(f"{taper.name}-{short}x{high:g}", _merged(sections), nose.bore)
+
+
+def _merged(sections: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Sections, a diameter and a length each, as radii and lengths: those of one diameter that follow each other in one."""
+    merged: list[tuple[float, float]] = []
+    for diameter, long in sections:
+        if merged and merged[-1][0] == diameter / 2:
+            merged[-1] = (diameter / 2, merged[-1][1] + long)
+        elif long > 0.0:
+            merged.append((diameter / 2, long))
+    return tuple(merged)
+
+
+def _taper(plain: str) -> Taper | None:
+    for pattern, word in _SPELLED:
+        plain = re.sub(rf"^{pattern}$", word, plain)
+    return TAPERS.get(plain)
+
+
+def _near(plain: str) -> str:
+    """Suggest holders whose names are like an unknown one, or list the known ones."""
+    known = words()
+    by = {word.replace("-", ""): word for word in known}
+    near = [by[each] for each in get_close_matches(plain.partition("x")[0], by, 3, 0.5)]
+    if near:
+        return f"{' or '.join(near)}? plan-cutters tools --list-holders lists all"
+    return f"known are {', '.join(NOSES)}, alone or on {', '.join(TAPERS)}, as hsk63a-er32"
+
+
+#: Heights and radii this close to each other, mm, are the same.
+_SAME = 1e-9
+#: Slices into which what is no line of its own is cut.
+_SLICES = 400
+#: A stage is nowhere thinner, mm.
+_THINNEST = 1e-3
+#: Times by which stages may get coarser until there are few enough, each time twice.
+_ROUNDS = 24
+
+#: Height from, height to, radius there and there: enclosing lines, end to end.
+Line = tuple[float, float, float, float]
+
+
+def enclosing_segments(
+    line: Floats, exact: NDArray[np.bool_], foot: float, *, tolerance: float, most: int
+) -> tuple[tuple[Segment, ...], float]:
+    """Stages that enclose lines of a half-plane.
+
+    Parameters
+    ----------
+    line : (n, 4) float
+        Radius and height of both ends, the lower one first, mm.
+    exact : (n,) bool
+        Lines that become stages as they are where they are the outermost ones.
+    foot : float
+        Height from which on stages are wanted, mm.
+    tolerance : float
+        How much farther from the axis than the others stages may be, mm; twice as much, and so on, until there are few enough.
+    most : int
+        Stages, at most.
+
+    Returns
+    -------
+    stages : tuple of Segment
+        From the lowest up.
+    tolerance : float
+        The one that was kept.
+
+    Raises
+    ------
+    CutterError
+        The lines span no height, or leave a gap.
+    """
+    low, high = foot, float(line[:, 3].max())
+    if high - low <= _SAME:
+        raise CutterError("a holder's outline spans no height along its axis: is it modelled about another axis?")
+    top = _envelope(line, exact, low, high)
+    keep, allowed = True, tolerance
+    lines = _joined_lines(top, allowed, keep=keep)
+    for _ in range(_ROUNDS):
+        if len(lines) <= most:
+            break
+        # Too many cylinders and cones of their own: they are joined, too.
+        keep = keep and len(_joined_lines([each for each in top if each[1]], 0.0, keep=True)) < most - 1
+        allowed *= 2.0
+        lines = _joined_lines(top, allowed, keep=keep)
+    stages = [Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in lines if to - z > _SAME]
+    return tuple(stages), allowed
+
+
+def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -> list[tuple[Line, bool]]:
+    """The outermost of all lines, end to end from the lowest up, and whether it is one of the exact ones."""
+    long = line[:, 3] - line[:, 1] > _SAME
+    own, others = line[exact & long], line[~exact]
+    cuts = [own[:, 1], own[:, 3], _crossings(own), np.array([low, high])]
+    if 0 < len(others) <= _SLICES:
+        cuts += [others[:, 1], others[:, 3]]
+    elif len(others):
+        cuts.append(np.linspace(others[:, 1].min(), others[:, 3].max(), _SLICES))
+    heights = np.unique(np.concatenate(cuts).clip(low, high))
+    heights = heights[np.append(True, np.diff(heights) > _SAME)]
+    pieces: list[tuple[Line, bool]] = []
+    for z, to in pairwise(heights.tolist()):
+        mine = own[(own[:, 1] <= z + _SAME) & (own[:, 3] >= to - _SAME)]
+        near = others[(others[:, 1] < to) & (others[:, 3] > z)]
+        across = (near[:, 1] <= z + _SAME) & (near[:, 3] >= to - _SAME)
+        # What ends within the slice counts all over it with the largest radius that it has there.
+        part = near[~across]
+        level = max(float(_at(part, np.clip(end, part[:, 1], part[:, 3])).max(initial=-1.0)) for end in (z, to))
+        ends = [
+            _at(lines, height).max(initial=least) for lines, least in ((mine, -1.0), (near[across], level)) for height in (z, to)
+        ]
+        first, last = max(ends[0], ends[2]), max(ends[1], ends[3])
+        if first < 0.0:
+            raise CutterError(f"a holder's outline has a gap between the heights {z:.3g} and {to:.3g} mm: give one body")
+        pieces.append(((z, to, float(first), float(last)), ends[0] >= ends[2] and ends[1] >= ends[3]))
+    all_round = np.array([(first, z, last, to) for (z, to, first, last), _ in pieces])
+    for height, radius in line[exact & ~long][:, [1, 2]].tolist():
+        adjacent = all_round[(all_round[:, 1] <= height + _SAME) & (all_round[:, 3] >= height - _SAME)]
+        if height >= low and _at(adjacent, np.array(height)).max(initial=0.0) < radius - 1e-6:
+            raise CutterError(f"a holder's outline ends in a disk without thickness at the height {height:.3g} mm: close it")
+    return pieces
+
+
+def _at(lines: Floats, height: Floats) -> Floats:
+    """Radii of lines at heights; of a line that is level, the larger one."""
+    rise = lines[:, 3] - lines[:, 1]
+    share = np.divide(height - lines[:, 1], rise, out=np.zeros(len(lines)), where=rise > _SAME)
+    radius = lines[:, 0] + share * (lines[:, 2] - lines[:, 0])
+    return np.where(rise > _SAME, radius, np.maximum(lines[:, 0], lines[:, 2]))
+
+
+def _crossings(lines: Floats) -> Floats:
+    """Heights at which two lines cross."""
+    if len(lines) < 2:
+        return np.zeros(0)
+    slope = (lines[:, 2] - lines[:, 0]) / (lines[:, 3] - lines[:, 1])
+    foot = lines[:, 0] - slope * lines[:, 1]
+    i, j = np.triu_indices(len(lines), 1)
+    apart = slope[i] - slope[j]
+    i, j, apart = i[np.abs(apart) > _SAME], j[np.abs(apart) > _SAME], apart[np.abs(apart) > _SAME]
+    height = (foot[j] - foot[i]) / apart
+    inside = (height > np.maximum(lines[i, 1], lines[j, 1])) & (height < np.minimum(lines[i, 3], lines[j, 3]))
+    return np.asarray(height[inside])
+
+
+def _joined_lines(top: list[tuple[Line, bool]], tolerance: float, *, keep: bool) -> list[Line]:
+    """Lines joined as long as one around them is nowhere farther out than the tolerance; `keep` exact ones as they are."""
+    merged: list[Line] = []
+    at = 0
+    while at < len(top):
+        own = top[at][1] and keep
+        allowed = _SAME if own else tolerance
+        few, many = 1, 1
+        run = next((i for i in range(at, len(top)) if (top[i][1] and keep) != own), len(top)) - at
+        best = _enclosing([top[at][0]])[0]
+        while few < run:
+            # Twice as many while that goes well, then halves in between.
+            many = min(run, 2 * few)
+            line, off = _enclosing([each for each, _ in top[at : at + many]])
+            if off > allowed:
+                break
+            best, few = line, many
+        while many - few > 1:
+            middle = (few + many) // 2
+            line, off = _enclosing([each for each, _ in top[at : at + middle]])
+            if off > allowed:
+                many = middle
+            else:
+                best, few = line, middle
+        merged.append(best)
+        at += few
+    return merged
+
+
+def _enclosing(lines: list[Line]) -> tuple[Line, float]:
+    """The line from the first height to the last, nowhere nearer to the axis than those given, that is farther out by least."""
+    z = np.array([height for low, high, _, _ in lines for height in (low, high)])
+    y = np.array([radius for _, _, first, last in lines for radius in (first, last)])
+    if len(lines) == 1:
+        return lines[0], 0.0
+    # The narrowest strip around points has a side of their hull on one of its borders.
+    slopes = [0.0, *_hull_slopes(z, y), *(-slope for slope in _hull_slopes(z, -y))]
+    best: tuple[float, float, float] | None = None
+    for slope in slopes:
+        foot = float((y - slope * z).max())
+        off = float((slope * z + foot - y).max())
+        if best is None or off < best[0] - _SAME:
+            best = off, slope, foot
+    assert best is not None
+    off, slope, foot = best
+    return (float(z[0]), float(z[-1]), slope * float(z[0]) + foot, slope * float(z[-1]) + foot), off
+
+
+def _hull_slopes(z: Floats, y: Floats) -> list[float]:
+    """Slopes of the upper side of the hull of points, which are in the order of z."""
+    hull: list[tuple[float, float]] = []
+    for point in sorted(zip(z.tolist(), y.tolist(), strict=True)):
+        if hull and point[0] - hull[-1][0] <= _SAME:
+            point = (hull[-1][0], max(point[1], hull.pop()[1]))
+        while len(hull) > 1 and (hull[-1][1] - hull[-2][1]) * (point[0] - hull[-2][0]) <= (point[1] - hull[-2][1]) * (
+            hull[-1][0] - hull[-2][0]
+        ):
+            hull.pop()
+        hull.append(point)
+    return [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(hull)]

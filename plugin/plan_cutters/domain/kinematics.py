@@ -8,12 +8,13 @@ nothing changes (`kernels.limits`).
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, cross
+from cad_io.arrays import Floats, Ints, Record, cross
 from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 
 #: Tool axes this near to the direction of the axis next to the part, rad, are held only with fast turns of it: singular.
@@ -245,3 +246,32 @@ class Kinematics(Record):
 def _between(axis: Floats, direction: Floats) -> Floats:
     """Angles (n,), rad, of unit axes (n, 3) to a unit direction (3,)."""
     return np.asarray(np.arctan2(np.linalg.norm(cross(axis, direction), axis=1), axis @ direction))
+
+
+def positions(
+    machines: Sequence[Kinematics | None], axis: Floats, which: Ints
+) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
+    """Positions of rotary axes that hold tool axes, each in the setup that serves its sample.
+
+    Parameters
+    ----------
+    machines : sequence of Kinematics
+        In each setup.
+    axis : (n, 3) float
+        Unit tool axes; nan where there is none.
+    which : (n,) int32
+        The setup of each, -1 for none.
+
+    Returns
+    -------
+    angles, taken, singular
+        As `Kinematics.positions` gives them.
+    """
+    first = machines[0]
+    assert first is not None, "a machine without rotary axes has no positions"
+    angles, taken, singular = first.positions(axis)
+    for k, each in enumerate(machines[1:], 1):
+        rows = np.flatnonzero(which == k)
+        if len(rows) and each is not None:
+            angles[rows], taken[rows], singular[rows] = each.positions(axis[rows])
+    return angles, taken, singular

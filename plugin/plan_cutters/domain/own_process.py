@@ -7,8 +7,13 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import OptionError
 
 #: One tool axis for all contacts of a step, or one for each.
@@ -197,3 +202,96 @@ def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
     scaled = [float(each) / largest for each in axis]
     x, y, z = (each / math.hypot(*scaled) for each in scaled)
     return x, y, z
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nearest:
+    """The orientation next to one that a person wrote which serves more: its angles (2,), deg, its axis (3,), and the rows."""
+
+    angle: Floats
+    axis: Floats
+    rows: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OwnResult:
+    """A step of the planner's own process does this.
+
+    Attributes
+    ----------
+    number : int
+        In the file, from 1.
+    setup : int
+    mode : str
+    cutter : Cutter
+    axis : (3,) float, optional
+        None where it is simultaneous.
+    angle : (2,) float, optional
+        As written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
+    requested : (m,) int64
+        Samples of its faces that no step before it finishes.
+    rows : (r,) int64
+        Those of them that it finishes.
+    serves : (k,) int64
+        All samples of its faces that it could finish, whoever takes them.
+    wrong : str
+        Why it does less than is asked of it, in words; empty where it does all.
+    nearest : Nearest, optional
+        An orientation that would do, where there is one.
+    """
+
+    number: int
+    setup: int
+    mode: Mode
+    cutter: Cutter
+    axis: Floats | None
+    angle: Floats | None
+    requested: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    serves: NDArray[np.int64]
+    wrong: str = ""
+    nearest: Nearest | None = None
+
+
+def operations_requested(
+    operations: str | None, process: OwnProcess | None, cutters: Sequence[Cutter], feeds: Mapping[Cutter, float],
+    machine: Machine, setups: int,
+) -> str:  # fmt: skip
+    """The operations that are planned: what was requested; behind a process, else, the fastest if all have feeds.
+
+    Parameters
+    ----------
+    operations : str, optional
+        As requested.
+    process : OwnProcess, optional
+    cutters : sequence of Cutter
+        All that are judged.
+    feeds : mapping
+        Of those that have one, mm/min.
+    machine : Machine
+    setups : int
+        How many there may be.
+
+    Raises
+    ------
+    OptionError
+        The machine turns about one axis, a step is about something that there is not, or a feed is missing where time counts.
+    """
+    if machine.turns and machine.turning < 2:
+        axes, word = "one" if machine.turning else "no", "process" if operations is None else "operations"
+        raise OptionError(
+            f"on machine {machine.name} {axes} rotary axis turns the tool: a plan of operations chooses the angles of two; "
+            f"leave out --{word}, or name a machine that has them"
+        )
+    unpriced = list[str]()
+    if process is not None:
+        rotary = machine.rotary
+        process.check(cutters, setups, (rotary[0].name, rotary[1].name) if len(rotary) == 2 else ("azimuth", "tilt"))
+        named = [cutter_of(each.cutter, cutters, "process") for each in process.steps]
+        unpriced = [each.typed for each in named if each not in feeds]
+    chosen = operations or ("fewest" if unpriced or not feeds else "fastest")
+    if chosen != "fewest" and unpriced:
+        raise OptionError(f"process: {unpriced[0]} has no feed: give --feed MM/MIN, or --operations fewest")
+    if chosen != "fewest" and not feeds:
+        raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
+    return chosen

@@ -10,8 +10,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items, numbers, shown
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.host_axes import Direction, Heading
-from plan_cutters.domain.posture import unit
+from plan_cutters.domain.posture import Direction, Heading, unit
 from plan_cutters.errors import OptionError
 
 #: Directions whose angle has a smaller sine are parallel.

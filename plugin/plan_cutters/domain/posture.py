@@ -2,16 +2,14 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.checks import number, numbers, pair, radians, shown
-from plan_cutters.domain.degrees import Angle, degrees_too
-from plan_cutters.domain.host_axes import vector_of
+from plan_cutters.domain.checks import Angle, degrees_too, number, numbers, pair, radians, shown
 from plan_cutters.errors import OptionError
 
 _RIGHT, _FULL = math.pi / 2, 2 * math.pi
@@ -140,3 +138,144 @@ def unit(vector: Any, what: str) -> Floats:
     # First to the size of 1: squares of very large or small numbers are lost.
     v = v / largest
     return np.asarray(v / np.linalg.norm(v))
+
+
+Direction = tuple[float, float, float]
+
+
+class HostAxis(Protocol):
+    """An axis as build123d has it."""
+
+    @property
+    def direction(self) -> "BuildVector": ...
+
+
+class BuildVector(Protocol):
+    """A vector as build123d has it."""
+
+    @property
+    def X(self) -> float: ...
+    @property
+    def Y(self) -> float: ...
+    @property
+    def Z(self) -> float: ...
+
+
+class CadVector(Protocol):
+    """A vector as CadQuery has it."""
+
+    @property
+    def x(self) -> float: ...
+    @property
+    def y(self) -> float: ...
+    @property
+    def z(self) -> float: ...
+
+
+class BuildPlane(Protocol):
+    """A plane as build123d has it."""
+
+    @property
+    def z_dir(self) -> BuildVector: ...
+    @property
+    def x_dir(self) -> BuildVector: ...
+
+
+class CadPlane(Protocol):
+    """A plane as CadQuery has it."""
+
+    @property
+    def zDir(self) -> CadVector: ...
+    @property
+    def xDir(self) -> CadVector: ...
+
+
+HostPlane = BuildPlane | CadPlane
+#: A direction as callers give it: a word as `+z`, a host's axis, or three numbers, which a host's vector has, too.
+Heading = str | HostAxis | Iterable[float]
+
+
+def plane_of(plane: Any) -> tuple[Direction, Direction] | None:
+    """The normal and the X of a host's plane; None where it is none."""
+    for normal, across in (("z_dir", "x_dir"), ("zDir", "xDir")):
+        z, x = _coordinates(getattr(plane, normal, None)), _coordinates(getattr(plane, across, None))
+        if z is not None and x is not None:
+            return z, x
+    return None
+
+
+def vector_of(vector: Any) -> Any:
+    """The three numbers of a host's axis; anything else as it is.
+
+    An `Axis` of a machine is none of these: its direction is in the machine's frame.
+
+    >>> vector_of((0, 0, 1)), vector_of(None)
+    ((0, 0, 1), None)
+    """
+    coordinates = _coordinates(getattr(vector, "direction", None))
+    return vector if coordinates is None else coordinates
+
+
+def _coordinates(vector: Any) -> Direction | None:
+    """Those of a host's vector; whether they are finite numbers is looked at where they are used."""
+    for words in ("XYZ", "xyz"):
+        coordinates: list[Any] = [getattr(vector, word, None) for word in words]
+        if not any(each is None or callable(each) for each in coordinates):
+            x, y, z = coordinates
+            return x, y, z
+    return None
+
+
+def _rows(intervals: list[tuple[float, float]]) -> Floats:
+    return np.array(intervals, float).reshape(-1, 2)
+
+
+def join(intervals: Floats) -> Floats:
+    """Join intervals, in any order, where they overlap or touch; ascending.
+
+    >>> join(np.array([[2.0, 3.0], [0.0, 1.0], [1.0, 1.5]])).tolist()
+    [[0.0, 1.5], [2.0, 3.0]]
+    """
+    joined: list[tuple[float, float]] = []
+    for first, last in intervals[np.argsort(intervals[:, 0], kind="stable")].tolist():
+        if joined and first <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(joined[-1][1], last))
+        else:
+            joined.append((first, last))
+    return _rows(joined)
+
+
+def common(a: Floats, b: Floats) -> Floats:
+    """The common parts of each two intervals, of which single numbers count.
+
+    >>> common(np.array([[0.0, 2.0], [3.0, 4.0]]), np.array([[1.0, 3.0]])).tolist()
+    [[1.0, 2.0], [3.0, 3.0]]
+    """
+    pairs = [(max(x, u), min(y, v)) for x, y in a.tolist() for u, v in b.tolist()]
+    return _rows([(low, high) for low, high in pairs if low <= high])
+
+
+def without(intervals: Floats, others: Floats) -> Floats:
+    """The parts of sorted intervals that none of the others, sorted, covers; single numbers do not count.
+
+    >>> without(np.array([[0.0, 4.0]]), np.array([[1.0, 2.0], [3.0, 9.0]])).tolist()
+    [[0.0, 1.0], [2.0, 3.0]]
+    >>> without(np.zeros((0, 2)), np.array([[1.0, 2.0]])).tolist()
+    []
+    """
+    remaining = []
+    for low, high in intervals.tolist():
+        for first, last in others.tolist():
+            if last <= low or first >= high:
+                continue
+            if first > low:
+                remaining.append((low, first))
+            low = max(low, last)
+        if high > low:
+            remaining.append((low, high))
+    return _rows(remaining)
+
+
+def complement(intervals: Floats, low: float, high: float) -> Floats:
+    """The parts of [low, high] that no interval, sorted, covers."""
+    return without(np.array([[low, high]]), intervals)

@@ -5,9 +5,8 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
-from plan_cutters.domain.dimensions import Dimensions
+from plan_cutters.domain.dimensions import Dimensions, notation
 from plan_cutters.domain.holder import Segment
-from plan_cutters.domain.spec import notation
 from plan_cutters.errors import CutterError, HolderFitError
 
 #: Parts of an assembly that do not cut, from the flutes up.

@@ -5,12 +5,18 @@ the longest usual design. They follow no one catalogue, and a tool that somebody
 what to buy.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Segment
+from plan_cutters.domain.dimensions import notation
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import SAME
-from plan_cutters.domain.spec import notation
 from plan_cutters.errors import CutterError
 
 #: Stick-outs over the diameter: as advised, and the most that is usual at all.
@@ -142,3 +148,82 @@ def _made(cutter: Cutter, tool: StandardTool, ratio: float) -> Cutter | None:
         )  # fmt: skip
     except CutterError:
         return None
+
+
+#: What the kernel's curvature is off by, as a share.
+_ROUNDING = 1e-6
+
+
+class Fit(NamedTuple):
+    """A cutter of a usual size reaches this share of an area, 0 to 1."""
+
+    cutter: Cutter
+    share: float
+
+
+#: Which usual sizes in place of a cutter reach some samples (m,), by the areas of all samples (n,); None where that is not known.
+Fitting = Callable[[Cutter, NDArray[np.int64], Floats], tuple[Fit, ...] | None]
+
+
+def largest_fitting(radius: float, allowance: float = 0.0) -> float | None:
+    """Largest usual diameter of a cutter that fits into an inside radius and leaves an allowance, mm; None where none does.
+
+    >>> largest_fitting(1.916), largest_fitting(3.0), largest_fitting(0.2)
+    (3.0, 6.0, None)
+    """
+    sizes = (tool.diameter for tool in METRIC)
+    return max((size for size in sizes if 0.5 * size + allowance <= radius * (1.0 + _ROUNDING)), default=None)
+
+
+def least_radius(cutter: Cutter) -> float | None:
+    """Least radius of the fillet that a cutter leaves beside an edge, mm, its allowance included; None for shapes without one.
+
+    It is the corner radius, or of a flat end the radius, with which it goes along an edge.
+
+    >>> least_radius(Cutter.parse("R6L80")), least_radius(Cutter.parse("R6L80rc1")), least_radius(Cutter.parse("R6L80rc6"))
+    (6.0, 1.0, 6.0)
+    """
+    if cutter.shape == "lollipop":
+        return cutter.radius + (cutter.allowance or 0.0)
+    if cutter.shape != "end":
+        return None
+    return (cutter.corner_radius or cutter.radius) + (cutter.allowance or 0.0)
+
+
+#: Radius, stick-out, flutes, corner radius of the bull nose (0: none), nose radius of the holder; mm.
+_SIZES = (
+    (1, 20, 6, 0, 10.5),
+    (1.5, 25, 9, 0, 10.5),
+    (2, 30, 12, 0.5, 10.5),
+    (2.5, 35, 15, 0.5, 10.5),
+    (3, 40, 15, 0.5, 10.5),
+    (4, 50, 20, 1, 10.5),
+    (5, 60, 25, 1, 12),
+    (6, 80, 30, 1, 12),
+    (8, 90, 40, 2, 13.5),
+    (10, 100, 50, 2, 16.5),
+    (12, 120, 60, 2, 22),
+)
+#: Smaller cutters stand on a shank of this radius, which begins so far below the holder, mm.
+_SHANK, _STUB = 3.0, 5.0
+#: Length of the holders, mm.
+_HOLDER = 60.0
+
+
+@cache
+def builtin() -> tuple[Cutter, ...]:
+    """Flat ends, bull noses and ball ends from 2 to 24 mm across, each with flutes, neck or shank, and a plain round holder."""
+    cutters = []
+    for radius, length, flutes, corner, nose in _SIZES:
+        for name, rounding in (("flat end", 0.0), ("bull nose", corner), ("ball end", radius)):
+            if name == "bull nose" and not rounding:
+                continue
+            neck, shank = None, float(radius)
+            if radius < _SHANK:
+                neck, shank = Segment(0.95 * radius, length - flutes - _STUB), _SHANK
+            what = f"{name} D{2 * radius:g}" + (f" rc{rounding:g}" if name == "bull nose" else "")
+            cutters.append(
+                Cutter(radius, length, rounding, f"{what} x {length:g}, built-in", flutes=flutes, neck=neck, shank_radius=shank,
+                       holder=Holder((Segment(nose, _HOLDER),), "plain, built-in"))
+            )  # fmt: skip
+    return tuple(cutters)

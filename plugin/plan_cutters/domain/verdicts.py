@@ -1,5 +1,6 @@
 """Verdicts: the words and arrays that say what a cutter reaches, and why not where it does not."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -220,3 +221,83 @@ def blank(n: int) -> VerdictBuffer:
         shift=np.zeros((n, 3)),
         reason=np.full(n, NO_REASON, np.uint8),
     )
+
+
+#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
+CHORD_SHARE, CHORD_REQUESTED = 0.25, 0.2
+#: Verdicts say something about a cutter whose radius and flutes' length the tolerance is a smaller share of.
+JUDGED_SHARE = 0.25
+#: Of a nominal answer, mm.
+_HAIR = 1e-9
+
+
+def depths(tolerance: float, chord_error: float) -> tuple[float, float]:
+    """Depths that are safe and that are blocked, mm, for the true surface: negative within that distance.
+
+    If no triangle reaches deeper than the first, no point of the surface is deeper than the tolerance; a point of a triangle that
+    is deeper than the second proves one. Of what may not be touched at all the tolerance is 0.
+
+    Parameters
+    ----------
+    tolerance : float
+        Depth that is allowed, mm.
+    chord_error : float
+        Of the triangles, mm.
+
+    Examples
+    --------
+    >>> depths(0.5, 0.125), depths(0.0, 0.125)
+    ((0.375, 0.625), (-0.125, 0.125))
+    """
+    return tolerance - chord_error, tolerance + chord_error
+
+
+def effective_tolerance(requested: float, chord_error: float) -> float:
+    """The gouge tolerance that is kept, mm: the one requested or, where triangles cannot be that close, more.
+
+    >>> effective_tolerance(0.01, 0.0025), effective_tolerance(0.01, 0.01)
+    (0.01, 0.04)
+    """
+    return max(requested, chord_error / CHORD_SHARE)
+
+
+def nominal_depth(chord_error: float) -> float:
+    """Depth up to which nothing counts for the answer without a tolerance, mm.
+
+    Next to the contact, where the true clearance is zero, triangles must not count; local gouging does.
+    """
+    return 2 * chord_error + _HAIR
+
+
+def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
+    """Combine the verdicts of all setups, and name the setup that reaches each sample.
+
+    Parameters
+    ----------
+    each : sequence of Verdicts
+        In each setup, of the same n samples.
+
+    Returns
+    -------
+    Verdicts
+        Verdict and posture of the first setup that reaches a sample. Where none does: undecided if it is so in any; the reason
+        is that of the first one in which not the axis limit alone leaves nothing, or the fixture if that is so in any.
+    (n,) int32
+        The setup that reaches each sample, -1 for none.
+    """
+    n = len(each[0].verdict)
+    combined, which = blank(n), np.full(n, -1, np.int32)
+    for k, verdicts in enumerate(each):
+        rows = verdicts.reached & (which < 0)
+        which[rows] = k
+        combined.take(rows, verdicts)
+    for verdicts in each:
+        rows = (which < 0) & verdicts.not_reached
+        first = rows & ~combined.not_reached
+        combined.verdict[first], combined.reason[first] = verdicts.verdict[first], verdicts.reason[first]
+        unsure = rows & (verdicts.verdict == UNDECIDED) & (combined.verdict == INACCESSIBLE)
+        combined.verdict[unsure], combined.reason[unsure] = UNDECIDED, verdicts.reason[unsure]
+        more = rows & ~first & (combined.reason == AXIS_LIMIT) & (verdicts.verdict == combined.verdict)
+        combined.reason[more] = verdicts.reason[more]
+        combined.reason[rows & (verdicts.reason == FIXTURE)] = FIXTURE
+    return combined.freeze(), which

@@ -8,15 +8,105 @@ import os
 import re
 import zipfile
 import zlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Generic, Self, TypeVar
+from xml.sax import ContentHandler, SAXException
+from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
+
+from defusedxml.common import DefusedXmlException
+from defusedxml.expatreader import create_parser
 
 from plan_cutters.errors import PlanError
-from plan_cutters.files.xml_tree import Element, parse
 from plan_cutters_base import user_files as files
 from plan_cutters_base.user_files import IrregularError, open_regular
+
+_DEEPEST, _ELEMENTS = 64, 2_000_000
+_DECLARED = re.compile(r"""^<\?xml[^>]*?\bencoding\s*=\s*["']([\w.-]+)["']""")
+
+
+@dataclass(slots=True)
+class Element:
+    """An element: its name without a namespace's prefix, its attributes, text, children and the line in which it begins."""
+
+    tag: str
+    given: dict[str, str]
+    line: int
+    text: str = ""
+    children: list["Element"] = field(default_factory=list)
+
+    def first(self, tag: str) -> "Element | None":
+        """The first child of a name."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+    def below(self, tags: tuple[str, ...]) -> Iterator["Element"]:
+        """Elements of some names, in whatever group they stand, but not in each other."""
+        waiting = self.children[::-1]
+        while waiting:
+            element = waiting.pop()
+            if element.tag in tags:
+                yield element
+            else:
+                waiting += element.children[::-1]
+
+
+class _Tree(ContentHandler):
+    """Elements as they come."""
+
+    _locator: Locator
+
+    def __init__(self, file: str, error: type[PlanError]) -> None:
+        self.file, self.error, self.count = file, error, 0
+        self.top = Element("", {}, 0)
+        self.open = [self.top]
+
+    def startElement(self, name: str, attrs: AttributesImpl) -> None:
+        self.count += 1
+        line = self._locator.getLineNumber() or 0
+        if len(self.open) > _DEEPEST or self.count > _ELEMENTS:
+            raise self.error(f"line {line}: its elements are too deep or too many", file=self.file)
+        element = Element(name.rpartition(":")[2], dict(attrs.items()), line)
+        self.open[-1].children.append(element)
+        self.open.append(element)
+
+    def endElement(self, name: str) -> None:
+        self.open.pop()
+
+    def characters(self, content: str) -> None:
+        self.open[-1].text += content
+
+
+def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) -> Element:
+    """The root of a document; `text` is what its bytes say, whatever it declares of their encoding.
+
+    Raises
+    ------
+    error
+        It is not well-formed, or declares a document type or entities.
+    """
+    source = InputSource()
+    declared = _DECLARED.match(text.lstrip("\ufeff"))
+    wide = 0 in data[:4] or data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    if declared and declared[1].lower().startswith("utf-16") != wide:
+        # Saved by an editor in another encoding than it still declares.
+        source.setEncoding("utf-8")
+        data = text.encode("utf-8", "replace")
+    source.setByteStream(io.BytesIO(data))
+    parser, tree = create_parser(forbid_dtd=True), _Tree(file, error)
+    parser.setContentHandler(tree)
+    try:
+        parser.parse(source)
+    except DefusedXmlException:
+        raise error(
+            f"line {parser.getLineNumber()}: it declares a document type or entities, which no {noun} needs; they are refused",
+            file=file,
+        ) from None
+    except (SAXException, LookupError, ValueError) as fault:
+        cause = fault.getException() if isinstance(fault, SAXException) else None
+        raise error(f"is no well-formed XML ({cause or fault}); export it anew", file=file) from None
+    return tree.top.children[0]
 
 
 def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
@@ -75,23 +165,6 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return members
 
 
-def data_of(path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> bytes:
-    """All bytes of a regular file; `error` names it as no `noun` where it cannot be one."""
-    name = Path(path).name
-    try:
-        data = files.content(path, _FILE + 1)
-    except files.IrregularError as fault:
-        what = f"{noun} in it" if os.path.isdir(path) else "file"
-        raise error(f"{fault}; give a {what}", file=name) from None
-    except OSError as fault:
-        raise error(f"cannot be read: {fault.strerror or fault}", file=name) from None
-    except ValueError as fault:
-        raise error(f"is no name of a file: {fault}", file=ascii(name)) from None
-    if len(data) > _FILE:
-        raise error(f"is larger than {_FILE >> 20} MB: no {noun} is; split it", file=name)
-    return data
-
-
 @dataclass(frozen=True)
 class Content:
     """A file that is being recognised: its bytes, its text, its JSON, its XML, what a zip archive it is holds.
@@ -108,8 +181,20 @@ class Content:
 
     @classmethod
     def of(cls, path: str | os.PathLike[str]) -> Self:
-        """Read the content of a regular file."""
-        return cls(Path(path), data_of(path, cls.noun, cls.error))
+        """Read the content of a regular file; `error` names it as no `noun` where it cannot be one."""
+        name = Path(path).name
+        try:
+            data = files.content(path, _FILE + 1)
+        except files.IrregularError as fault:
+            what = f"{cls.noun} in it" if os.path.isdir(path) else "file"
+            raise cls.error(f"{fault}; give a {what}", file=name) from None
+        except OSError as fault:
+            raise cls.error(f"cannot be read: {fault.strerror or fault}", file=name) from None
+        except ValueError as fault:
+            raise cls.error(f"is no name of a file: {fault}", file=ascii(name)) from None
+        if len(data) > _FILE:
+            raise cls.error(f"is larger than {_FILE >> 20} MB: no {cls.noun} is; split it", file=name)
+        return cls(Path(path), data)
 
     @property
     def name(self) -> str:
@@ -229,3 +314,65 @@ def lines_of(text: str, key: str) -> list[int]:
     except (ValueError, AttributeError, IndexError, RecursionError):
         pass
     return []
+
+
+#: A function of a content, and of what a room adds to it.
+Reader = TypeVar("Reader", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Format(Generic[Reader]):
+    """A format that is read: its name, its usual suffixes, and the functions that recognise and read its content."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Any], bool]
+    read: Reader
+
+
+@dataclass(frozen=True, slots=True)
+class Foreign:
+    """A foreign format is recognised but not read: it has a name, a test of the content, and advice."""
+
+    name: str
+    recognises: Callable[[Any], bool]
+    instead: str
+
+
+def recognised(
+    content: Content, formats: Sequence[Format[Reader]], foreign: Iterable[Foreign], *, xml: str, json: str,
+    archive: str = "", first: Iterable[Foreign] = (),
+) -> Format[Reader]:  # fmt: skip
+    """The format of a file; what is known and not read is refused by name, some of it `first`.
+
+    `xml`, `json`, `archive`: what to say of a file of these that is of no format.
+
+    Raises
+    ------
+    PlanError
+        The content's own error.
+    """
+    # But perhaps a byte-order mark.
+    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+        raise content.error("is empty", file=content.name)
+    _refuse(content, first)
+    for form in formats:
+        if form.recognises(content):
+            return form
+    _refuse(content, foreign)
+    if archive and content.members is not None:
+        raise content.error(f"is a zip archive {archive}", file=content.name)
+    if content.head[:1] in ("{", "[") and content.json is None:
+        raise content.broken_json()
+    if content.head.startswith("<"):
+        raise content.error(f"is XML, but {xml}", file=content.name)
+    if content.json is not None:
+        raise content.error(f"is JSON, but {json}", file=content.name)
+    names = dict.fromkeys(f"{form.name} ({' '.join(form.suffixes)})" for form in formats)
+    raise content.error(f"is no {content.noun} that is known; read are {', '.join(names)}", file=content.name)
+
+
+def _refuse(content: Content, foreign: Iterable[Foreign]) -> None:
+    for each in foreign:
+        if each.recognises(content):
+            raise content.error(f"is {each.name}, which is not read: {each.instead}", file=content.name)

@@ -6,8 +6,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import flag, number, numbers, shown
 from plan_cutters.domain.figures import mm
-from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.revolution import enclosing_segments
+from plan_cutters.domain.holder import Holder, enclosing_segments
 from plan_cutters.errors import CutterError
 
 #: Axes by their letters.

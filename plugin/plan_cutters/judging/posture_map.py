@@ -12,9 +12,8 @@ import numpy as np
 from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.assembly import Assembly
-from plan_cutters.domain.degrees import Angle, in_radians
-from plan_cutters.domain.intervals import common, complement, join, without
-from plan_cutters.domain.posture import tilt_direction
+from plan_cutters.domain.checks import Angle, in_radians
+from plan_cutters.domain.posture import common, complement, join, tilt_direction, without
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNDECIDED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
@@ -136,8 +135,7 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
     narrowest : float
         Width below which a range of tilts stays undecided, rad.
     """
-    from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
-    from plan_cutters.kernels.maps.points import axis_intervals
+    from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE, axis_intervals
 
     cutter, conditions, (low, high) = context.cutter, context.conditions, context.conditions.postures.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
@@ -223,7 +221,7 @@ def _lying(contact: SurfaceSamples, free: Sequence[Floats], context: Context) ->
 
 def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
     """Tilts (k, 2) at which a tool touches and local gouging allows it."""
-    from plan_cutters.kernels.maps.points import local_gouge_range
+    from plan_cutters.kernels.maps.free_tilts import local_gouge_range
 
     bounds = []
     for offset, radius, low, high, _ in tool.mode.tolist():

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.nesting import inside
+from plan_cutters.domain.preference import inside
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,

@@ -26,7 +26,7 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from cad_io.part.inside_edges import InsideEdge
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fillet import least_radius
+from plan_cutters.domain.standard_tools import least_radius
 from plan_cutters.domain.verdicts import COLLISION, INACCESSIBLE, REAR_GOUGE, SHARP_EDGE, Verdicts
 
 #: A reached sample is near the end of a strip within so many gaps of its face; its normal turns less than this cosine says.

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import CENTRE, HALVES, SIDES
-from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.tree import half
 from plan_cutters.kernels.rows import Tree
 
 #: Winding numbers from which a point is not called outside, and from which it is called inside. For closed skins they are

@@ -1,6 +1,6 @@
 """Tool libraries: what other programs and people write about tools, read into cutters.
 
-May use: domain. `formats.py` is the table of formats, each of which is one module. Names are handed on lazily: who has no
+May use: domain. `read.py` has the table of formats, each of which is one module. Names are handed on lazily: who has no
 library loads none of them.
 """
 

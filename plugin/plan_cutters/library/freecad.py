@@ -16,10 +16,12 @@ from typing import Any
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.files.content import lines_of
 from plan_cutters.library.cutting import Preset, slack, take_feed
-from plan_cutters.library.files import MOST_TOOLS, Content, data_of, lines_of, too_many
 from plan_cutters.library.fusion import MOST_SECTIONS
 from plan_cutters.library.raw_tool import (
+    MOST_TOOLS,
+    Content,
     Entry,
     FaultError,
     LibraryContent,
@@ -29,6 +31,7 @@ from plan_cutters.library.raw_tool import (
     number_in,
     number_of,
     sections,
+    too_many,
     whole_of,
 )
 from plan_cutters_base.user_files import is_there
@@ -125,7 +128,7 @@ def _bit(folder: Path, path: str) -> Content:
     for each in (folder / place / name for place in _FOLDERS):
         if is_there(each):
             try:
-                bit = Content(each, data_of(each))
+                bit = Content.of(each)
             except LibraryError as error:
                 raise FaultError(f"{name} {error.cause}") from None
             if not is_bit(bit):
@@ -181,7 +184,7 @@ def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
     for each in (folder / place / f"{word}.fcholder" for place in _HOLDERS):
         if is_there(each):
             try:
-                content = Content(each, data_of(each))
+                content = Content.of(each)
                 if not is_holder(content):
                     raise FaultError("it is no FreeCAD holder")
                 tool.holder = _holder(content.json, name_of(content.json.get("name")) or word)

@@ -9,10 +9,11 @@ from typing import Any
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.files.xml_tree import Element
+from plan_cutters.files.content import Element, lines_of
 from plan_cutters.library.cutting import Preset, take_feed
-from plan_cutters.library.files import MOST_TOOLS, Content, lines_of, too_many
 from plan_cutters.library.raw_tool import (
+    MOST_TOOLS,
+    Content,
     Entry,
     FaultError,
     LibraryContent,
@@ -22,6 +23,7 @@ from plan_cutters.library.raw_tool import (
     number_in,
     number_of,
     sections,
+    too_many,
     unit_of,
     whole_of,
 )

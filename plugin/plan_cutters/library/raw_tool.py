@@ -4,12 +4,13 @@ import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Literal, overload
+from typing import Any, ClassVar, Literal, overload
 
 from plan_cutters.domain.checks import finite, items, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
-from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.errors import CutterError, LibraryError, PlanError
+from plan_cutters.files import content
 
 
 @dataclass(frozen=True, slots=True)
@@ -368,3 +369,18 @@ def sections(rows: Iterable[tuple[float, float, float]], what: str) -> list[Segm
             raise FaultError(f"{what} {i} has a diameter of 0")
         result.append(Segment(0.5 * lower, height, 0.5 * upper))
     return result
+
+
+#: Tools that a file may list: more take more memory than a planner's computer has.
+MOST_TOOLS = 50_000
+
+
+class Content(content.Content):
+    """A file that may be a tool library."""
+
+    noun: ClassVar[str] = "tool library"
+    error: ClassVar[type[PlanError]] = LibraryError
+
+
+def too_many(file: str) -> LibraryError:
+    return LibraryError(f"lists more than {MOST_TOOLS} tools; split it", file=file)

@@ -15,9 +15,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.cutting import Preset, take_feed
-from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.milling import cause_of
 from plan_cutters.library.raw_tool import (
+    MOST_TOOLS,
+    Content,
     Entry,
     FaultError,
     Library,
@@ -27,6 +28,7 @@ from plan_cutters.library.raw_tool import (
     mm,
     name_of,
     number_of,
+    too_many,
     unit_of,
     whole_of,
 )

@@ -1,6 +1,6 @@
 """Machine files: what other programs and people write about machines, read into `Machine`.
 
-May use: domain, files. `formats.py` is the table of formats, each of which is one module. Names are handed on lazily.
+May use: domain, files. `read.py` has the table of formats, each of which is one module. Names are handed on lazily.
 """
 
 from importlib import import_module

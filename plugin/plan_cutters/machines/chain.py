@@ -3,12 +3,75 @@
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
-from plan_cutters.domain.axis import Axis, Carried, Kind
 from plan_cutters.domain.checks import finite, shown
-from plan_cutters.domain.machine import Machine
-from plan_cutters.errors import MachineError
+from plan_cutters.domain.machine import Axis, Carried, Kind, Machine
+from plan_cutters.errors import MachineError, PlanError
+from plan_cutters.files import content
+
+#: How the two senses of an axis that carries the part are called after `FILE#`.
+TABLE, TOOL = "table", "tool-relative"
+
+
+class Content(content.Content):
+    """A file that may be a machine file."""
+
+    noun: ClassVar[str] = "machine file"
+    error: ClassVar[type[PlanError]] = MachineError
+
+
+class Added(NamedTuple):
+    """The user adds these facts to a machine's file, where the file leaves them open."""
+
+    #: Names of rotary axes: those that carry the part, the one next to the part first; those that carry the tool, the one next
+    #: to the tool last.
+    part: tuple[str, ...] = ()
+    tool: tuple[str, ...] = ()
+    #: `table`: positive angles of axes that carry the part are those of the table's own motion; `tool-relative`: of the tool
+    #: relative to the part, as in ISO 841; empty where nothing is said.
+    sign: str = ""
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """Names of rotary axes from the part to the tool."""
+        return self.part + self.tool
+
+    @property
+    def text(self) -> str:
+        """How it was said."""
+        order = ",".join(self.part) + ("/" + ",".join(self.tool) if self.tool else "")
+        return ",".join(word for word in (order, self.sign) if word)
+
+    @classmethod
+    def parse(cls, text: str) -> "Added":
+        """Read what stands after `FILE#`, as `C,A`, `C/B`, `table` or `C,A,table`.
+
+        >>> Added.parse("C/B,table")
+        Added(part=('C',), tool=('B',), sign='table')
+        """
+        words, sign = [], ""
+        for word in text.split(","):
+            if word.strip().lower() in (TABLE, TOOL):
+                sign = word.strip().lower()
+            else:
+                words.append(word.strip())
+        part, _, tool = ",".join(words).partition("/")
+        sides = [tuple(word.strip().upper() for word in side.split(",") if word.strip()) for side in (part, tool)]
+        names = sides[0] + sides[1]
+        if not (names or sign) or len(set(names)) < len(names) or not all(name.isalnum() for name in names):
+            raise MachineError(
+                f"{shown('#' + text)} says nothing of a machine: give its rotary axes from the part to the tool, as #C,A, or "
+                f"#C/B where C carries the part and B the tool; or how angles of a table are counted, #{TABLE} or #{TOOL}"
+            )
+        return cls(sides[0], sides[1], sign)
+
+    def refuse(self, name: str, *, order: bool = False, sign: bool = False) -> None:
+        """An error where something is said that the file says itself."""
+        if (order and self.order) or (sign and self.sign):
+            what = "the order of its axes" if order and self.order else "how its angles are counted"
+            raise MachineError(f"it says {what} itself: leave out #{self.text}", file=name)
+
 
 Vector = tuple[float, float, float]
 
@@ -133,3 +196,28 @@ def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool:
 
 def _dot(a: Vector, b: Vector) -> float:
     return sum(p * q for p, q in zip(a, b, strict=True)) / math.sqrt(sum(p * p for p in a) * sum(q * q for q in b))
+
+
+def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> list[Axis]:
+    """Rotary axes of a file that does not say which stands on which, from the part to the tool."""
+    names = [each.name.upper() for each in rotary]
+    if added.order and sorted(added.order) != sorted(names):
+        raise MachineError(f"#{added.text}: its rotary axes are {', '.join(names) or 'none'}")
+    if len(rotary) > 1 and not added.order:
+        raise MachineError(
+            f"{who} does not say how its rotary axes {', '.join(names)} stand on each other: say it from the part to the "
+            f"tool, as FILE#{','.join(names[::-1])}, or FILE#{names[-1]}/{names[0]} where the last carries the tool"
+        )
+    if rotary and not added.sign:
+        notes.append("its angles are taken as those of the tool relative to the part (ISO 841), for the file does not say")
+    if rotary and not added.order:
+        notes.append(f"{names[0]} is taken to carry the part, which matters to linear travel alone")
+    by_name = {each.name.upper(): each for each in rotary}
+    part = added.part if added.order else tuple(names)
+    sides: list[tuple[Carried, tuple[str, ...]]] = [("part", part), ("tool", added.tool)]
+    axes = []
+    for side, listed in sides:
+        for axis in (by_name[name] for name in listed):
+            turned = opposite(axis.direction) if side == "part" and added.sign == TABLE else axis.direction
+            axes.append(Axis(axis.name, axis.kind, side, turned, axis.limits, axis.point, axis.rate))
+    return axes

@@ -6,11 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.figures import angle, exact, percent
 from plan_cutters.domain.kinematics import ON_LIMIT, SINGULAR
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.errors import MachineError
 
 #: Directions on which shares are counted; a share is known to about 1 / sqrt(this) or better.

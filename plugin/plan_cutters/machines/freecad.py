@@ -7,12 +7,11 @@ farther from the tool, whichever is the parent. For other pairs on one side the 
 
 from typing import Any
 
-from plan_cutters.domain.axis import Axis, Carried
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Carried, Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
-from plan_cutters.machines.files import Added, Content
+from plan_cutters.machines.chain import Added, Content
 
 _ROLES: dict[str, tuple[str, Carried]] = {
     "table_linear": ("linear", "part"),

@@ -6,12 +6,11 @@ that carry the part; of rotary ones it is not documented, so that it must be sai
 
 from typing import Any, NamedTuple
 
-from plan_cutters.domain.axis import Axis, Carried
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Carried, Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
-from plan_cutters.machines.files import TABLE, TOOL, Added, Content
+from plan_cutters.machines.chain import TABLE, TOOL, Added, Content
 
 _MOST = 200
 #: Keys of a part that are understood, or that say nothing of where it can go.

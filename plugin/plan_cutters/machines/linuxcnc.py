@@ -9,13 +9,11 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
-from plan_cutters.machines.arrangement import arranged
-from plan_cutters.machines.files import Added, Content
+from plan_cutters.machines.chain import Added, Content, arranged
 
 _SECTION = re.compile(r"\[\s*([\w-]+)\s*\]")
 _ENTRY = re.compile(r"([\w-]+)\s*=\s*(.*)")

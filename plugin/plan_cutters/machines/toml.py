@@ -8,12 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.domain.axis import Axis, Carried
 from plan_cutters.domain.checks import shown, stated_radians
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Carried, Machine
 from plan_cutters.errors import MachineError
-from plan_cutters.machines.chain import ANGLES, LENGTHS, opposite, scaled
-from plan_cutters.machines.files import Added, Content
+from plan_cutters.machines.chain import ANGLES, LENGTHS, Added, Content, opposite, scaled
 
 FORMAT = "plan-cutters-machine"
 _LOOKS = re.compile(r"^\s*(format\s*=\s*[\"']plan-cutters-machine|\[\[\s*(part_chain|tool_chain)\s*\]\])", re.MULTILINE)

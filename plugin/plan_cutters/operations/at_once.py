@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.plans import costs_with, moving_over
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.candidates import STEP
 from plan_cutters.operations.fastest import cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search

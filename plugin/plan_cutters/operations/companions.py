@@ -6,7 +6,7 @@ a millimetre. Where feeds are known, another cutter that saves more than its cha
 
 import numpy as np
 
-from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.operations.plans import costs_with, worth_their_turn
 from plan_cutters.operations.task import Task
 

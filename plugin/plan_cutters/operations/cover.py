@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.set_cover import essential_rows
+from plan_cutters.domain.answers import essential_rows
 
 Table = NDArray[np.bool_]
 Which = NDArray[np.int64]

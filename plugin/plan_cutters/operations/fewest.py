@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record
-from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.operations.candidates import Orientations, apart, neighbours
 from plan_cutters.operations.cover import SECONDS, UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.at_once import WORTH, recommended
 from plan_cutters.operations.choices import Choice
 from plan_cutters.operations.fastest import cheap

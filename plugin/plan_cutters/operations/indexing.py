@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.columns import Columns
-from plan_cutters.domain.operations import INDEX_TIME, IndexFrom
+from plan_cutters.domain.operations import INDEX_TIME, Columns, IndexFrom
 from plan_cutters.operations.candidates import DIGITS, Orientations
 from plan_cutters.operations.problem import Turning
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.plans import costs_with, plan_with
 from plan_cutters.operations.problem import Costs

@@ -8,11 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.figures import count, duration, percent
-from plan_cutters.domain.least_set import LeastSet
-from plan_cutters.domain.lengths import reporting
+from plan_cutters.domain.figures import count, duration, percent, reporting
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
-from plan_cutters.domain.operations import STRATEGIES, strategy_of
+from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations

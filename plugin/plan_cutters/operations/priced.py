@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.operations.plans import of_wanted_kinds
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared

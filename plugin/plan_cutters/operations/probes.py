@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Columns
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import served_by
 from plan_cutters.scene.threads import Progress, part_of

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.fastest import cheap
 from plan_cutters.operations.fewest import spread
 from plan_cutters.operations.problem import Costs, Problem

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.passes import Paths, cut_by_tip
 from plan_cutters.operations.problem import Costs, Problem

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, cross
-from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import centre_path
@@ -236,7 +236,7 @@ class Walls:
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""
-        from plan_cutters.kernels.linear.rulings import OneFace, extents
+        from plan_cutters.kernels.linear.sections import OneFace, extents
 
         samples, (low, high) = self._probes.samples, np.full((2, len(rows)), np.nan)
         tangent = axis - (normal @ axis)[:, None] * normal

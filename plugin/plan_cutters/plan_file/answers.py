@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.domain.change import MEANS
+from plan_cutters.domain.answers import MEANS
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
 
 #: The verdict on a sample just beyond an answer.

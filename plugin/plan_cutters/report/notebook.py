@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.lengths import reporting
+from plan_cutters.domain.figures import reporting
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.markup import plain, template
 from plan_cutters.plan_file.model import Plan

@@ -6,8 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from plan_cutters.domain.dimensions import typed
 from plan_cutters.domain.figures import area, duration, percent
-from plan_cutters.domain.spec import typed
 from plan_cutters.library.toml import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Record, SurfaceSamples
-from plan_cutters.domain.assembly import Assembly
-from plan_cutters.domain.clearance import grown, rungs
+from plan_cutters.domain.assembly import Assembly, grown, rungs
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.kernels.codes import PART

@@ -14,8 +14,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.shapes import depth_along_normal
-from plan_cutters.domain.tolerance import depths
-from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts, blank
+from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts, blank, depths
 from plan_cutters.kernels.codes import BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
@@ -287,7 +286,7 @@ def free_in_posture(
     work : Work, optional
         Where what is looked at is counted.
     """
-    from plan_cutters.kernels.search.postures import free
+    from plan_cutters.kernels.search.search import free
 
     conditions, stands = context.conditions, np.zeros(len(axis), bool)
     point, normal, solids = contacts.point, contacts.normal, conditions.obstacles.solids
@@ -310,7 +309,8 @@ def over_plane(context: Context, contacts: Contacts, postures: Verdicts | Verdic
 
 def warm(contacts: Contacts, context: Context) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
-    from plan_cutters.kernels.search import search, upright
+    from plan_cutters.kernels.search import flats_and_flanks as upright
+    from plan_cutters.kernels.search import search
 
     none, verdicts, conditions = np.zeros(0, np.int64), verdict_arrays_of(blank(0)), context.conditions
     solids = conditions.obstacles.solids

@@ -87,7 +87,7 @@ def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: Verd
 def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context: Context, verdicts: VerdictBuffer) -> None:
     """The same of the flat below, its axis `along` the normal (1), or above (-1)."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-    from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
+    from plan_cutters.kernels.search.flats_and_flanks import FORBIDDEN, PLACED, upright
 
     conditions, n = context.conditions, len(contacts.normal)
     axis = np.full((n, 3), np.nan)
@@ -175,7 +175,7 @@ def _on_flank(
 ) -> None:
     """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-    from plan_cutters.kernels.search.flank import FREE, NONE, along_flank
+    from plan_cutters.kernels.search.flats_and_flanks import FREE, NONE, along_flank
 
     conditions = context.conditions
     reason = np.full(len(rows), NO_REASON, np.uint8)
@@ -277,7 +277,7 @@ def _wholly_along(
 
     Of a face that is higher than flutes under a narrower neck, as much lies along them as they are long.
     """
-    from plan_cutters.kernels.linear.rulings import OneFace, extents
+    from plan_cutters.kernels.linear.sections import OneFace, extents
 
     whole = off <= _WHOLE
     open_ = np.flatnonzero(~whole)

@@ -13,7 +13,7 @@ from scipy import ndimage
 from cad_io.arrays import Floats, Ints, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
-from plan_cutters.domain.tolerance import depths
+from plan_cutters.domain.verdicts import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
 from plan_cutters.scene.triangles import divided, pieces
@@ -21,7 +21,7 @@ from plan_cutters.scene.work import METER
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 if TYPE_CHECKING:
-    from plan_cutters.kernels.linear.lanes import WideTree
+    from plan_cutters.kernels.linear.tree import WideTree
     from plan_cutters.kernels.material import Solids
 
 #: Boxes that take as long as building a tree, for each triangle.
@@ -199,7 +199,7 @@ class Obstacles(Record):
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
         lies beyond the grid."""
-        from plan_cutters.kernels.cells import mark_shell, mark_small
+        from plan_cutters.kernels.linear.within import mark_shell, mark_small
 
         low, high, grow = self._extent
         extent = float((high - low).max())
@@ -259,8 +259,7 @@ class Obstacles(Record):
     @cached_property
     def wide_tree(self) -> "WideTree":
         """All triangles in one tree, as posture maps take it, eight boxes at a time."""
-        from plan_cutters.kernels.linear.lanes import WideTree, wide_tree
-        from plan_cutters.kernels.linear.tree import build_apart
+        from plan_cutters.kernels.linear.tree import WideTree, build_apart, wide_tree
 
         if self.first is None:
             return WideTree(*wide_tree(self.tree))

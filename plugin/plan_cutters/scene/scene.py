@@ -11,14 +11,12 @@ from cad_io.arrays import Record
 from cad_io.part.orient import orient
 from cad_io.part.repeats import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
-from plan_cutters.domain.checks import flag, number
+from plan_cutters.domain.checks import flag, number, spelled_out
 from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import unit
-from plan_cutters.domain.signatures import spelled_out
-from plan_cutters.domain.tolerance import CHORD_REQUESTED
+from plan_cutters.domain.posture import plane_of, unit
+from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words

@@ -17,7 +17,7 @@ from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.tolerance import effective_tolerance
+from plan_cutters.domain.verdicts import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened

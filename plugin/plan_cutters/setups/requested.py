@@ -7,9 +7,8 @@ from typing import Any
 
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.fixture import TABLE, Fixture
-from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import along, unit
+from plan_cutters.domain.posture import along, plane_of, unit
 from plan_cutters.errors import OptionError
 
 #: The word that asks for setups to be proposed.

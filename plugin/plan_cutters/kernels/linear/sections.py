@@ -1,13 +1,173 @@
-"""How far a face goes on through a point, along a plane across it: the length of a pass, and how much there is across one."""
+"""How far a face goes through a point: along lines on it, where a wall ends, and in a plane across it, the length of a pass."""
 
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.linear.rulings import IN_PLANE, crossing, place_on
-from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.linear.tree import half
+from plan_cutters.kernels.linear.vectors import cross, dot
+
+#: Distances from the plane of a line below which a corner lies in it, mm.
+IN_PLANE = 1e-9
+
+
+@kernel
+def crossing(s, t):
+    """Where on an edge a plane lies, from 0 to 1, by the distances of its ends from it; -1 where it does not cross the edge."""
+    if abs(s) <= IN_PLANE:
+        return 0.0
+    return s / (s - t) if s * t < 0.0 and abs(t) > IN_PLANE else -1.0
+
+
+@kernel
+def place_on(triangle, i, share, point, ruling, normal):
+    """Give a place on the edge from corner i, as (along, over) a line through a point."""
+    j, along, over = (i + 1) % 3, 0.0, 0.0
+    for k in range(3):
+        x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
+        along += x * ruling[k]
+        over += x * normal[k]
+    return along, over
+
+
+@kernel
+def _piece(triangle, point, ruling, normal, side, ends):
+    """Write where the plane through a line along a normal crosses a triangle: the two ends as (along, over) the line.
+
+    Returns whether it crosses it.
+    """
+    crosses = False
+    for i in range(3):
+        j = (i + 1) % 3
+        s, t = 0.0, 0.0
+        for k in range(3):
+            s += (triangle[i, k] - point[k]) * side[k]
+            t += (triangle[j, k] - point[k]) * side[k]
+        share = crossing(s, t)
+        if share < 0.0:
+            continue
+        along, over = place_on(triangle, i, share, point, ruling, normal)
+        if not crosses or along < ends[0, 0]:
+            ends[0, 0], ends[0, 1] = along, over
+        if not crosses or along > ends[1, 0]:
+            ends[1, 0], ends[1, 1] = along, over
+        crosses = True
+    return crosses
+
+
+@kernel
+def _clipped(ends, band, limit):
+    """Leave of a piece what lies within the band; where it leaves the band, that limits the line. Whether anything is left."""
+    (a, over_a), (b, over_b) = ends
+    if min(over_a, over_b) > band or max(over_a, over_b) < -band:
+        return False
+    if abs(over_a) > band or abs(over_b) > band:
+        for edge in (-band, band):
+            if (over_a - edge) * (over_b - edge) < 0.0:
+                crossing = a + (edge - over_a) / (over_b - over_a) * (b - a)
+                if crossing < 0.0:
+                    limit[0] = max(limit[0], crossing)
+                else:
+                    limit[1] = min(limit[1], crossing)
+    return True
+
+
+@kernel
+def _apart(box, node, along, offset, most):
+    """Whether a box lies wholly farther than `most` from a plane with the unit normal `along`, on one side of it.
+
+    `offset`: of the plane along its normal. What rounding may do is on the side of not being apart.
+    """
+    at, half, size = -offset, 2.0 * IN_PLANE + 1e-9 * box[node, DIAGONAL] + most, abs(offset)
+    for k in range(3):
+        at += along[k] * box[node, CENTRE + k]
+        size += abs(box[node, CENTRE + k])
+        side = 0.0
+        for j in range(3):
+            side += along[j] * box[node, SIDES + 3 * k + j]
+        half += box[node, HALVES + k] * abs(side)
+    return abs(at) > half + 1e-12 * size
+
+
+class OneFace(NamedTuple):
+    """The triangles of one face among others: their tree, the face numbers (n,) in tree order, and the number of the one."""
+
+    tree: Any
+    faces: Any
+    number: int
+
+
+class _Workspace(NamedTuple):
+    """This is a workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64."""
+
+    side: Any
+    ends: Any
+    limit: Any
+    stack: Any
+
+
+@kernel
+def _among(point, ruling, normal, own, band, workspace):
+    """The least and the largest place along a line at which a face is met; where it leaves the line is written as its limit."""
+    side, ends, limit, stack = workspace
+    limit[0], limit[1] = -np.inf, np.inf
+    first, last = np.inf, -np.inf
+    through, over = dot(side, point), dot(normal, point)
+    for k in range(2):
+        vertex, box, depth, begin = half(own.tree, k)
+        n, inner, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
+        stack[0] = 0
+        while top > 0:
+            top -= 1
+            node = stack[top]
+            # What the plane through the line does not cross within the band changes nothing.
+            if _apart(box, node, side, through, 0.0) or _apart(box, node, normal, over, band):
+                continue
+            if node < inner:
+                stack[top], stack[top + 1] = 2 * node + 2, 2 * node + 1
+                top += 2
+                continue
+            leaf = node - inner
+            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+                if own.faces[begin + t] != own.number:
+                    continue
+                if _piece(vertex[t], point, ruling, normal, side, ends) and _clipped(ends, band, limit):
+                    first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
+    return first, last
+
+
+@entry
+def extents(point, ruling, normal, own, band, low, high):
+    """Find how far a face goes along lines that lie on it.
+
+    Gaps in the face, such as holes, count as the face itself; where it leaves the line by more than the band, it ends.
+
+    Parameters
+    ----------
+    point : (p, 3) float64
+        On the face, mm.
+    ruling, normal : (p, 3) float64
+        Unit directions of the line and of the face there, at right angles.
+    own : OneFace
+        The face.
+    band : float
+        How far the face may be off the line along the normal, mm.
+    low, high : (p,) float64, written
+        Ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no triangle is near the line.
+    """
+    workspace = _Workspace(np.empty(3), np.empty((2, 2)), np.empty(2), np.empty(64, np.int64))
+    for i in range(len(point)):
+        cross(ruling[i], normal[i], workspace.side)
+        low[i] = high[i] = np.nan
+        if not dot(workspace.side, workspace.side) > 0.5:
+            continue
+        first, last = _among(point[i], ruling[i], normal[i], own, band, workspace)
+        if first <= last:
+            low[i], high[i] = min(0.0, max(first, workspace.limit[0])), max(0.0, min(last, workspace.limit[1]))
+
 
 #: Ends of pieces are the same within this, mm.
 _SAME = 1e-7

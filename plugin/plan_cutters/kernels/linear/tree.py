@@ -20,7 +20,7 @@ from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
 #: Triangles looked at together.
-_LANES = 8
+LANES = 8
 
 
 @kernel
@@ -56,13 +56,13 @@ def _select(order, centre, axis, lo, hi, nth):
 
 @kernel
 def _extent(row, lo, hi, lows, highs):
-    """Least and largest of `row[lo:hi]`, several at a time; scratch: lows, highs (_LANES,)."""
+    """Least and largest of `row[lo:hi]`, several at a time; scratch: lows, highs (LANES,)."""
     low, high = row[lo], row[lo]
-    whole = lo + (hi - lo) // _LANES * _LANES
+    whole = lo + (hi - lo) // LANES * LANES
     if whole > lo:
         for lane in range(len(lows)):
             lows[lane], highs[lane] = row[lo + lane], row[lo + lane]
-        for i in range(lo + _LANES, whole, _LANES):
+        for i in range(lo + LANES, whole, LANES):
             for lane in range(len(lows)):
                 lows[lane], highs[lane] = min(lows[lane], row[i + lane]), max(highs[lane], row[i + lane])
         for lane in range(len(lows)):
@@ -112,7 +112,7 @@ def _reach(corner, lo, hi, middle, axes, workspace):
     """Write into `workspace.least` and `.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
     lows, highs, least, most = workspace.lows, workspace.highs, workspace.least, workspace.most
     mx, my, mz = middle[0], middle[1], middle[2]
-    whole = lo + (hi - lo) // _LANES * _LANES
+    whole = lo + (hi - lo) // LANES * LANES
     for k in range(3):
         x, y, z, low, high = axes[k, 0], axes[k, 1], axes[k, 2], np.inf, -np.inf
         for i in range(whole, hi):
@@ -125,7 +125,7 @@ def _reach(corner, lo, hi, middle, axes, workspace):
     for k in range(3):
         for lane in range(lows.shape[1]):
             lows[k, lane], highs[k, lane] = np.inf, -np.inf
-    for i in range(lo, whole, _LANES):
+    for i in range(lo, whole, LANES):
         for c in range(0, 9, 3):
             for k in range(3):
                 x, y, z = axes[k, 0], axes[k, 1], axes[k, 2]
@@ -140,7 +140,7 @@ def _reach(corner, lo, hi, middle, axes, workspace):
 
 class _Workspace(NamedTuple):
     """This is a workspace for bounding a node: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by
-    its level; middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES).
+    its level; middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, LANES).
     """
 
     low: Any
@@ -266,7 +266,7 @@ def build_apart(vertex, own, away):
     depth = 0
     while (n >> depth) > LEAF:
         depth += 1
-    lows, highs = np.empty(_LANES), np.empty(_LANES)
+    lows, highs = np.empty(LANES), np.empty(LANES)
     order = np.arange(n).astype(np.int32)
     centre = np.empty((3, n))
     _middles(vertex, centre)
@@ -281,7 +281,7 @@ def build_apart(vertex, own, away):
     box = np.empty(((2 << depth) - 1, BOX))
     workspace = _Workspace(
         np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
-        np.empty((3, _LANES)), np.empty((3, _LANES)),
+        np.empty((3, LANES)), np.empty((3, LANES)),
     )  # fmt: skip
     _bounds(corner, normal, depth, box, workspace)
     return order, box, depth
@@ -306,3 +306,144 @@ def build(vertex):
         Level of the leaves; there are 2 ** depth of them.
     """
     return build_apart(vertex, len(vertex), 0.0)
+
+
+@kernel
+def half(tree, which):
+    """Triangles, boxes and depth of the first (0) or the second tree (1), and the number of its first triangle."""
+    if which == 0:
+        return tree.vertex, tree.box, tree.depth, 0
+    return tree.more_vertex, tree.more_box, tree.more_depth, len(tree.vertex)
+
+
+@kernel
+def half_of(tree, triangle):
+    """The triangles of the tree that a triangle is in, and its row there."""
+    first = len(tree.vertex)
+    if triangle < first:
+        return tree.vertex, triangle
+    return tree.more_vertex, triangle - first
+
+
+#: Boxes and triangles looked at together.
+LANES = 8
+
+
+class WideTree(NamedTuple):
+    """A tree as `wide_tree` arranges it."""
+
+    vertex: Any
+    blocks: Any
+    offset: Any
+    bottom: int
+
+
+@entry
+def wide_tree(tree):
+    """Arrange every third level of a tree for looking at eight boxes at a time.
+
+    Parameters
+    ----------
+    tree : Tree
+        With all triangles in the first of its two.
+
+    Returns
+    -------
+    vertex : (n, 3, 3) float64
+        As in the tree.
+    blocks : (k, 15, LANES) float64
+        Of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
+        block holds the boxes three levels below one, the first block those of the first level, lanes left over far below.
+    offset : (levels + 1,) int64
+        First block of each level.
+    bottom : int
+        Level of the tree that the last blocks hold: no box there has more than LANES triangles.
+    """
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    bottom = depth
+    while bottom > 0 and (len(vertex) + (1 << (bottom - 1)) - 1) >> (bottom - 1) <= LANES:
+        bottom -= 1
+    levels = bottom // 3 + 1
+    offset = np.zeros(levels + 1, np.int64)
+    for i in range(levels):
+        offset[i + 1] = offset[i] + (1 if i == 0 else 1 << (bottom % 3 + 3 * (i - 1)))
+    blocks = np.zeros((offset[levels], 15, LANES))
+    for i in range(levels):
+        level = bottom % 3 + 3 * i
+        for j in range(1 << level):
+            block, lane, node = offset[i] + (j >> 3 if i > 0 else 0), j & 7, (1 << level) - 1 + j
+            point = (len(vertex) * (2 * j + 1)) >> (level + 1)
+            for k in range(3):
+                blocks[block, k, lane] = box[node, CENTRE + k]
+                blocks[block, 12 + k, lane] = vertex[point, 0, k]
+                for side in range(3):
+                    blocks[block, 3 + 3 * side + k, lane] = box[node, HALVES + side] * box[node, SIDES + 3 * side + k]
+    return vertex, blocks, offset, bottom
+
+
+@kernel
+def _see(view, slot, blocks, block, p, e1, e2, n, reach):
+    """Write a block of boxes into a slot of the view, as seen from the contact.
+
+    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes, if any of it is within reach
+    of the contact; the point.
+    """
+    for lane in range(LANES):
+        x, y, z = blocks[block, 0, lane] - p[0], blocks[block, 1, lane] - p[1], blocks[block, 2, lane] - p[2]
+        view[slot, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        height = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 2, lane] = height
+        square, away = x * x + y * y + z * z, 0.0
+        for k in range(3):
+            x, y, z = blocks[block, 3 + 3 * k, lane], blocks[block, 4 + 3 * k, lane], blocks[block, 5 + 3 * k, lane]
+            view[slot, 3 + k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+            view[slot, 6 + k, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+            up = x * n[0] + y * n[1] + z * n[2]
+            view[slot, 9 + k, lane] = up
+            height += abs(up)
+            away += abs(
+                view[slot, 3 + k, lane] * view[slot, 0, lane]
+                + view[slot, 6 + k, lane] * view[slot, 1, lane]
+                + up * view[slot, 2, lane]
+            )
+        view[slot, 12, lane] = -np.inf if square - away > reach * np.sqrt(square) else height
+        x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
+        view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        view[slot, 15, lane] = x * n[0] + y * n[1] + z * n[2]
+
+
+@kernel
+def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):
+    """Write a triangle into a lane of a leaf, as seen from the contact; how far up it goes."""
+    top = -np.inf
+    for k in range(3):
+        x, y, z = vertex[i, k, 0] - p[0], vertex[i, k, 1] - p[1], vertex[i, k, 2] - p[2]
+        seen[3 * k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        seen[3 * k + 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        seen[3 * k + 2, lane] = up
+        top = max(top, up)
+    return top
+
+
+@kernel
+def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):
+    """Write triangles into a leaf; how far up they go. A lane without one holds a point far below."""
+    top = -np.inf
+    for lane in range(LANES):
+        if begin + lane < end:
+            top = max(top, _see_triangle(seen, lane, vertex, begin + lane, p, e1, e2, n))
+        else:
+            for k in range(3):
+                seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = 0.0, 0.0, -1e9
+    return top
+
+
+@kernel
+def _turn(seen, lane, cosine, sine, corner):
+    """Write a triangle of a leaf as rows (x, y, z) at a rotation."""
+    for k in range(3):
+        x, y = seen[3 * k, lane], seen[3 * k + 1, lane]
+        corner[k, 0], corner[k, 1], corner[k, 2] = cosine * x + sine * y, cosine * y - sine * x, seen[3 * k + 2, lane]

@@ -6,17 +6,42 @@ import numpy as np
 
 from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import kernel, maker
-from plan_cutters.kernels.linear.lanes import LANES
-from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR, flutes
-from plan_cutters.kernels.maps.intervals import CF, CL, FIRST, INTERVALS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
-from plan_cutters.kernels.maps.passes import _passes
-from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
+from plan_cutters.kernels.linear.tree import LANES
+from plan_cutters.kernels.maps.passes import (
+    CF,
+    CL,
+    FIRST,
+    INTERVALS,
+    LAST,
+    SF,
+    SL,
+    UF,
+    UL,
+    _begin,
+    _cuts,
+    _end,
+    _part,
+    _passes,
+    _take,
+)
+from plan_cutters.kernels.maps.planes import (
+    BOXES,
+    ENDS,
+    FAR,
+    FLOOR,
+    LATERAL,
+    NEAR,
+    all_ends,
+    distances,
+    flutes,
+    put_ends,
+    triangles_clear,
+)
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import BODY
-from plan_cutters.kernels.tool.arcs import point_arc
+from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, point_arc
 from plan_cutters.kernels.tool.hit import _swept_hit, scratch, stand, triangle_hit
 from plan_cutters.kernels.tool.pieces import inset
-from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 
 #: How often a triangle is cut into four to be shown clear.
 _QUARTERED = 4

@@ -11,18 +11,43 @@ import numpy as np
 
 from plan_cutters.kernels import codes
 from plan_cutters.kernels.codes import COLUMNS as PIECE
-from plan_cutters.kernels.intervals import insert, join
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.linear.lanes import LANES, _see, _see_leaf, _see_triangle, _turn
+from plan_cutters.kernels.linear.tree import LANES, _see, _see_leaf, _see_triangle, _turn
 from plan_cutters.kernels.linear.vectors import cross, tilt_frame
-from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, flutes, turning_of
 from plan_cutters.kernels.maps.cuts import cut_intervals, cut_workspace, take_point
-from plan_cutters.kernels.maps.intervals import CF, CL, COLUMNS, FIRST, INTERVALS, LAST, SF, SL, UF, UL, _begin, _end
-from plan_cutters.kernels.maps.passes import _boxes_pass, _triangles_pass
-from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
+from plan_cutters.kernels.maps.passes import (
+    CF,
+    CL,
+    COLUMNS,
+    FIRST,
+    INTERVALS,
+    LAST,
+    SF,
+    SL,
+    UF,
+    UL,
+    _begin,
+    _boxes_pass,
+    _end,
+    _triangles_pass,
+)
+from plan_cutters.kernels.maps.planes import (
+    FAR,
+    FLOOR,
+    NEAR,
+    Turning,
+    all_ends,
+    boxes_clear,
+    flutes,
+    triangles_clear,
+    turn_boxes,
+    turn_triangles,
+    turning_of,
+)
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import permitted
+from plan_cutters.kernels.tool.arcs import insert, join
 from plan_cutters.kernels.tool.hit import stand, tree_hit
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.

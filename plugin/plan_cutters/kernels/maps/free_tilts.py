@@ -9,14 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cad_io.arrays import Floats
 from plan_cutters.kernels.codes import OFFSET_OF
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.linear.vectors import cross
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame, Ranges, Scratch
 from plan_cutters.kernels.search.place import arc_of, put
 from plan_cutters.kernels.tool.apart import BODY
+from plan_cutters.kernels.tool.arcs import ARCS, local_gouge
 from plan_cutters.kernels.tool.hit import scratch, tree_hit
-from plan_cutters.kernels.tool.tool_arcs import ARCS
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
@@ -104,3 +106,17 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
     cross(n, f, t)
     count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
     return work.parts[:count]
+
+
+def local_gouge_range(kappa_max: float, kappa_min: float, rotation: float, offset: float, radius: float) -> tuple[float, float]:
+    """Least and largest tilt without local gouging, rad; nan if there is none. Curvatures 1/mm; the others as in
+    `arcs.local_gouge`.
+    """
+    least, most = local_gouge(kappa_max, kappa_min, np.cos(rotation), np.sin(rotation), offset, radius)
+    return float(least), float(most)
+
+
+def axis_intervals(normal: Floats, tilt_direction: Floats, ranges: Ranges) -> Floats:
+    """Tilts (k, 2) within those asked for that a machine's limits leave at a normal and a tilt direction (3,)."""
+    out = np.empty((64, 2))
+    return out[: held_tilts(normal, tilt_direction, ranges, ranges.tilt_low, ranges.tilt_high, out)].copy()

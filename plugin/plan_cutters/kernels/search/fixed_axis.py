@@ -12,8 +12,8 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.flats_and_flanks import PLACED, across, find_place, flat_workspace, place_to_direction
 from plan_cutters.kernels.search.place import inside, mode_at
-from plan_cutters.kernels.search.upright import PLACED, across, find_place, flat_workspace, place_to_direction
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 

@@ -24,7 +24,6 @@ from plan_cutters.kernels.codes import (
     TILT_FROM,
     TILT_TO,
 )
-from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
@@ -40,9 +39,8 @@ from plan_cutters.kernels.material import (
 )
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X
-from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, local_gouge, remove
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
-from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 
 #: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
 NARROWEST = 1.7e-4

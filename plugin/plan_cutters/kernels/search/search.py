@@ -10,7 +10,7 @@ Curvature at the contact only tells where to look first: a posture that it forbi
 no point of the surface is too deep.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,8 +34,8 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, touches
-from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids, outside, touches
+from plan_cutters.kernels.rows import Frame, Tool
 from plan_cutters.kernels.search.place import (
     Proof,
     clip_straight,
@@ -297,6 +297,81 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
 
 
 @entry
+def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
+    """Test given postures.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Contacts to test, neighbours in sequence: a triangle in the way at one of them is tried first at the next.
+    point, normal, axis, tilt_direction : (n, 3) float64
+        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
+    tool : Tool
+        Smaller by what does not matter.
+    solids : Solids
+        All that may be in the way.
+    stands : (n,) bool, written
+        False also at a tilt at which the tool does not touch.
+
+    Returns
+    -------
+    int
+        How many boxes were looked at.
+    """
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    workspace = scratch()
+    hint = -1
+    for row in rows:
+        stands[row] = False
+        n, share = normal[row], straightened(tilt_direction[row], f)
+        cross(n, f, t)
+        cosine, sine = dot(axis[row], n), dot(axis[row], f)
+        mode = mode_at(tool, np.arctan2(sine, cosine))
+        if mode < 0:
+            continue
+        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+        triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
+        if triangle >= 0:
+            hint = triangle
+            continue
+        stands[row] = not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
+    return workspace.looked[0]
+
+
+@entry
+def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which):
+    """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Rows to test.
+    point, normal, axis, tilt_direction : (n, 3) float64
+        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
+    tool : Tool
+        Without what does not matter.
+    tree : Tree
+    triangle, which : (n,) int32, written
+        At a tilt at which the tool does not touch: -2.
+    """
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    workspace = scratch()
+    hint = -1
+    for row in rows:
+        n, share = normal[row], straightened(tilt_direction[row], f)
+        cross(n, f, t)
+        cosine, sine = dot(axis[row], n), dot(axis[row], f)
+        mode = mode_at(tool, np.arctan2(sine, cosine))
+        if mode < 0:
+            triangle[row], which[row] = -2, -2
+            continue
+        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, workspace)
+        if triangle[row] >= 0:
+            hint = triangle[row]
+
+
+@entry
 def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     """Test the dummy tool, which holds the tool at tilt 0 in every rotation, its axis along the normal.
 
@@ -332,34 +407,112 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     return workspace.looked[0]
 
 
+class Ladder(NamedTuple):
+    """Tools from the smallest up: piece (tools, m, k, COLUMNS), mode (tools, m, 5), reach, inner and end (tools,), each as in
+    `Tool`."""
+
+    piece: Any
+    mode: Any
+    reach: Any
+    inner: Any
+    end: Any
+
+
+class _Sides(NamedTuple):
+    """This record is a `Side` of many tools: the tools; `piece` and `mode`, a workspace for one of them; the rest as there."""
+
+    tools: Ladder
+    piece: Any
+    mode: Any
+    solids: Solids
+    within: float
+    narrowest: float
+    pasts: Any
+    proof: Any
+
+
+@kernel
+def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
+    """Search as `sweep_both` with one tool of a row."""
+    tools, piece, mode = side.tools, side.piece, side.mode
+    for m in range(len(mode)):
+        for column in range(mode.shape[1]):
+            mode[m, column] = tools.mode[level, m, column]
+        for k in range(piece.shape[1]):
+            for column in range(piece.shape[2]):
+                piece[m, k, column] = tools.piece[level, m, k, column]
+    tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
+    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.pasts, side.proof)
+    return sweep_both(contacts, row, ranges, one, starts, turns, workspaces)
+
+
+@kernel
+def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results):
+    """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
+    of both sides ended.
+    """
+    count, turns = len(outer.tools.reach), len(ranges.rotation_cos)
+    # Reached, not reached; not known to be inaccessible, known to be so.
+    low, high, free, beyond = -1, count, -1, count
+    level, stride = guess, 1
+    while high - low > 1:
+        rotation, tilt, last = _look(contacts, row, ranges, outer, level, last, 1, workspaces)
+        if rotation < 0 and level > free:
+            turn, _, freed = _look(contacts, row, ranges, inner, level, freed, turns, workspaces)
+            if turn < 0:
+                beyond = level
+                results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
+            else:
+                free = level
+        if rotation < 0 and level < beyond:
+            rotation, tilt, last = _look(contacts, row, ranges, outer, level, last, turns, workspaces)
+            if rotation < 0:
+                results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
+        if rotation < 0:
+            high = level
+        else:
+            low = level
+            _write(results, row, contacts, ranges, rotation, tilt)
+        if low < 0:
+            level = max(high - stride, 0)
+        elif high == count:
+            level = min(low + stride, count - 1)
+        else:
+            level = (low + high) // 2
+        stride *= 2
+    return low, INACCESSIBLE if beyond == high else UNDECIDED, last, freed
+
+
 @entry
-def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which):
-    """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
+def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, level, beyond):
+    """Find the largest tool that reaches each sample.
 
     Parameters
     ----------
     rows : (m,) int64
-        Rows to test.
-    point, normal, axis, tilt_direction : (n, 3) float64
-        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
-    tool : Tool
-        Without what does not matter.
-    tree : Tree
-    triangle, which : (n,) int32, written
-        At a tilt at which the tool does not touch: -2.
+        Samples, neighbours in sequence.
+    contacts : Contacts
+    ranges : Ranges
+    outer_tool, inner_tool : Ladder
+        The outer and the inner tools; each lies within the next.
+    possible, certain : Solids
+        As `search.search` takes them.
+    results : Found, written
+        The posture of the largest tool that has one, and the reason why the next one has none.
+    level : (n,) int64, written
+        The number of the largest tool that has a posture, -1 where none has.
+    beyond : (n,) uint8, written
+        INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    workspace = scratch()
-    hint = -1
+    rotations = len(ranges.rotation_cos)
+    pasts, workspaces = both(rotations, outer_tool.mode.shape[1])
+    met, _ = both(rotations, inner_tool.mode.shape[1])
+    proof, (piece, mode), (held, ways) = Proof(np.zeros(0), 0.0, certain), outer_tool[:2], inner_tool[:2]
+    outer = _Sides(outer_tool, piece[0].copy(), mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts, proof)
+    inner = _Sides(inner_tool, held[0].copy(), ways[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met, proof)
+    guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
-        n, share = normal[row], straightened(tilt_direction[row], f)
-        cross(n, f, t)
-        cosine, sine = dot(axis[row], n), dot(axis[row], f)
-        mode = mode_at(tool, np.arctan2(sine, cosine))
-        if mode < 0:
-            triangle[row], which[row] = -2, -2
-            continue
-        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
-        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, workspace)
-        if triangle[row] >= 0:
-            hint = triangle[row]
+        low, verdict, last, freed = _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results)
+        level[row], guess = low, max(low, 0)
+        if low + 1 < len(outer_tool.reach):
+            beyond[row] = verdict

@@ -9,8 +9,8 @@ at height w and distance q is cleared if the nose is no lower than w - v(q): lem
 import numpy as np
 
 from plan_cutters.kernels.codes import OFFSET_OF, OVER_TIP, RISE
-from plan_cutters.kernels.halves import half
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.tree import half
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import mode_at, straightened

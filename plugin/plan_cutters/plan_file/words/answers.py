@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.figures import capital, down, mm, place, some, up
-from plan_cutters.domain.spec import notation
 from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words.cutters import reason

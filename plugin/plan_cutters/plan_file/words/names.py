@@ -57,8 +57,8 @@ def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
     """
     # Not before anything is planned: help is shown without numpy.
     from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.lengths import in_inches
-    from plan_cutters.domain.spec import is_spec, notation
+    from plan_cutters.domain.dimensions import is_spec, notation
+    from plan_cutters.domain.figures import in_inches
 
     # As it was typed: a D12 is called so in an inch shop, too. Tools of libraries have only names.
     name = "" if plainly and not is_spec(cutter.name) else cutter.name
@@ -110,8 +110,8 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
 
 def described(entry: "CutterEntry", name: str) -> str:
     """Describe a cutter beyond its name: its kind, and how far it stands out of which holder."""
-    from plan_cutters.domain.lengths import INCH, in_inches
-    from plan_cutters.domain.spec import notation
+    from plan_cutters.domain.dimensions import notation
+    from plan_cutters.domain.figures import INCH, in_inches
 
     what = called(entry, plainly=True)
     text = f"{'' if what in name else f'{what}, '}{_word(entry)}, "
@@ -126,13 +126,13 @@ def described(entry: "CutterEntry", name: str) -> str:
 
 def _word(entry: "CutterEntry") -> str:
     """Name a cutter as it was given, so that it can be given again; else as plan and arrays call it. Its holder stands beside."""
-    from plan_cutters.domain.spec import parted, typed
+    from plan_cutters.domain.dimensions import parted, typed
 
     return parted(typed(entry.id, entry.name))[0]
 
 
 def named(plan: "Plan", text: str) -> str:
     """A text with cutters called as in `short_names`."""
-    from plan_cutters.domain.spec import renamed
+    from plan_cutters.domain.dimensions import renamed
 
     return renamed(text, short_names(plan))

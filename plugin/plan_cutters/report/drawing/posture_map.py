@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.intervals import complement, without
+from plan_cutters.domain.posture import complement, without
 from plan_cutters.plan_file.reasons import CAUSES, NO_CONTACT, PALETTE, REASONS
 
 #: Dots an inch of PNG files.

@@ -7,8 +7,8 @@ from typing import Any
 from markupsafe import Markup
 
 from cad_io.write.render_mesh import render_mesh
-from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.tolerance import depths
+from plan_cutters.domain.figures import reporting
+from plan_cutters.domain.verdicts import depths
 from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.page import arrays, tables
