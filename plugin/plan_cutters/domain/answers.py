@@ -17,13 +17,8 @@ from plan_cutters.errors import OptionError
 def answers_of(value: Any) -> tuple[str, ...]:
     """Words of ANSWERS, each once and in that order; `all` for all of them; a text may hold several, joined by commas.
 
-    Raises
-    ------
-    OptionError
-        Another word.
+    Raises OptionError: another word.
 
-    Examples
-    --------
     >>> answers_of("mend,stick-out")
     ('stick-out', 'mend')
     >>> answers_of("radii")
@@ -44,19 +39,11 @@ def answers_of(value: Any) -> tuple[str, ...]:
 class Patch:
     """Connected samples of one kind.
 
-    Attributes
-    ----------
-    area : float
-        That they stand for, mm2.
-    share : float
-        Of the finished area, 0 to 1.
-    samples : int
-    faces : tuple of str
-        Ids, the one with the most of it first.
-    place : (float, float, float)
-        The sample nearest to its middle, mm.
-    across : float
-        Its largest extent, mm, from sample to sample; 0 of a single one.
+    `area`: that they stand for, mm2.
+    `share`: of the finished area, 0 to 1.
+    `faces`: ids, the one with the most of it first.
+    `place` (float, float, float): the sample nearest to its middle, mm.
+    `across`: its largest extent, mm, from sample to sample; 0 of a single one.
     """
 
     area: float
@@ -104,25 +91,16 @@ class Move:
 class Step:
     """A step is a thing to do next; its gain was judged on every sample.
 
-    Attributes
-    ----------
-    moves : tuple of Move
-        One change, or two.
-    before, after : float
-        Share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample was judged.
-    gained, left : int
-        Samples that it frees, and that are still not reached.
-    cutters : tuple of Cutter
-        That do it together, the one that is mended, or what becomes of it, first.
-    setups : tuple of (float, float, float)
-        Setup axes in which they do.
-    option : str, optional
-        The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
-        where no option says it.
-    remains : tuple of Patch
-        The largest areas that are still not reached.
-    freed : (m,) int64
-        The samples that it frees.
+    `moves`: one change, or two.
+    `before`, `after`: share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample
+      was judged.
+    `gained`, `left`: samples that it frees, and that are still not reached.
+    `cutters`: that do it together, the one that is mended, or what becomes of it, first.
+    `setups`: setup axes in which they do.
+    `option`: the options for the command line: `--cutter` is added to those of now, each other option replaces the same option.
+      None where no option says it.
+    `remains`: the largest areas that are still not reached.
+    `freed` (m,) int64: the samples that it frees.
     """
 
     moves: tuple[Move, ...]
@@ -141,26 +119,16 @@ class Step:
 class Advice:
     """Advice names what to do next with one cutter.
 
-    Attributes
-    ----------
-    cutter : str
-        Its id.
-    lost, buried : int
-        Samples that are inaccessible or undecided now, and those of them that lie within another body of the part: these are no
-        surface of the finished part, and nothing is asked about them.
-    why : str
-        Why no steps were looked for; empty where they were.
-    share : float
-        Of the finished area that is not reached now, in all setups of the plan.
-    steps : tuple of Step
-        The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
-    areas : tuple of Patch
-        Connected areas that are not reached now, the largest first, and how many more there are.
-    uncompared : int
-        Changes that promised less than those judged and were not judged, and kinds of changes that were not looked at, since the
-        work for advice was spent.
-    unsure : bool
-        Faces are missing from what is in the way, so that no gain is sure.
+    `cutter`: its id.
+    `lost`, `buried`: samples that are inaccessible or undecided now, and those of them that lie within another body of the part:
+      these are no surface of the finished part, and nothing is asked about them.
+    `why`: why no steps were looked for; empty where they were.
+    `share`: of the finished area that is not reached now, in all setups of the plan.
+    `steps`: the next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
+    `areas`: connected areas that are not reached now, the largest first, and how many more there are.
+    `uncompared`: changes that promised less than those judged and were not judged, and kinds of changes that were not looked at,
+      since the work for advice was spent.
+    `unsure`: faces are missing from what is in the way, so that no gain is sure.
     """
 
     cutter: str
@@ -179,20 +147,11 @@ class Advice:
 class Run:
     """A cutter in a setup, and what it takes: what no run before it reaches.
 
-    Attributes
-    ----------
-    cutter : Cutter
-    setup : (float, float, float)
-        Its axis.
-    number : int
-        Of the setup, 0 for the first one.
-    samples : int
-    area, share : float
-        mm2, and of the finished area, 0 to 1.
-    faces : tuple of str
-        Ids of those on which it takes samples, ascending.
-    alone : int
-        Samples that it reaches and no other run of the set.
+    `setup` (float, float, float): its axis.
+    `number`: of the setup, 0 for the first one.
+    `area`, `share`: mm2, and of the finished area, 0 to 1.
+    `faces`: ids of those on which it takes samples, ascending.
+    `alone`: samples that it reaches and no other run of the set.
     """
 
     cutter: Cutter
@@ -209,16 +168,10 @@ class Run:
 class LeastSet:
     """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters.
 
-    Attributes
-    ----------
-    runs : tuple of Run
-        In the order of setups, then of rank; none where nothing is reached.
-    reached, left : int
-        Samples of the finished surface that they reach, and that nothing given reaches for sure.
-    share, left_share : float
-        Of the finished area, 0 to 1.
-    proven : bool
-        Whether it is proved that no fewer do.
+    `runs`: in the order of setups, then of rank; none where nothing is reached.
+    `reached`, `left`: samples of the finished surface that they reach, and that nothing given reaches for sure.
+    `share`, `left_share`: of the finished area, 0 to 1.
+    `proven`: whether it is proved that no fewer do.
     """
 
     runs: tuple[Run, ...]
@@ -263,29 +216,17 @@ PERCENTILES = (0, 5, 25, 50, 75, 95)
 class RadiusMap(Record):
     """Of a row of radii, each larger than the one before by a step, the largest that reaches each sample.
 
-    Attributes
-    ----------
-    shape : str
-        `flat` or `ball`: a bare end mill, which cuts over all of its length.
-    ratio : float
-        Its length over its radius.
-    step : float
-        By which share each radius is larger than the one before.
-    least, most : float
-        Radii looked at, from and to, mm.
-    radius : (n,) float
-        mm. 0 where not even the least one reaches a sample; `most` where that one does: the largest is no less. nan where
-        the sample is not judged.
-    beyond : (n,) uint8
-        The verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
-    reason : (n,) uint8
-        Why that one does not reach the sample, an index into REASONS; else NO_REASON.
-    axis, tilt_direction : (n, 3) float
-        Unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
-    tilt : (n,) float
-        rad, nan where there is none.
-    rotation : (n,) int32
-        Index into the posture range's rotations, -1 where there is none.
+    `shape`: `flat` or `ball`: a bare end mill, which cuts over all of its length.
+    `ratio`: its length over its radius.
+    `step`: by which share each radius is larger than the one before.
+    `least`, `most`: radii looked at, from and to, mm.
+    `radius` (n,) float: mm. 0 where not even the least one reaches a sample; `most` where that one does: the largest is no less.
+      nan where the sample is not judged.
+    `beyond` (n,) uint8: the verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
+    `reason` (n,) uint8: why that one does not reach the sample, an index into REASONS; else NO_REASON.
+    `axis`, `tilt_direction` (n, 3) float: unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
+    `tilt` (n,) float: rad, nan where there is none.
+    `rotation` (n,) int32: index into the posture range's rotations, -1 where there is none.
     """
 
     shape: Shape
@@ -329,15 +270,8 @@ class RadiusMap(Record):
     def percentiles(self, area: Floats | None = None) -> dict[int, float]:
         """Radii, mm, by percentile q: at least q % of the judged samples have that one or a smaller one as their largest.
 
-        Parameters
-        ----------
-        area : (n,) float, optional
-            What each sample counts, mm2 for instance; all count the same by default.
-
-        Returns
-        -------
-        dict of int to float
-            For each of PERCENTILES; empty if no sample that counts is judged.
+        `area` (n,) float: what each sample counts, mm2 for instance; all count the same by default. Returns for each of
+        PERCENTILES; empty if no sample that counts is judged.
         """
         weight = np.ones(len(self.radius)) if area is None else area
         counts = self.judged & (weight > 0.0)

@@ -74,21 +74,13 @@ from plan_cutters.kernels.codes import (
 class Assembly(Record):
     """Pieces of a cutter and how it touches.
 
-    Attributes
-    ----------
-    piece : (m, k, COLUMNS) float
-        For each mode the same pieces, their heights counted from the mode's centre of curvature.
-    mode : (m, 5) float
-        Of each: its offset from the axis, its radius of curvature (with the allowance), the tilts from and to at which it
-        touches, rad, and its height over the tip.
-    reach : float
-        Distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
-    inner, end : float
-        Heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
-    flanks : tuple of Flank
-        The straight sides with which it touches.
-    slack : float
-        By how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
+    `piece` (m, k, COLUMNS) float: for each mode the same pieces, their heights counted from the mode's centre of curvature.
+    `mode` (m, 5) float: of each: its offset from the axis, its radius of curvature (with the allowance), the tilts from and to at
+      which it touches, rad, and its height over the tip.
+    `reach`: distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
+    `inner`, `end`: heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
+    `flanks`: the straight sides with which it touches.
+    `slack`: by how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
     """
 
     piece: Floats
@@ -210,16 +202,9 @@ class Assembly(Record):
 def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer") -> Assembly:
     """Pieces of a cutter.
 
-    Parameters
-    ----------
-    cutter : Cutter
-        Its own allowance and clearance are counted in.
-    flutes : float
-        Depth in the flutes up to which a point does not count, mm; negative: it counts within that distance of them.
-    rest : float
-        The same for neck, shank and holder.
-    kind : str
-        `outer`: no point that counts is outside the pieces. `inner`: every point of the pieces counts.
+    `cutter`: its own allowance and clearance are counted in. `flutes`: depth in the flutes up to which a point does not count,
+    mm; negative: it counts within that distance of them. `rest`: the same for neck, shank and holder. `kind`: `outer`: no point
+    that counts is outside the pieces. `inner`: every point of the pieces counts.
     """
     flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
     bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
@@ -368,12 +353,7 @@ def grown(cutter: Cutter, by: float) -> Assembly:
 
     Neck, shank and holder are grown exactly. The flutes' pieces hold a little more at their edges, never less.
 
-    Parameters
-    ----------
-    cutter : Cutter
-        Its own allowance and clearance are not counted in.
-    by : float
-        Not negative.
+    `cutter`: its own allowance and clearance are not counted in. `by`: not negative.
     """
     rows = [_from(row, working_height(cutter) - by) for row in flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
     if flute_length(cutter) <= working_height(cutter):

@@ -160,20 +160,10 @@ def in_radians(
 ) -> dict[str, Any]:
     """Give the same words, with `tilt_deg` turned into `tilt`: a number, a list of numbers, or a range.
 
-    Parameters
-    ----------
-    values : mapping
-        Words and their values. Degrees that are None were not given, nor were radians beside degrees.
-    angles : mapping
-        The words for angles, without `_deg`, and what each may be in degrees.
+    `values`: words and their values. Degrees that are None were not given, nor were radians beside degrees. `angles`: the words
+    for angles, without `_deg`, and what each may be in degrees. Raises OptionError: an angle is given in both units, is no number
+    or lies beyond its bounds; `error` in its place.
 
-    Raises
-    ------
-    OptionError
-        An angle is given in both units, is no number or lies beyond its bounds; `error` in its place.
-
-    Examples
-    --------
     >>> angles = {"tilt": Angle(0, 180, "range")}
     >>> in_radians({"tilt_deg": (0, 180), "grid": 5}, angles)
     {'grid': 5, 'tilt': (0.0, 3.141592653589793)}

@@ -44,11 +44,7 @@ Point = tuple[float, float]
 class Block:
     """A prism between two polylines of as many points, seen from above, from a height `low` to `high`; mm.
 
-    Attributes
-    ----------
-    inner, outer : tuple of (float, float)
-        x and y; the outline runs along `inner` and back along `outer`, counter-clockwise seen from above.
-    low, high : float
+    `inner`, `outer`: x and y; the outline runs along `inner` and back along `outer`, counter-clockwise seen from above.
     """
 
     inner: tuple[Point, ...]
@@ -73,16 +69,10 @@ Solid = Block | Disc
 class Vise:
     """A self-centring vise on a riser, in its own frame: jaws close along x, z is up, and what they hold rests at z = 0.
 
-    Attributes
-    ----------
-    width, height : float
-        Of the jaws, mm: along y, and from their upper edge down to the vise's body.
-    opening : float
-        The most that the jaws come apart, mm.
-    grip : float
-        How far the jaws reach above what the part rests on, mm.
-    gap : float, optional
-        How far the jaws stand apart, mm; None: the vise is still to be placed.
+    `width`, `height`: of the jaws, mm: along y, and from their upper edge down to the vise's body.
+    `opening`: the most that the jaws come apart, mm.
+    `grip`: how far the jaws reach above what the part rests on, mm.
+    `gap`: how far the jaws stand apart, mm; None: the vise is still to be placed.
     """
 
     width: float
@@ -138,15 +128,9 @@ class Vise:
 class Chuck:
     """A self-centring chuck on a riser, in its own frame: z is the axis, and what it holds rests at z = 0; a jaw stands along x.
 
-    Attributes
-    ----------
-    jaws : int
-    height : float
-        Of the jaws over the chuck's face, mm.
-    grip : float
-        How far the jaws reach above what the part rests on, mm.
-    diameter : float, optional
-        Of what is gripped, mm: the jaws are bored to it. None: the chuck is still to be placed.
+    `height`: of the jaws over the chuck's face, mm.
+    `grip`: how far the jaws reach above what the part rests on, mm.
+    `diameter`: of what is gripped, mm: the jaws are bored to it. None: the chuck is still to be placed.
     """
 
     jaws: int
@@ -275,23 +259,9 @@ class Requested:
 def requested(kind: str, text: str | None, scale: float, which: str) -> Requested:
     """Read the numbers behind the word of a vise or chuck.
 
-    Parameters
-    ----------
-    kind : str
-        `vise` or `chuck`.
-    text : str, optional
-        What stands behind its colon; None: nothing.
-    scale : float
-        Length of their unit, mm.
-    which : str
-        How errors name it.
+    `kind`: `vise` or `chuck`. `text`: what stands behind its colon; None: nothing. `scale`: length of their unit, mm. `which`:
+    how errors name it. Raises FixtureError.
 
-    Raises
-    ------
-    FixtureError
-
-    Examples
-    --------
     >>> requested("vise", "77x30x120:4", 1.0, "fixture").numbers
     (77.0, 30.0, 120.0, 4.0)
     >>> requested("chuck", None, 1.0, "fixture").clamping

@@ -222,9 +222,7 @@ def dimensions(spec: str) -> dict[str, Any]:
     the flutes, `N` radius of a neck `x` its length (`N5:6x4` a cone; more of them from there up), `S` radius of the shank.
     A text that begins with `D` has diameters for `D`, `N` and `S`. Lengths are in mm; `in` behind a number makes that one inches.
 
-    Raises
-    ------
-    CutterError
+    Raises CutterError.
     """
     if not isinstance(spec, str):
         raise CutterError(f"{shown(spec)} is no cutter: give a Cutter or a text such as 'R6L80'")

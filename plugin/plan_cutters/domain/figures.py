@@ -123,8 +123,6 @@ _MINUTES, _HOURS = 120.0, 7200.0
 def figure(number: float) -> str:
     """Three digits of a number, without an exponent.
 
-    Examples
-    --------
     >>> figure(12345.6), figure(0.0456), figure(7.769e6), figure(0.00001234), figure(-2.776e-17)
     ('12,300', '0.0456', '7,770,000', '0.0000123', '0')
     """
@@ -149,15 +147,9 @@ def plainly(number: float, digits: int) -> str:
 def percent(share: float, *, some: bool | None = None, whole: bool | None = None) -> str:
     """Write a share, 0 to 1, in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
 
-    Parameters
-    ----------
-    share : float
-        Of an area or a number; sums of areas may be off by rounding.
-    some, whole : bool, optional
-        Whether there is anything of it, and whether it is all, where samples were counted; default by the share itself.
+    `share`: of an area or a number; sums of areas may be off by rounding. `some`, `whole`: whether there is anything of it, and
+    whether it is all, where samples were counted; default by the share itself.
 
-    Examples
-    --------
     >>> percent(0.00001), percent(0.9996), percent(1.0, whole=False)
     ('<0.1 %', '>99.9 %', '>99.9 %')
     >>> percent(0.5), percent(0.0), percent(1.0), percent(0.0, some=True), percent(float("nan"))

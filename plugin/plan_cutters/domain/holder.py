@@ -234,13 +234,8 @@ def words() -> list[str]:
 def chuck(text: str) -> Chuck | None:
     """The holder that a word names; None for a text that looks like no such word.
 
-    Raises
-    ------
-    CutterError
-        It looks like one and is none, or is too short for its own flange and nut.
+    Raises CutterError: it looks like one and is none, or is too short for its own flange and nut.
 
-    Examples
-    --------
     >>> chuck("ER16"), chuck("HSK-A63/ER32x100").name
     (Chuck(name='ER16', stages=((16.0, 60.0),), bore=10.0), 'HSK63A-ER32x100')
     """
@@ -315,30 +310,14 @@ def enclosing_segments(
 ) -> tuple[tuple[Segment, ...], float]:
     """Stages that enclose lines of a half-plane.
 
-    Parameters
-    ----------
-    line : (n, 4) float
-        Radius and height of both ends, the lower one first, mm.
-    exact : (n,) bool
-        Lines that become stages as they are where they are the outermost ones.
-    foot : float
-        Height from which on stages are wanted, mm.
-    tolerance : float
-        How much farther from the axis than the others stages may be, mm; twice as much, and so on, until there are few enough.
-    most : int
-        Stages, at most.
-
-    Returns
-    -------
-    stages : tuple of Segment
-        From the lowest up.
-    tolerance : float
-        The one that was kept.
-
-    Raises
-    ------
-    CutterError
-        The lines span no height, or leave a gap.
+    `line` (n, 4) float: radius and height of both ends, the lower one first, mm.
+    `exact` (n,) bool: lines that become stages as they are where they are the outermost ones.
+    `foot`: height from which on stages are wanted, mm.
+    `tolerance`: how much farther from the axis than the others stages may be, mm; twice as much, and so on, until there are few
+      enough.
+    `most`: stages, at most.
+    Returns `stages`: from the lowest up. `tolerance`: the one that was kept.
+    Raises CutterError: the lines span no height, or leave a gap.
     """
     low, high = foot, float(line[:, 3].max())
     if high - low <= _SAME:

@@ -49,14 +49,9 @@ def within(angle: Floats, low: float, high: float) -> Floats:
 class Kinematics(Record):
     """The rotary axes of a machine under one setup, all directions in one frame.
 
-    Attributes
-    ----------
-    direction : (k, 3) float
-        Unit directions of the axes at zero angles, k at most 2, the one next to the part first.
-    limit : (k, 2) float
-        Least and largest angle of each, rad; infinite: none.
-    tool : (3,) float
-        Unit direction from the tip to the spindle at zero angles.
+    `direction` (k, 3) float: unit directions of the axes at zero angles, k at most 2, the one next to the part first.
+    `limit` (k, 2) float: least and largest angle of each, rad; infinite: none.
+    `tool` (3,) float: unit direction from the tip to the spindle at zero angles.
     """
 
     direction: Floats
@@ -253,19 +248,8 @@ def positions(
 ) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
     """Positions of rotary axes that hold tool axes, each in the setup that serves its sample.
 
-    Parameters
-    ----------
-    machines : sequence of Kinematics
-        In each setup.
-    axis : (n, 3) float
-        Unit tool axes; nan where there is none.
-    which : (n,) int32
-        The setup of each, -1 for none.
-
-    Returns
-    -------
-    angles, taken, singular
-        As `Kinematics.positions` gives them.
+    `machines`: in each setup. `axis` (n, 3) float: unit tool axes; nan where there is none. `which` (n,) int32: the setup of
+    each, -1 for none. Returns as `Kinematics.positions` gives them.
     """
     first = machines[0]
     assert first is not None, "a machine without rotary axes has no positions"

@@ -25,10 +25,7 @@ IndexFrom = Literal["rates", "given", "assumed"]
 def operations_of(value: Any) -> str | None:
     """One of WHICH, or None for no plan of operations; `all` is `both`, as other options have an `all`.
 
-    Raises
-    ------
-    OptionError
-        Another word.
+    Raises OptionError: another word.
     """
     if value is None or value in WHICH:
         return value if value is None else str(value)
@@ -55,15 +52,10 @@ def strategy_of(number: NDArray[np.uint8], area: Floats) -> Strategy:
 class Columns(Record):
     """Operations that may be chosen, each with one cutter, setup and tool axis.
 
-    Attributes
-    ----------
-    cutter, setup : (m,) int32
-        Index into the cutters and setups that were requested.
-    axis : (m, 3) float
-        Unit tool axis in part coordinates: the one that the rounded `angle` gives.
-    angle : (m, 2) float
-        Positions of the rotary axes, deg, as a control shows them; without rotary axes the azimuth and the tilt about the setup
-        axis.
+    `cutter`, `setup` (m,) int32: index into the cutters and setups that were requested.
+    `axis` (m, 3) float: unit tool axis in part coordinates: the one that the rounded `angle` gives.
+    `angle` (m, 2) float: positions of the rotary axes, deg, as a control shows them; without rotary axes the azimuth and the tilt
+      about the setup axis.
     """
 
     cutter: Ints

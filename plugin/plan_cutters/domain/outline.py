@@ -181,20 +181,9 @@ def _round(centre: Point, radius: float) -> tuple[Point | None, float]:
 def points(outline: Outline, chord: float = 0.01) -> Floats:
     """An outline as a polyline (n, 2) of (radius, height), mm, from the tip to the axis at the end.
 
-    Parameters
-    ----------
-    outline : Outline
-    chord : float
-        How far the polyline may be from the outline, mm. Its points lie on the outline, so where that bulges out the polyline
-        lies within the tool.
+    `chord`: how far the polyline may be from the outline, mm. Its points lie on the outline, so where that bulges out the
+    polyline lies within the tool. Raises OptionError: the chord is not positive.
 
-    Raises
-    ------
-    OptionError
-        The chord is not positive.
-
-    Examples
-    --------
     >>> points(outline(Cutter.parse("R1L3"))).tolist()
     [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]
     """

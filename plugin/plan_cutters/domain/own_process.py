@@ -26,25 +26,15 @@ LEFT = "left"
 class OwnStep:
     """One step.
 
-    Attributes
-    ----------
-    number : int
-        In the file, from 1.
-    setup : int
-        0 for the first.
-    mode : str
-        `fixed` or `simultaneous`.
-    cutter : str
-        Its id, the word by which it was given, or its name.
-    angles : tuple of (str, float), optional
-        Positions of the rotary axes by name, deg; None where the axis is written instead, or it is simultaneous.
-    axis : tuple of float, optional
-        Unit tool axis, part coordinates.
-    faces : tuple of int, optional
-        Face numbers; None: all that no step before it finishes.
-    take : str
-        `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by time,
-        and simultaneous ones take what no fixed one serves.
+    `number`: in the file, from 1.
+    `setup`: 0 for the first.
+    `mode`: `fixed` or `simultaneous`.
+    `cutter`: its id, the word by which it was given, or its name.
+    `angles`: positions of the rotary axes by name, deg; None where the axis is written instead, or it is simultaneous.
+    `axis`: unit tool axis, part coordinates.
+    `faces`: face numbers; None: all that no step before it finishes.
+    `take`: `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by
+      time, and simultaneous ones take what no fixed one serves.
     """
 
     number: int
@@ -73,14 +63,8 @@ CONTROL_DIGITS = 3
 class OwnProcess:
     """The steps in their order, and what is to be done with what they leave.
 
-    Attributes
-    ----------
-    steps : tuple of OwnStep
-    forbidden : tuple of Forbidden
-    rest : str
-        `plan`: more steps are planned behind them for what they leave; `leave`: it is left.
-    file : str
-        Where it was read from; empty: it was given in Python.
+    `rest`: `plan`: more steps are planned behind them for what they leave; `leave`: it is left.
+    `file`: where it was read from; empty: it was given in Python.
     """
 
     steps: tuple[OwnStep, ...]
@@ -91,19 +75,8 @@ class OwnProcess:
     def check(self, cutters: Sequence[Cutter], setups: int, names: tuple[str, str]) -> None:
         """See to it that every cutter, setup and angle is one that there is.
 
-        Parameters
-        ----------
-        cutters : sequence of Cutter
-            All that are judged.
-        setups : int
-            How many setups there are.
-        names : (str, str)
-            Of the two rotary axes.
-
-        Raises
-        ------
-        OptionError
-            It names the step.
+        `cutters`: all that are judged. `setups`: how many setups there are. `names` (str, str): of the two rotary axes. Raises
+        OptionError: it names the step.
         """
         for step in self.steps:
             cutter_of(step.cutter, cutters, self._where(step))
@@ -126,9 +99,7 @@ class OwnProcess:
     def check_faces(self, targets: Iterable[int]) -> None:
         """See to it that every face is one that is to be machined.
 
-        Raises
-        ------
-        OptionError
+        Raises OptionError.
         """
         known = set(targets)
         for where, faces in [(self._where(step), step.faces or ()) for step in self.steps] + [
@@ -155,10 +126,7 @@ class OwnProcess:
 def cutter_of(word: str, cutters: Sequence[Cutter], where: str) -> Cutter:
     """The cutter with an id, the word by which it was given, or a name.
 
-    Raises
-    ------
-    OptionError
-        There is none, or there are several.
+    Raises OptionError: there is none, or there are several.
     """
     for names in ([c.id for c in cutters], [c.typed for c in cutters], [c.name for c in cutters]):
         if names.count(word) == 1:
@@ -190,10 +158,7 @@ def _ids(faces: Iterable[int]) -> list[str]:
 def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
     """An axis (3,) of length 1.
 
-    Raises
-    ------
-    OptionError
-        It has no direction.
+    Raises OptionError: it has no direction.
     """
     largest = max(abs(each) for each in axis)
     # Numbers next to 0 have few digits.
@@ -217,27 +182,14 @@ class Nearest:
 class OwnResult:
     """A step of the planner's own process does this.
 
-    Attributes
-    ----------
-    number : int
-        In the file, from 1.
-    setup : int
-    mode : str
-    cutter : Cutter
-    axis : (3,) float, optional
-        None where it is simultaneous.
-    angle : (2,) float, optional
-        As written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
-    requested : (m,) int64
-        Samples of its faces that no step before it finishes.
-    rows : (r,) int64
-        Those of them that it finishes.
-    serves : (k,) int64
-        All samples of its faces that it could finish, whoever takes them.
-    wrong : str
-        Why it does less than is asked of it, in words; empty where it does all.
-    nearest : Nearest, optional
-        An orientation that would do, where there is one.
+    `number`: in the file, from 1.
+    `axis` (3,) float: None where it is simultaneous.
+    `angle` (2,) float: as written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
+    `requested` (m,) int64: samples of its faces that no step before it finishes.
+    `rows` (r,) int64: those of them that it finishes.
+    `serves` (k,) int64: all samples of its faces that it could finish, whoever takes them.
+    `wrong`: why it does less than is asked of it, in words; empty where it does all.
+    `nearest`: an orientation that would do, where there is one.
     """
 
     number: int
@@ -259,23 +211,9 @@ def operations_requested(
 ) -> str:  # fmt: skip
     """The operations that are planned: what was requested; behind a process, else, the fastest if all have feeds.
 
-    Parameters
-    ----------
-    operations : str, optional
-        As requested.
-    process : OwnProcess, optional
-    cutters : sequence of Cutter
-        All that are judged.
-    feeds : mapping
-        Of those that have one, mm/min.
-    machine : Machine
-    setups : int
-        How many there may be.
-
-    Raises
-    ------
-    OptionError
-        The machine turns about one axis, a step is about something that there is not, or a feed is missing where time counts.
+    `operations`: as requested. `cutters`: all that are judged. `feeds`: of those that have one, mm/min. `setups`: how many there
+    may be. Raises OptionError: the machine turns about one axis, a step is about something that there is not, or a feed is
+    missing where time counts.
     """
     if machine.turns and machine.turning < 2:
         axes, word = "one" if machine.turning else "no", "process" if operations is None else "operations"

@@ -24,8 +24,6 @@ def group_of(cutter: Cutter) -> str:
     Special are tapered cutters with a round tip, barrels, lenses and lollipops. Last come those that finish a surface only where
     nothing else does: engraving, chamfer and form cutters, V-shaped ones and dovetails.
 
-    Examples
-    --------
     >>> [group_of(Cutter.parse(each)) for each in ("R6L80", "R6L80rc1", "R3L40rc3", "R1L40rc1T5", "R0.2L40T15F10", "R6L40T-10F5")]
     ['flat', 'bull', 'ball', 'special', 'last', 'last']
     """
@@ -63,14 +61,8 @@ def size(cutter: Cutter) -> tuple[float, float, float]:
 def wanted(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
     """Cutters from the most to the least wanted: by kind, then by size, then as they were given.
 
-    Parameters
-    ----------
-    cutters : iterable of Cutter
-    free_form : float
-        Share of the area of the faces to machine that is free-form (`free_form_share`).
+    `free_form`: share of the area of the faces to machine that is free-form (`free_form_share`).
 
-    Examples
-    --------
     >>> given = [Cutter.parse(each) for each in ("R8L80", "R3L40rc3", "R5L60rc1")]
     >>> [each.id for each in wanted(given, free_form=1.0)], [each.id for each in wanted(given, free_form=0.0)]
     (['R5L60rc1', 'R3L40rc3', 'R8L80'], ['R8L80', 'R5L60rc1', 'R3L40rc3'])
@@ -86,18 +78,9 @@ def by_radius(cutters: Iterable[Cutter]) -> list[Cutter]:
 def free_form_share(faces: Iterable[tuple[str, float]]) -> float:
     """The share of area of free-form faces, and of spheres and tori, which are bent in both directions as well.
 
-    Parameters
-    ----------
-    faces : iterable of (str, float)
-        Of each target face its shape, and its area, mm2; one that is not known counts as none.
+    `faces`: of each target face its shape, and its area, mm2; one that is not known counts as none. Returns 0 to 1. Where no area
+    is known: 1 if any of the faces is free-form, else 0.
 
-    Returns
-    -------
-    float
-        0 to 1. Where no area is known: 1 if any of the faces is free-form, else 0.
-
-    Examples
-    --------
     >>> free_form_share([("plane", 30.0), ("sculptured", 10.0)]), free_form_share([])
     (0.25, 0.0)
     >>> free_form_share([("sphere", math.nan)])
@@ -178,10 +161,7 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdict
     at least as deep into the larger one. So a sample at which the smaller one is blocked at every posture is inaccessible to the
     larger one too.
 
-    Returns
-    -------
-    Verdicts
-        UNJUDGED where nothing follows; where inaccessible, the reason of the smaller cutter.
+    Returns UNJUDGED where nothing follows; where inaccessible, the reason of the smaller cutter.
     """
     known = blank(n)
     for other, verdicts in judged.items():

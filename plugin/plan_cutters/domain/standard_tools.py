@@ -107,15 +107,8 @@ def smaller(cutter: Cutter, ratio: float) -> tuple[Cutter, ...]:
     a tapered cutter, and for kinds that are no end mills. Between the flutes and a thicker shank there is a relieved neck, as far
     as the stick-out leaves a length for it; the cone to the shank counts as shank.
 
-    Parameters
-    ----------
-    cutter : Cutter
-        In inches where its name is.
-    ratio : float
-        Stick-out over the diameter, at most; less where the tool is not so long.
+    `cutter`: in inches where its name is. `ratio`: stick-out over the diameter, at most; less where the tool is not so long.
 
-    Examples
-    --------
     >>> [each.id for each in smaller(Cutter.parse("R3L40rc3"), 10.0)][:2]
     ['R2.5L50rc2.5F13N2.375x35S3', 'R2L40rc2F11N1.9x25S3']
     >>> [each.id for each in smaller(Cutter.parse("R6L60rc3F26S6"), 5.0)][:2]

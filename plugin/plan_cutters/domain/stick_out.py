@@ -24,30 +24,18 @@ _EXACT = 1e-6
 class StickOut(Record):
     """The least stick-out with which a cutter reaches what it reaches; lengths in mm.
 
-    Attributes
-    ----------
-    least : float
-        nan where there is none to find: `why` says so.
-    floor, longest : float
-        Between which it was looked for: the shortest that leaves flutes and neck out of the holder, and what the cutter was
-        judged with.
-    why : str
-        What limits it: `obstacle`, `floor`, or why nothing was looked for: `no holder`, `reaches nothing`.
-    beyond : float
-        The stick-out just below, with which the limiting sample was searched again; nan where nothing limits.
-    verdict : int
-        What was found there: INACCESSIBLE or UNDECIDED.
-    sample : int
-        The one that limits it, -1 for none; at `least`, its posture and what is in the way of a shorter one are:
-    tilt, rotation : float
-        rad.
-    axis, tilt_direction : (3,) float
-    obstacle_face : int, optional
-    obstacle_point : (3,) float, optional
-    served : int
-        Samples that were searched with it, and are reached.
-    setup : int
-        The setup of the sample that limits it, from 0.
+    `least`: nan where there is none to find: `why` says so.
+    `floor`, `longest`: between which it was looked for: the shortest that leaves flutes and neck out of the holder, and what the
+      cutter was judged with.
+    `why`: what limits it: `obstacle`, `floor`, or why nothing was looked for: `no holder`, `reaches nothing`.
+    `beyond`: the stick-out just below, with which the limiting sample was searched again; nan where nothing limits.
+    `verdict`: what was found there: INACCESSIBLE or UNDECIDED.
+    `sample`: the one that limits it, -1 for none; at `least`, its posture and what is in the way of a shorter one are the next five.
+    `tilt`, `rotation`: rad.
+    `axis`, `tilt_direction` (3,) float.
+    `obstacle_point` (3,) float.
+    `served`: samples that were searched with it, and are reached.
+    `setup`: the setup of the sample that limits it, from 0.
     """
 
     least: float
@@ -77,10 +65,7 @@ def held(cutter: Cutter, stick_out: float) -> Cutter:
 
     Where no length of flutes was given, all that stands out may cut, as before.
 
-    Raises
-    ------
-    CutterError
-        It cannot be held so.
+    Raises CutterError: it cannot be held so.
     """
     shank = cutter.shank_radius
     if cutter.shape != "lollipop" and stick_out - _fixed(cutter) <= SAME:
@@ -116,16 +101,8 @@ def floor_of(cutter: Cutter, tolerance: float) -> float:
 def outline(made: Assembly, stick_out: float) -> Floats:
     """How far above its nose a holder first becomes wider than each distance from the axis, as the kernel takes it.
 
-    Parameters
-    ----------
-    made : Assembly
-        Of a cutter with that stick-out, `cover`.
-
-    Returns
-    -------
-    (k, 4) float
-        Rows (v0, v1, q0, q1), from the axis out: the height over the nose (below it: negative) is v0 up to q0 and rises to v1 at
-        q1. Nowhere above the holder's own.
+    `made`: of a cutter with that stick-out, `cover`. Returns (k, 4) float: rows (v0, v1, q0, q1), from the axis out: the height
+    over the nose (below it: negative) is v0 up to q0 and rises to v1 at q1. Nowhere above the holder's own.
     """
     rows = made.piece[0][made.piece[0, :, PART] == HOLDER]
     height = made.mode[0, OVER_TIP] - stick_out

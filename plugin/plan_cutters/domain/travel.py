@@ -31,14 +31,9 @@ _FLAT = 1e-6
 class Travel(Record):
     """Linear positions of a machine, sample by sample.
 
-    Attributes
-    ----------
-    position : (n, 3) float
-        Of its linear axes in their order, mm; nan where no posture is known or the axes cannot be found.
-    taken : (n,) int8
-        Which solution of its rotary axes that is; -1 for none.
-    beyond : (n, 3) float
-        How far each axis is beyond its limits, mm; 0 within, nan as `position`.
+    `position` (n, 3) float: of its linear axes in their order, mm; nan where no posture is known or the axes cannot be found.
+    `taken` (n,) int8: which solution of its rotary axes that is; -1 for none.
+    `beyond` (n, 3) float: how far each axis is beyond its limits, mm; 0 within, nan as `position`.
     """
 
     position: Floats
@@ -83,22 +78,10 @@ def tips(cutter: Cutter, point: Floats, normal: Floats, verdicts: Verdicts) -> F
 def travel(machine: Machine, placement: Placement, tip: Floats, axis: Floats, length: float) -> Travel:
     """Where the linear axes stand at postures.
 
-    Parameters
-    ----------
-    machine : Machine
-        With three linear axes, whose rotary axes, if any, are known.
-    placement : Placement
-        With an origin.
-    tip, axis : (n, 3) float
-        In part coordinates; unit axes; nan where there is no posture.
-    length : float
-        From the tip to the control point, along the axis, mm.
-
-    Returns
-    -------
-    Travel
-        Of the two solutions of the rotary axes the one that `Kinematics.positions` takes, unless it is outside and the other one
-        is held and inside.
+    `machine`: with three linear axes, whose rotary axes, if any, are known. `placement`: with an origin. `tip`, `axis` (n, 3)
+    float: in part coordinates; unit axes; nan where there is no posture. `length`: from the tip to the control point, along the
+    axis, mm. Returns of the two solutions of the rotary axes the one that `Kinematics.positions` takes, unless it is outside and
+    the other one is held and inside.
     """
     x = None if placement.x is None else np.array(placement.x)
     frame = frame_of(np.array(placement.z), x)

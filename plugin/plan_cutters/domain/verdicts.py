@@ -178,24 +178,16 @@ class VerdictBuffer(_Columns):
 class Witness(Record):
     """A sample that is not reached, and the posture that comes nearest to reaching it.
 
-    Attributes
-    ----------
-    sample : int
-    reason : str
-        One of REASONS.
-    obstacle_face : int, optional
-        Face that is in the way at that posture; negative for a fixture (`Surroundings.called`).
-    obstacle_point : (3,) float, optional
-        Point of it that lies in the cutter.
-    tilt, rotation : float, optional
-        rad; None where the axis limit leaves no posture at all.
-    axis : (3,) float, optional
-    depth : float, optional
-        How deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched for.
-    samples : int
-        How many samples it stands for: those not reached on its face for its reason, and within its body where it lies in one.
-    untried : bool
-        No posture was looked for, though there may be a depth.
+    `reason`: one of REASONS.
+    `obstacle_face`: face that is in the way at that posture; negative for a fixture (`Surroundings.called`).
+    `obstacle_point` (3,) float: point of it that lies in the cutter.
+    `tilt`, `rotation`: rad; None where the axis limit leaves no posture at all.
+    `axis` (3,) float.
+    `depth`: how deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched
+      for.
+    `samples`: how many samples it stands for: those not reached on its face for its reason, and within its body where it lies in
+      one.
+    `untried`: no posture was looked for, though there may be a depth.
     """
 
     sample: int
@@ -237,15 +229,8 @@ def depths(tolerance: float, chord_error: float) -> tuple[float, float]:
     If no triangle reaches deeper than the first, no point of the surface is deeper than the tolerance; a point of a triangle that
     is deeper than the second proves one. Of what may not be touched at all the tolerance is 0.
 
-    Parameters
-    ----------
-    tolerance : float
-        Depth that is allowed, mm.
-    chord_error : float
-        Of the triangles, mm.
+    `tolerance`: depth that is allowed, mm. `chord_error`: of the triangles, mm.
 
-    Examples
-    --------
     >>> depths(0.5, 0.125), depths(0.0, 0.125)
     ((0.375, 0.625), (-0.125, 0.125))
     """
@@ -272,18 +257,9 @@ def nominal_depth(chord_error: float) -> float:
 def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
     """Combine the verdicts of all setups, and name the setup that reaches each sample.
 
-    Parameters
-    ----------
-    each : sequence of Verdicts
-        In each setup, of the same n samples.
-
-    Returns
-    -------
-    Verdicts
-        Verdict and posture of the first setup that reaches a sample. Where none does: undecided if it is so in any; the reason
-        is that of the first one in which not the axis limit alone leaves nothing, or the fixture if that is so in any.
-    (n,) int32
-        The setup that reaches each sample, -1 for none.
+    `each`: in each setup, of the same n samples. Returns verdict and posture of the first setup that reaches a sample. Where none
+    does: undecided if it is so in any; the reason is that of the first one in which not the axis limit alone leaves nothing, or
+    the fixture if that is so in any. Returns (n,) int32: the setup that reaches each sample, -1 for none.
     """
     n = len(each[0].verdict)
     combined, which = blank(n), np.full(n, -1, np.int32)

@@ -44,18 +44,9 @@ class Header:
 class Archive:
     """An open archive of arrays.
 
-    Parameters
-    ----------
-    path : path
-    noun : str
-        What it should be, for errors.
-    error : type of PlanError
-        Raised where it is none.
+    `noun`: what it should be, for errors. `error`: raised where it is none.
 
-    Attributes
-    ----------
-    headers : dict
-        Array name -> Header: of booleans, integers, floats and texts; nothing else is read.
+    `headers`: array name -> Header: of booleans, integers, floats and texts; nothing else is read.
     """
 
     def __init__(self, path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> None:

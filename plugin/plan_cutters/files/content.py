@@ -81,10 +81,7 @@ class _Tree(ContentHandler):
 def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) -> Element:
     """The root of a document; `text` is what its bytes say, whatever it declares of their encoding.
 
-    Raises
-    ------
-    error
-        It is not well-formed, or declares a document type or entities.
+    Raises error: it is not well-formed, or declares a document type or entities.
     """
     source = InputSource()
     declared = _DECLARED.match(text.lstrip("\ufeff"))
@@ -112,20 +109,9 @@ def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) 
 def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
     """Read all bytes of a regular file, or of a link to one; the result is None where there is no such file.
 
-    Parameters
-    ----------
-    path : path
-        Where it should be.
-    most : int
-        Bytes that it may have.
+    `path`: where it should be. `most`: bytes that it may have. Raises PlanError: it is no regular file, is larger, or cannot be
+    read.
 
-    Raises
-    ------
-    PlanError
-        It is no regular file, is larger, or cannot be read.
-
-    Examples
-    --------
     >>> regular_bytes("not/there", most=10) is None
     True
     """
@@ -347,10 +333,7 @@ def recognised(
 
     `xml`, `json`, `archive`: what to say of a file of these that is of no format.
 
-    Raises
-    ------
-    PlanError
-        The content's own error.
+    Raises PlanError: the content's own error.
     """
     # But perhaps a byte-order mark.
     if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):

@@ -19,10 +19,7 @@ _MISSING = f"is not there: {extra_hint('batch')}"
 def file_system(url: str) -> tuple[Any, str]:
     """The file system of a path or URL, and the path on it.
 
-    Raises
-    ------
-    PlanError
-        A package is missing, or the URL has no meaning.
+    Raises PlanError: a package is missing, or the URL has no meaning.
     """
     try:
         from fsspec.core import url_to_fs
@@ -39,9 +36,7 @@ def file_system(url: str) -> tuple[Any, str]:
 def refuse_memory(url: str) -> None:
     """Refuse a URL that names the memory of this process, which no worker sees.
 
-    Raises
-    ------
-    PlanError
+    Raises PlanError.
     """
     if url.startswith("memory://"):
         raise PlanError(
@@ -52,10 +47,7 @@ def refuse_memory(url: str) -> None:
 def read(url: str) -> bytes:
     """The content of a file.
 
-    Raises
-    ------
-    PlanError
-        It cannot be read.
+    Raises PlanError: it cannot be read.
     """
     fs, path = file_system(url)
     try:
@@ -96,15 +88,7 @@ class Folder:
 
     A method raises what the file system raises; `cause` puts it in words.
 
-    Parameters
-    ----------
-    url : str
-        Path or URL.
-
-    Raises
-    ------
-    PlanError
-        There is no such file system.
+    `url`: path or URL. Raises PlanError: there is no such file system.
     """
 
     def __init__(self, url: str) -> None:

@@ -19,10 +19,7 @@ from plan_cutters_base.system_lock import acquired, system_lock
 def require_temporary() -> None:
     """See to it that temporary files can be written somewhere.
 
-    Raises
-    ------
-    PlanError
-        No folder for them can be written to.
+    Raises PlanError: no folder for them can be written to.
     """
     try:
         tempfile.gettempdir()
@@ -43,21 +40,9 @@ class Lock:
     hand if nothing runs there. Where the file system has no locks, or on Windows, that holds for what was left behind here, too.
     An owner that has only models left to write is waited for.
 
-    Parameters
-    ----------
-    out : Path
-        The folder; it need not be there.
-    named : callable, optional
-        Called with the lock's file before it exists.
-    staging : Path, optional
-        The folder beside it that its owner is about to make, which goes with it: the one of an owner that was killed is removed.
-
-    Raises
-    ------
-    PlanError
-        Another process has it: the error says which, where and since when.
-    OSError
-        The file cannot be written.
+    `out`: the folder; it need not be there. `named`: called with the lock's file before it exists. `staging`: the folder beside
+    it that its owner is about to make, which goes with it: the one of an owner that was killed is removed. Raises PlanError:
+    another process has it: the error says which, where and since when. Raises OSError: the file cannot be written.
     """
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None, staging: Path | None = None) -> None:

@@ -126,14 +126,8 @@ def _crossings(n, f, low, high, rotary, intervals):
 def hold(n, f, rotary, intervals, count):
     """Leave of sorted intervals of tilt what the machine holds; the new count.
 
-    Parameters
-    ----------
-    n, f : (3,) float64
-        Normal and tilt direction.
-    rotary : Rotary
-    intervals : (m, 2) float64, read and written
-        With spare rows at the end: `CROSSINGS`, and three for each crossing and interval.
-    count : int
+    `n`, `f` (3,) float64: normal and tilt direction. `intervals` (m, 2) float64, read and written: with spare rows at the end:
+    `CROSSINGS`, and three for each crossing and interval.
     """
     written, base = 0, len(intervals) - CROSSINGS
     # Those to come are put aside, for one may become several.

@@ -33,16 +33,8 @@ def is_finishing(name: str) -> bool:
 def take_feed(tool: Listed, presets: Iterable[Preset], field: str, number: Callable[[Any, str], float] = number_of) -> None:
     """Keep the feed of one preset, mm/min; a feed that no machine has is ignored, and noted.
 
-    Parameters
-    ----------
-    tool : Listed
-        Its `scale` turns the feeds into mm/min.
-    presets : iterable of Preset
-        In the file's order.
-    field : str
-        What the file calls the feed.
-    number : callable
-        Reads a feed, given it and the field.
+    `tool`: its `scale` turns the feeds into mm/min. `presets`: in the file's order. `field`: what the file calls the feed.
+    `number`: reads a feed, given it and the field.
     """
     usable = list[tuple[str, float]]()
     for preset in presets:

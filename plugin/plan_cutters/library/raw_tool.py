@@ -17,32 +17,18 @@ from plan_cutters.files import content
 class Entry:
     """One tool as a file lists it.
 
-    Attributes
-    ----------
-    place : str
-        Where it stands, for people: `tool 3 (line 52)`.
-    number : int, optional
-        In the machine's tool changer.
-    name, kind : str
-        As the file words them.
-    unit : str
-        That its lengths are given in: `mm`, `inch`; empty where the file does not say.
-    cutter : Cutter, optional
-        What can be judged of it. None: `unused` says why.
-    unused : str, optional
-        The field concerned, what is wrong with it and what to add.
-    broken : bool
-        It contradicts itself or cannot be read; else it is not for finishing, or lacks something.
-    unheld : bool
-        It is not used because it does not fit its holder.
-    notes : tuple of str
-        How it was understood where that is not plain.
-    given : tuple of (str, float)
-        Dimensions that were read, mm and degrees, by their ISO 13399 names.
-    feed : float, optional
-        Of its preset, mm/min. It is none of the cutter's, whose id stays the same.
-    preset : str
-        The name of the preset that the feed is of.
+    `place`: where it stands, for people: `tool 3 (line 52)`.
+    `number`: in the machine's tool changer.
+    `name`, `kind`: as the file words them.
+    `unit`: that its lengths are given in: `mm`, `inch`; empty where the file does not say.
+    `cutter`: what can be judged of it. None: `unused` says why.
+    `unused`: the field concerned, what is wrong with it and what to add.
+    `broken`: it contradicts itself or cannot be read; else it is not for finishing, or lacks something.
+    `unheld`: it is not used because it does not fit its holder.
+    `notes`: how it was understood where that is not plain.
+    `given`: dimensions that were read, mm and degrees, by their ISO 13399 names.
+    `feed`: of its preset, mm/min. It is none of the cutter's, whose id stays the same.
+    `preset`: the name of the preset that the feed is of.
     """
 
     place: str
@@ -69,19 +55,11 @@ class Entry:
 class Library(Sequence[Cutter]):
     """The cutters of a file, each geometry once, in the file's order: `plan(part, cutters=library)`.
 
-    Attributes
-    ----------
-    file, format : str
-        The file's name without its folder, and the name of its format.
-    entries : tuple of Entry
-        All that the file lists, used or not.
-    holders : tuple of Holder
-        Listed by themselves, without a tool.
-    notes : tuple of str
-        How the file as a whole was understood.
+    `file`, `format`: the file's name without its folder, and the name of its format.
+    `entries`: all that the file lists, used or not.
+    `holders`: listed by themselves, without a tool.
+    `notes`: how the file as a whole was understood.
 
-    Examples
-    --------
     >>> Library("none.toml", "plan-cutters TOML")[0:]
     ()
     """
@@ -219,12 +197,8 @@ def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
 class Stated:
     """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are.
 
-    Attributes
-    ----------
-    attributes : dict
-        Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
-    straight : bool
-        No shank is requested: what is below it goes on.
+    `attributes`: of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
+    `straight`: no shank is requested: what is below it goes on.
     """
 
     attributes: dict[str, Any] = field(default_factory=dict)
@@ -235,34 +209,20 @@ class Stated:
 class Listed:
     """A tool as a file lists it, filled by the readers of formats.
 
-    Attributes
-    ----------
-    values : dict
-        By ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF flute
-        length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and DN
-        its diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest
-        diameter.
-    words : dict
-        What the file calls each.
-    kind : str
-        As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
-    tapered : str
-        Which tip a tapered mill has, as the file words it: its dimensions can mean a ball and a bull nose.
-    shaft : list of Segment
-        Sections that the file gives above LN (or LCF), from there up.
-    holder : Holder, str, optional
-        `none`: the file says that there is none.
-    zeros : set of str
-        Dimensions that the file states as 0: it does not lack them.
-    faults : list of str
-        What could not be read.
-    doubts : list of str
-        Fields that can mean different tools.
-    needs : tuple of str
-        Dimensions without which there is no cutter.
-    stated : Stated, optional
-    feed : float, optional
-        mm/min, and the name of the `preset` that it is of.
+    `values`: by ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF
+      flute length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and
+      DN its diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest
+      diameter.
+    `words`: what the file calls each.
+    `kind`: as the file words it; `sort`, if given, is what that is among `milling.MILLS`.
+    `tapered`: which tip a tapered mill has, as the file words it: its dimensions can mean a ball and a bull nose.
+    `shaft`: sections that the file gives above LN (or LCF), from there up.
+    `holder`: `none`: the file says that there is none.
+    `zeros`: dimensions that the file states as 0: it does not lack them.
+    `faults`: what could not be read.
+    `doubts`: fields that can mean different tools.
+    `needs`: dimensions without which there is no cutter.
+    `feed`: mm/min, and the name of the `preset` that it is of.
     """
 
     place: str
@@ -356,10 +316,7 @@ class LibraryContent:
 def sections(rows: Iterable[tuple[float, float, float]], what: str) -> list[Segment]:
     """Stages from (height, lower diameter, upper diameter), mm; those without a height are steps.
 
-    Raises
-    ------
-    FaultError
-        A diameter is 0.
+    Raises FaultError: a diameter is 0.
     """
     result = []
     for i, (height, lower, upper) in enumerate(rows, 1):

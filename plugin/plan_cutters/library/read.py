@@ -207,9 +207,7 @@ def nothing(library: Library) -> LibraryError:
 def holder_of(value: Any) -> Holder | str:
     """Read a value of `--holder`: `none`, a text as `R15L30`, or a file with a holder; `FILE#NAME` where it has several.
 
-    Raises
-    ------
-    CutterError, LibraryError
+    Raises CutterError, LibraryError.
     """
     if not isinstance(value, str) or value.strip().lower() == "none":
         return value.strip().lower() if isinstance(value, str) else Holder.of(value)
@@ -253,10 +251,7 @@ _PIN = 40.0
 def of_words(specs: Sequence[str], holder: Holder | None) -> Library:
     """The cutters of texts such as `D12L80`, each in a holder if one is given.
 
-    Raises
-    ------
-    CutterError
-        A text is none, or the holder does not take the cutter.
+    Raises CutterError: a text is none, or the holder does not take the cutter.
     """
     made = [(spec, Cutter.parse(spec).asked(0.0, 0.0, holder)) for spec in specs]
     return Library("--cutter", "words of the command line", tuple(Entry(spec, cutter=each) for spec, each in made))

@@ -68,10 +68,7 @@ class Solution(NamedTuple):
 def solutions(machine: Machine, axis: Floats) -> list[Solution]:
     """Find the angles within the limits that hold a tool axis (3,) in the machine's frame; the solution to take comes first.
 
-    Raises
-    ------
-    MachineError
-        The machine has no rotary axes that could be set.
+    Raises MachineError: the machine has no rotary axes that could be set.
     """
     kinematics = machine.kinematics(_IDENTITY)
     if kinematics is None:

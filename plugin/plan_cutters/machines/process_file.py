@@ -84,13 +84,8 @@ class ProcessTable(_Table):
 def process_of(value: Any) -> OwnProcess:
     """The planner's process: as it is, from a mapping of the names that the file has, or read from a file.
 
-    Raises
-    ------
-    OptionError
-        It cannot be read, or says what has no meaning; with the place.
+    Raises OptionError: it cannot be read, or says what has no meaning; with the place.
 
-    Examples
-    --------
     >>> process = process_of({"step": [{"cutter": "D12L60", "angles": {"C": 0.0, "A": 0.0}, "faces": ["F3"]}], "rest": "leave"})
     >>> process.steps[0].faces, process.rest
     ((3,), 'leave')

@@ -63,21 +63,11 @@ FOREIGN = (
 def read_machine(path: str | os.PathLike[str], added: str = "") -> Machine:
     """The machine that a file describes; how it was understood, where that is not plain, is in `notes`.
 
-    Parameters
-    ----------
-    path : path
-        Our own TOML or JSON, FreeCAD `.fcm`, LinuxCNC `.ini`, Fusion `.mch`. What the file holds decides.
-    added : str
-        What some files leave open: rotary axes from the part to the tool, as `C,A`, or `C/B` where C carries the part and B the
-        tool; `table` or `tool-relative`: how angles of a table are counted.
+    `path`: our own TOML or JSON, FreeCAD `.fcm`, LinuxCNC `.ini`, Fusion `.mch`. What the file holds decides. `added`: what some
+    files leave open: rotary axes from the part to the tool, as `C,A`, or `C/B` where C carries the part and B the tool; `table`
+    or `tool-relative`: how angles of a table are counted. Raises MachineError: the file is no machine that is read, contradicts
+    itself, or leaves open what decides where the tool can point.
 
-    Raises
-    ------
-    MachineError
-        The file is no machine that is read, contradicts itself, or leaves open what decides where the tool can point.
-
-    Examples
-    --------
     >>> read_machine("none.fcm")
     Traceback (most recent call last):
     plan_cutters.errors.MachineError: none.fcm: cannot be read: No such file or directory
@@ -111,12 +101,8 @@ def machine_of(value: Any) -> Machine:
 
     `FILE#C,A` gives the order of the rotary axes where the file leaves it open.
 
-    Raises
-    ------
-    MachineError
+    Raises MachineError.
 
-    Examples
-    --------
     >>> machine_of("trunnion-ac").rotary[0].name
     'C'
     """

@@ -535,25 +535,10 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
 def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-    patches : Patches
-    nodes : Nodes
-    face : int
-        Number of the face.
-    sweeping : Sweeping
-    tree : Tree
-    triangle_face : (t,) int32
-        Face numbers of its triangles.
-    status : (n,) uint8, written
-        0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
-        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
-
-    Returns
-    -------
-    int
-        How many boxes were looked at, and what else takes as long: triangles and nodes.
+    `rows` (m,) int64. `face` (int): number of the face. `triangle_face` (t,) int32: face numbers of its triangles. `status` (n,)
+    uint8, written: 0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells
+    what to try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell. Returns
+    how many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
     workspace = Workspace(

@@ -9,20 +9,13 @@ from plan_cutters.kernels.jit import entry
 def draw(corner, brightness, owner, depth, seen, shade):
     """Draw triangles over what an image has; where two are equally near, the first one stays.
 
-    Parameters
-    ----------
-    corner : (n, 3, 3) float64
-        Corners in pixels: x to the right, y downwards, and nearness. The centre of pixel (i, j) is at x = j, y = i.
-    brightness : (n, 3) float64
-        Brightness at the corners.
-    owner : (n,) int32
-        What each triangle belongs to.
-    depth : (h, w) float64, written
-        Largest nearness so far; -inf at first.
-    seen : (h, w) int32, written
-        The owner of the nearest triangle.
-    shade : (h, w) float64, written
-        Its brightness.
+    `corner` (n, 3, 3) float64: corners in pixels: x to the right, y downwards, and nearness. The centre of pixel (i, j) is at x =
+      j, y = i.
+    `brightness` (n, 3) float64: brightness at the corners.
+    `owner` (n,) int32: what each triangle belongs to.
+    `depth` (h, w) float64, written: largest nearness so far; -inf at first.
+    `seen` (h, w) int32, written: the owner of the nearest triangle.
+    `shade` (h, w) float64, written: its brightness.
     """
     height, width = depth.shape
     for t in range(len(corner)):

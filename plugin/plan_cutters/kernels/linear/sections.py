@@ -145,18 +145,12 @@ def extents(point, ruling, normal, own, band, low, high):
 
     Gaps in the face, such as holes, count as the face itself; where it leaves the line by more than the band, it ends.
 
-    Parameters
-    ----------
-    point : (p, 3) float64
-        On the face, mm.
-    ruling, normal : (p, 3) float64
-        Unit directions of the line and of the face there, at right angles.
-    own : OneFace
-        The face.
-    band : float
-        How far the face may be off the line along the normal, mm.
-    low, high : (p,) float64, written
-        Ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no triangle is near the line.
+    `point` (p, 3) float64: on the face, mm.
+    `ruling`, `normal` (p, 3) float64: unit directions of the line and of the face there, at right angles.
+    `own` (OneFace): the face.
+    `band` (float): how far the face may be off the line along the normal, mm.
+    `low`, `high` (p,) float64, written: ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no
+      triangle is near the line.
     """
     workspace = _Workspace(np.empty(3), np.empty((2, 2)), np.empty(2), np.empty(64, np.int64))
     for i in range(len(point)):
@@ -246,18 +240,11 @@ def _onwards(pieces, many, which, end, gap):
 def sections(point, along, normal, vertex, near, gap, connected, whole):
     """Measure a face in planes through points on it: the part that goes on from the point, and all that the plane cuts.
 
-    Parameters
-    ----------
-    point : (p, 3) float64
-        mm.
-    along, normal : (p, 3) float64
-        Unit directions that span the plane, in the face and along its normal, at right angles.
-    vertex : (t, 3, 3) float64
-        Corners of the triangles of the face, mm.
-    near, gap : float
-        How far the point may be off the triangles, and what ends of neighbours may be apart, mm.
-    connected, whole : (p,) float64, written
-        Lengths along the face, mm; nan where no triangle is near the point.
+    `point` (p, 3) float64: mm.
+    `along`, `normal` (p, 3) float64: unit directions that span the plane, in the face and along its normal, at right angles.
+    `vertex` (t, 3, 3) float64: corners of the triangles of the face, mm.
+    `near`, `gap` (float): how far the point may be off the triangles, and what ends of neighbours may be apart, mm.
+    `connected`, `whole` (p,) float64, written: lengths along the face, mm; nan where no triangle is near the point.
     """
     frame = np.empty((3, 3))
     pieces = _Pieces(np.empty((len(vertex) + 1, 4)), np.zeros(len(vertex) + 1, np.bool_))

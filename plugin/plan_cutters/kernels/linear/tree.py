@@ -291,19 +291,9 @@ def build_apart(vertex, own, away):
 def build(vertex):
     """Order triangles and bound them.
 
-    Parameters
-    ----------
-    vertex : (n, 3, 3) float64
-        Corners, mm; n >= 1.
-
-    Returns
-    -------
-    order : (n,) int32
-        Triangles in the order of the tree's leaves.
-    box : (nodes, 16) float64
-        Of each node: centre, three unit sides (the last along the mean normal), three half sides, half diagonal.
-    depth : int
-        Level of the leaves; there are 2 ** depth of them.
+    `vertex` (n, 3, 3) float64: corners, mm; n >= 1. Returns `order` (n,) int32: triangles in the order of the tree's leaves.
+    `box` (nodes, 16) float64: of each node: centre, three unit sides (the last along the mean normal), three half sides, half
+    diagonal. `depth` (int): level of the leaves; there are 2 ** depth of them.
     """
     return build_apart(vertex, len(vertex), 0.0)
 
@@ -342,22 +332,11 @@ class WideTree(NamedTuple):
 def wide_tree(tree):
     """Arrange every third level of a tree for looking at eight boxes at a time.
 
-    Parameters
-    ----------
-    tree : Tree
-        With all triangles in the first of its two.
-
-    Returns
-    -------
-    vertex : (n, 3, 3) float64
-        As in the tree.
-    blocks : (k, 15, LANES) float64
-        Of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
-        block holds the boxes three levels below one, the first block those of the first level, lanes left over far below.
-    offset : (levels + 1,) int64
-        First block of each level.
-    bottom : int
-        Level of the tree that the last blocks hold: no box there has more than LANES triangles.
+    `tree`: with all triangles in the first of its two. Returns `vertex` (n, 3, 3) float64: as in the tree. `blocks` (k, 15,
+    LANES) float64: of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
+    block holds the boxes three levels below one, the first block those of the first level, lanes left over far below. `offset`
+    (levels + 1,) int64: first block of each level. `bottom` (int): level of the tree that the last blocks hold: no box there has
+    more than LANES triangles.
     """
     vertex, box, depth = tree.vertex, tree.box, tree.depth
     bottom = depth

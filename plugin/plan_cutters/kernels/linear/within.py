@@ -93,16 +93,7 @@ def _any(tree, faces, space, stack, local):
 def any_within(tree, faces, space):
     """Whether a corner, the middle of a side or the middle of any triangle of a face lies in a space.
 
-    Parameters
-    ----------
-    tree : Tree
-    faces : (n,) int32
-        Face numbers in tree order: triangles with 0 or less are of no face of the part and do not count.
-    space : Space
-
-    Returns
-    -------
-    bool
+    `faces` (n,) int32: face numbers in tree order: triangles with 0 or less are of no face of the part and do not count.
     """
     return _any(tree, faces, space, np.empty(64, np.int64), np.empty(3))
 
@@ -127,12 +118,7 @@ def _mark(tree, space, stack, marked):
 def in_box(tree, space, marked):
     """Write for triangles (n,) in tree order whether the box around each, along x, y and z, meets a box along them.
 
-    Parameters
-    ----------
-    tree : Tree
-    space : Space
-        The box, in the frame of the triangles.
-    marked : (n,) bool, written where it is true
+    `space`: the box, in the frame of the triangles. `marked` (n,) bool, written where it is true.
     """
     _mark(tree, space, np.empty(64, np.int64), marked)
 

@@ -319,31 +319,17 @@ def _reachable(view, lanes, turning):
 def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, count_out, undecided):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-    contacts : Contacts
-    ranges : Ranges
-        Of no machine: rotary axes may leave more intervals of tilt than there is room for.
-    tool : Tool
-        Without what does not matter.
-    narrowest : float
-        Ends are found to this, rad; a passing tilt is kept.
-    tree : Tree
-    wide : WideTree
-        The same.
-    most : int
-        Most intervals of one rotation.
-    part : (m, k, most, 2) float64, written
-        Free intervals, ascending, by place in `rows`.
-    count_out : (m, k) int32, written
-    undecided : (m, k) float64, written
-        Width of the bands at the ends that are neither free nor known to be forbidden, rad in all.
-
-    Returns
-    -------
-    int
-        Blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
+    `rows` (m,) int64.
+    `ranges`: of no machine: rotary axes may leave more intervals of tilt than there is room for.
+    `tool`: without what does not matter.
+    `narrowest` (float): ends are found to this, rad; a passing tilt is kept.
+    `wide` (WideTree): the same.
+    `most` (int): most intervals of one rotation.
+    `part` (m, k, most, 2) float64, written: free intervals, ascending, by place in `rows`.
+    `count_out` (m, k) int32, written.
+    `undecided` (m, k) float64, written: width of the bands at the ends that are neither free nor known to be forbidden, rad in
+      all.
+    Returns blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
     """
     turns, looked, work = len(ranges.rotation_cos), 0, cut_workspace()
     c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)

@@ -81,26 +81,13 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
 def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
     """Split a range of tilts into free, forbidden and undecided parts.
 
-    Parameters
-    ----------
-    p, n, f : (3,) float64
-        Contact, normal, tilt direction.
-    low, high : float
-        rad.
-    tool : Tool
-        Without what does not matter.
-    mode : int
-        In which it touches.
-    narrowest : float
-        rad.
-    tree : Tree
-    most : int
-        Most parts that can be told apart.
-
-    Returns
-    -------
-    parts : (k, 3) float64
-        first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
+    `p`, `n`, `f` (3,) float64: contact, normal, tilt direction.
+    `low`, `high` (float): rad.
+    `tool`: without what does not matter.
+    `mode` (int): in which it touches.
+    `narrowest` (float): rad.
+    `most` (int): most parts that can be told apart.
+    Returns `parts` (k, 3) float64: first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
     t, work = np.empty(3), parts_workspace(most)
     cross(n, f, t)

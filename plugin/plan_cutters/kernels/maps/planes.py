@@ -129,18 +129,8 @@ def flutes(turning, k):
 def turning_of(piece, offset, low, high):
     """Compute the bounds of a tool's pieces in one mode, which posture maps need.
 
-    Parameters
-    ----------
-    piece : (k, COLUMNS) float64
-    offset : float
-        mm.
-    low, high : float
-        Tilts that may be requested, rad.
-
-    Returns
-    -------
-    bound, known, eight
-        As in `Turning`.
+    `piece` (k, COLUMNS) float64. `offset` (float): mm. `low`, `high` (float): tilts that may be requested, rad. Returns as in
+    `Turning`.
     """
     count, eight = len(piece), 0
     bound, known = np.zeros((2 * count, BOUNDS)), np.zeros((count, KNOWN))

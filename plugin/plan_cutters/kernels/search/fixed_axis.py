@@ -82,34 +82,19 @@ def _is_free(body, mode, tool, solids, workspace, hint):
 def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direction):
     """Test one axis at contacts, as a search tests the postures that it finds.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Neighbours in sequence: a triangle in the way at one of them is tried first at the next.
-    axis : (3,) float64
-        Unit, from the tip to the spindle.
-    contacts : Contacts
-    low, high : float
-        Tilts that there are, rad.
-    about : (float, float, bool)
-        What counts as upright or as a wall: so far off, rad, none below 0. How far the tool keeps from a wall, mm; walls are left
-        out below 0. Whether any side of the bottom may touch.
-    tool : Tool
-        Smaller by what does not matter.
-    solids : Solids
-        All that may be in the way.
-    way : (m,) int8, written
-        BLOCKED: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a body. LEANING: it is free
-        as it leans by its tilt, or towards `direction_max` if it has none. UPRIGHT: it is free with its bottom across the axis,
-        the contact under the flat. ALONG: it is free with its flank along the wall, at its distance.
-    tilt_direction : (m or 0, 3) float64, written
-        Where the tool leans: a unit direction; UPRIGHT the way from the axis to the contact, 1 at the rim of the flat; ALONG the
-        axis, 2 long. Nothing is written if it has no rows.
-
-    Returns
-    -------
-    int, int
-        How many times the tool was put down: where the surface faces the axis. And how many boxes were looked at.
+    `rows` (m,) int64: neighbours in sequence: a triangle in the way at one of them is tried first at the next.
+    `axis` (3,) float64: unit, from the tip to the spindle.
+    `low`, `high` (float): tilts that there are, rad.
+    `about` (float, float, bool): what counts as upright or as a wall: so far off, rad, none below 0. How far the tool keeps from
+      a wall, mm; walls are left out below 0. Whether any side of the bottom may touch.
+    `tool`: smaller by what does not matter.
+    `solids`: all that may be in the way.
+    `way` (m,) int8, written: BLOCKED: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a
+      body. LEANING: it is free as it leans by its tilt, or towards `direction_max` if it has none. UPRIGHT: it is free with its
+      bottom across the axis, the contact under the flat. ALONG: it is free with its flank along the wall, at its distance.
+    `tilt_direction` (m or 0, 3) float64, written: where the tool leans: a unit direction; UPRIGHT the way from the axis to the
+      contact, 1 at the rim of the flat; ALONG the axis, 2 long. Nothing is written if it has no rows.
+    Returns how many times the tool was put down: where the surface faces the axis. And how many boxes were looked at.
     """
     body, sides, direction = np.empty(BODY), np.empty((4, 3)), np.empty(3)
     workspace, flat = scratch(), flat_workspace()

@@ -296,34 +296,16 @@ def _best(flat):
 def find_place(p, axis, x, tool, mode, rise, most, solids, within, apart, flat, place):
     """Look for a place at which a tool stands free, its bottom across the axis and a contact under the flat of its tip.
 
-    Parameters
-    ----------
-    p, axis : (3,) float64
-        The contact, and the unit tool axis.
-    x : (3,) float64
-        Unit direction of u, across the axis; v is that of axis x u.
-    tool : Tool
-    mode : int
-        In which it touches at tilt 0.
-    rise : float
-        Of the centre of the mode over the contact, along the axis, mm.
-    most : float
-        Radius of the flat, mm.
-    solids : Solids
-    within : float
-        Winding number from which a place lies within a body.
-    apart : float
-        Places are held apart from what is forbidden by this, mm; what is left between is not found.
-    flat : Flat
-    place : (2,) float64, written
-        u and v of the axis, mm.
-
-    Returns
-    -------
-    result : int
-        PLACED; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE.
-    triangle : int
-        The one that was in the way last, -1 for none.
+    `p`, `axis` (3,) float64: the contact, and the unit tool axis.
+    `x` (3,) float64: unit direction of u, across the axis; v is that of axis x u.
+    `mode` (int): in which it touches at tilt 0.
+    `rise` (float): of the centre of the mode over the contact, along the axis, mm.
+    `most` (float): radius of the flat, mm.
+    `within` (float): winding number from which a place lies within a body.
+    `apart` (float): places are held apart from what is forbidden by this, mm; what is left between is not found.
+    `place` (2,) float64, written: u and v of the axis, mm.
+    Returns `result` (int): PLACED; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE. `triangle` (int):
+      the one that was in the way last, -1 for none.
     """
     counts, body, y = flat.counts, flat.body, flat.y
     counts[:] = 0
@@ -391,20 +373,11 @@ def upright(rows, contacts, axis, tool, solids, within, apart, result, tilt_dire
 
     Or over its upper face, if it has one that cuts: where the axis goes into the material.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-    contacts : Contacts
-    axis : (n, 3) float64
-        Unit tool axis, along the normal or against it, or nearly so.
-    tool : Tool
-    solids : Solids
-    within, apart : float
-        As for `find_place`.
-    result : (n,) int8, written
-        PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tool has no such flat.
-    tilt_direction : (n, 3) float64, written
-        Where it is PLACED: the way from the axis to the contact, 1 at the rim of the flat.
+    `rows` (m,) int64.
+    `axis` (n, 3) float64: unit tool axis, along the normal or against it, or nearly so.
+    `within`, `apart` (float): as for `find_place`.
+    `result` (n,) int8, written: PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tool has no such flat.
+    `tilt_direction` (n, 3) float64, written: where it is PLACED: the way from the axis to the contact, 1 at the rim of the flat.
     """
     flat, place, x = flat_workspace(), np.empty(2), np.empty(3)
     for row in rows:
@@ -513,36 +486,21 @@ def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals
 def along_flank(rows, axis, contacts, flank, away, tool, solids, within, state, shift, reason, hint):
     """Lay the flank of a tool along surfaces, with its axis as it is given.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Contacts.
-    axis : (m, 3) float64
-        Unit tool axis at each, nowhere along the normal.
-    contacts : Contacts
-    flank : (int, float)
-        The mode in which the lower end of the flank touches, and by how much the tool may slide with the contact still on its
-        flank, mm.
-    away : (k,) float64
-        Distances from the contact, mm, that are tried one after the other, across the axis.
-    tool : Tool
-    solids : Solids
-    within : float
-        Winding number from which a place lies within a body.
-    state : (m,) int8, written
-        FREE at one of the distances; NONE: at each something is in the way, wherever along the flank; or UNKNOWN.
-    shift : (m, 3) float64, written
-        Where it is free: from the contact to the point at which the lower end of the flank is put down, mm.
-    reason : (m,) uint8, written
-        Where it is not: what is in the way of the first place; with a hint, of the first that was looked at.
-    hint : (m,) int64, read and written
-        A triangle that may well be in the way, or -1: where another axis was tried, that which took away most of the slide. A
-        place is none for the same proof with one, and one that is free is looked for without it.
-
-    Returns
-    -------
-    int
-        How many boxes were looked at.
+    `rows` (m,) int64: contacts.
+    `axis` (m, 3) float64: unit tool axis at each, nowhere along the normal.
+    `flank` (int, float): the mode in which the lower end of the flank touches, and by how much the tool may slide with the
+      contact still on its flank, mm.
+    `away` (k,) float64: distances from the contact, mm, that are tried one after the other, across the axis.
+    `within` (float): winding number from which a place lies within a body.
+    `state` (m,) int8, written: FREE at one of the distances; NONE: at each something is in the way, wherever along the flank; or
+      UNKNOWN.
+    `shift` (m, 3) float64, written: where it is free: from the contact to the point at which the lower end of the flank is put
+      down, mm.
+    `reason` (m,) uint8, written: where it is not: what is in the way of the first place; with a hint, of the first that was
+      looked at.
+    `hint` (m,) int64, read and written: a triangle that may well be in the way, or -1: where another axis was tried, that which
+      took away most of the slide. A place is none for the same proof with one, and one that is free is looked for without it.
+    Returns how many boxes were looked at.
     """
     mode, length = flank
     body, f, t, point, intervals, workspace = np.empty(BODY), np.empty(3), np.empty(3), np.empty(3), np.empty((64, 2)), scratch()

@@ -137,25 +137,12 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
 
     All searches are this one: compiled for each of its uses, they took three times as long on the first run.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Samples, neighbours in sequence.
-    contacts : Contacts
-    ranges : Ranges
-    tools : (Tool, Tool)
-        The outer and the inner tool.
-    solids : (Solids, Solids)
-        The possible and the certain obstacles.
-    mode : Mode
-        Unless it decides, nothing is asked of the inner tool and the certain obstacles.
-    proof : Proof
-    results : VerdictArrays, written
-
-    Returns
-    -------
-    int, int
-        Where it ended in `rows`, and how many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
+    `rows` (m,) int64: samples, neighbours in sequence.
+    `tools` (Tool, Tool): the outer and the inner tool.
+    `solids` (Solids, Solids): the possible and the certain obstacles.
+    `mode` (Mode): unless it decides, nothing is asked of the inner tool and the certain obstacles.
+    `results` (VerdictArrays), written.
+    Returns where it ended in `rows`, and how many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
     """
     rotations, (outer_tool, inner_tool), (possible, certain) = len(ranges.rotation_cos), tools, solids
     # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
@@ -222,23 +209,12 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, results):
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *, brief=False):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one, and boxes looked at.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    ranges : Ranges
-    tool : Tool
-    narrowest : float
-        Intervals of tilt narrower than this are passed over, rad.
-    start : (int, float)
-        Rotation to begin with, and the tilt that is tried first at each.
-    turns : int
-        How many rotations to look at.
-    solids : Solids
-        All that may be in the way.
-    results : VerdictArrays, written
-        The posture.
-    brief : bool
-        Give up what takes long: there is none then.
+    `narrowest` (float): intervals of tilt narrower than this are passed over, rad.
+    `start` (int, float): rotation to begin with, and the tilt that is tried first at each.
+    `turns` (int): how many rotations to look at.
+    `solids`: all that may be in the way.
+    `results` (VerdictArrays), written: the posture.
+    `brief` (bool): give up what takes long: there is none then.
     """
     mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
     proof = Proof(_NOWHERE, 0.0, solids)
@@ -300,23 +276,13 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
 def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
     """Test given postures.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Contacts to test, neighbours in sequence: a triangle in the way at one of them is tried first at the next.
-    point, normal, axis, tilt_direction : (n, 3) float64
-        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
-    tool : Tool
-        Smaller by what does not matter.
-    solids : Solids
-        All that may be in the way.
-    stands : (n,) bool, written
-        False also at a tilt at which the tool does not touch.
-
-    Returns
-    -------
-    int
-        How many boxes were looked at.
+    `rows` (m,) int64: contacts to test, neighbours in sequence: a triangle in the way at one of them is tried first at the next.
+    `point`, `normal`, `axis`, `tilt_direction` (n, 3) float64: contact, unit normal, unit tool axis, tilt direction: a unit
+      vector, or shorter with the contact under the flat.
+    `tool`: smaller by what does not matter.
+    `solids`: all that may be in the way.
+    `stands` (n,) bool, written: False also at a tilt at which the tool does not touch.
+    Returns how many boxes were looked at.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace = scratch()
@@ -342,17 +308,9 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
 def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which):
     """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Rows to test.
-    point, normal, axis, tilt_direction : (n, 3) float64
-        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
-    tool : Tool
-        Without what does not matter.
-    tree : Tree
-    triangle, which : (n,) int32, written
-        At a tilt at which the tool does not touch: -2.
+    `rows` (m,) int64: rows to test. `point`, `normal`, `axis`, `tilt_direction` (n, 3) float64: contact, unit normal, unit tool
+    axis, tilt direction: a unit vector, or shorter with the contact under the flat. `tool`: without what does not matter.
+    `triangle`, `which` (n,) int32, written: at a tilt at which the tool does not touch: -2.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace = scratch()
@@ -375,22 +333,9 @@ def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which
 def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     """Test the dummy tool, which holds the tool at tilt 0 in every rotation, its axis along the normal.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-    contacts : Contacts
-    dummy : (k, COLUMNS) float64
-        `Assembly.dummy`, without what does not matter.
-    tool : Tool
-    solids : Solids
-        All that may be in the way.
-    clear : (n,) bool, written
-        True where nothing reaches into the dummy, and the dummy lies in no body.
-
-    Returns
-    -------
-    int
-        How many boxes were looked at.
+    `rows` (m,) int64. `dummy` (k, COLUMNS) float64: `Assembly.dummy`, without what does not matter. `solids`: all that may be in
+    the way. `clear` (n,) bool, written: True where nothing reaches into the dummy, and the dummy lies in no body. Returns how
+    many boxes were looked at.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace = scratch()
@@ -487,22 +432,12 @@ def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces
 def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, level, beyond):
     """Find the largest tool that reaches each sample.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Samples, neighbours in sequence.
-    contacts : Contacts
-    ranges : Ranges
-    outer_tool, inner_tool : Ladder
-        The outer and the inner tools; each lies within the next.
-    possible, certain : Solids
-        As `search.search` takes them.
-    results : Found, written
-        The posture of the largest tool that has one, and the reason why the next one has none.
-    level : (n,) int64, written
-        The number of the largest tool that has a posture, -1 where none has.
-    beyond : (n,) uint8, written
-        INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
+    `rows` (m,) int64: samples, neighbours in sequence.
+    `outer_tool`, `inner_tool` (Ladder): the outer and the inner tools; each lies within the next.
+    `possible`, `certain` (Solids): as `search.search` takes them.
+    `results` (Found), written: the posture of the largest tool that has one, and the reason why the next one has none.
+    `level` (n,) int64, written: the number of the largest tool that has a posture, -1 where none has.
+    `beyond` (n,) uint8, written: INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
     """
     rotations = len(ranges.rotation_cos)
     pasts, workspaces = both(rotations, outer_tool.mode.shape[1])

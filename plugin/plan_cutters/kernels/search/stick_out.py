@@ -178,19 +178,12 @@ def _cleared(tree, body, outline, floor, stack, bound, corner):
 def least_stick_outs(rows, point, normal, tilt_direction, tilt, tool, outline, floor, tree, stick_out, triangle):
     """Least stick-out at given postures, no less than `floor`, and the triangle that asks for it.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Samples whose posture is known.
-    point, normal, tilt_direction : (n, 3) float64
-    tilt : (n,) float64
-    tool : Tool
-    outline : (k, 4) float64
-    floor : float
-    tree : Tree
-    stick_out : (n,) float64, written
-    triangle : (n,) int32, written
-        -1 where the floor is enough.
+    `rows` (m,) int64: samples whose posture is known.
+    `point`, `normal`, `tilt_direction` (n, 3) float64.
+    `tilt` (n,) float64.
+    `outline` (k, 4) float64.
+    `stick_out` (n,) float64, written.
+    `triangle` (n,) int32, written: -1 where the floor is enough.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace, bound = scratch(), np.empty(64)

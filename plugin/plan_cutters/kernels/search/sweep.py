@@ -218,37 +218,18 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
 
     It looks among the tilts that `obstacle_cache` is about.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    row : int
-        The sample.
-    ranges : Ranges
-    tool : Tool
-        The outer or the inner tool.
-    solids : Solids
-        The possible or the certain obstacles.
-    within : float
-        Winding number from which a posture lies within a body.
-    narrowest : float
-        Intervals of tilt narrower than this are passed over, rad.
-    most : int
-        Boxes after which the rotations that are left are not looked at.
-    start : (int, float)
-        Rotation to begin with, and the tilt that is tried first at each.
-    turns : int
-        How many rotations to look at.
-    obstacle_cache : Memory, read and written
-    proof : Proof
-    workspace : Workspace
-        Forbidden tilts are booked in its tally, by reason.
-
-    Returns
-    -------
-    rotation : int
-        `NONE` if there is no posture, `UNFINISHED` if none was found among the rotations looked at.
-    tilt : float
-        rad.
+    `row` (int): the sample.
+    `tool`: the outer or the inner tool.
+    `solids`: the possible or the certain obstacles.
+    `within` (float): winding number from which a posture lies within a body.
+    `narrowest` (float): intervals of tilt narrower than this are passed over, rad.
+    `most` (int): boxes after which the rotations that are left are not looked at.
+    `start` (int, float): rotation to begin with, and the tilt that is tried first at each.
+    `turns` (int): how many rotations to look at.
+    `obstacle_cache` (Memory), read and written.
+    `workspace`: forbidden tilts are booked in its tally, by reason.
+    Returns `rotation` (int): `NONE` if there is no posture, `UNFINISHED` if none was found among the rotations looked at. `tilt`
+      (float): rad.
     """
     p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], workspace.e2
     f, t, tally = workspace.f, workspace.t, workspace.tally

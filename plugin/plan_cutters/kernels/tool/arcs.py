@@ -25,21 +25,11 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):
     shifts its polar angle `alpha` about P, counted from the direction P -> bottom centre towards the spindle. The
     point is inside while `|d cos(alpha) - offset| < sqrt(radius^2 - py^2)` and `low < d sin(alpha) < high`.
 
-    Parameters
-    ----------
-    height, px, py : float
-        The point at `tilt`: height along the axis from P, x and y from the cylinder's axis, mm.
-    tilt : float
-        rad.
-    radius_offset, radius, low, high : float
-        Distance of the axis from P, radius, solid heights; `low >= 0`, `radius <= radius_offset`, mm. A body without
-        volume (`radius <= 0` or `low >= high`) forbids nothing.
-
-    Returns
-    -------
-    first, last : float
-        The forbidden tilts, rad; `NOTHING` if there are none. One arc suffices: with the radius no larger than
-        the offset, alpha stays within 0 to 90 deg, where the top cuts off one end only.
+    `height`, `px`, `py` (float): the point at `tilt`: height along the axis from P, x and y from the cylinder's axis, mm. `tilt`
+    (float): rad. `radius_offset`, `radius`, `low`, `high` (float): distance of the axis from P, radius, solid heights; `low >=
+    0`, `radius <= radius_offset`, mm. A body without volume (`radius <= 0` or `low >= high`) forbids nothing. Returns `first`,
+    `last` (float): the forbidden tilts, rad; `NOTHING` if there are none. One arc suffices: with the radius no larger than the
+    offset, alpha stays within 0 to 90 deg, where the top cuts off one end only.
     """
     square = radius * radius - py * py
     if square <= 0.0 or radius <= 0.0 or low >= high:
@@ -101,20 +91,9 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
 def axis_arcs(along_n, along_f, limit_cos, low, high, out):
     """Tilts within [low, high] whose axis stays within a cone about the setup axis m.
 
-    Parameters
-    ----------
-    along_n, along_f : float
-        m . n and m . f.
-    limit_cos : float
-        Cosine of the cone's half angle; -1 or less: no limit. Kept to `ON_LIMIT`.
-    low, high : float
-        Range asked for, rad, within 0 to pi/2.
-    out : (3, 2) float64
-        Written: the intervals, ascending.
-
-    Returns
-    -------
-    count : int
+    `along_n`, `along_f` (float): m . n and m . f. `limit_cos` (float): cosine of the cone's half angle; -1 or less: no limit.
+    Kept to `ON_LIMIT`. `low`, `high` (float): range asked for, rad, within 0 to pi/2. `out` (3, 2) float64: written: the
+    intervals, ascending.
     """
     if limit_cos <= -1.0:
         out[0, 0], out[0, 1] = low, high
@@ -230,17 +209,11 @@ def _own_arc(out, count, zero, d, y, radius, ring_radius, floor, ceiling):
 def forbidden(height, px, py, tilt, offset, piece, k, out):
     """Write tilts at which a point is in piece k, the rotation held; how many arcs.
 
-    Parameters
-    ----------
-    height, px, py : float
-        The point at `tilt`, in the tool's frame: height over the centre, x and y from the axis, mm.
-    tilt : float
-        rad.
-    offset : float
-        Distance of the centre from the axis, mm.
-    piece : (k, COLUMNS) float64
-    out : (ARCS, 2) float64, written
-        First and last tilts of arcs, rad; what lies beyond 0 to pi may be missing.
+    `height`, `px`, `py` (float): the point at `tilt`, in the tool's frame: height over the centre, x and y from the axis, mm.
+    `tilt` (float): rad.
+    `offset` (float): distance of the centre from the axis, mm.
+    `piece` (k, COLUMNS) float64.
+    `out` (ARCS, 2) float64, written: first and last tilts of arcs, rad; what lies beyond 0 to pi may be missing.
     """
     kind, radius, low, high = piece[k, KIND], piece[k, RADIUS], piece[k, LOW], piece[k, HIGH]
     if kind == CYLINDER and low >= 0.0 and radius <= offset:

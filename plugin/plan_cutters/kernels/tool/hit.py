@@ -73,22 +73,9 @@ def into_frame(vertex, i, body, rate, corner):
 def triangle_hit(vertex, i, body, piece, mask, rate, scratch):
     """Whether triangle i reaches into a piece of a mask, and a point of it that does. A number that is none counts as a hit.
 
-    Parameters
-    ----------
-    vertex : (n, 3, 3) float64
-    body : (14,) float64
-    piece : (k, COLUMNS) float64
-    mask : int
-        A bit for each piece that is requested.
-    rate : float
-    scratch : Scratch
-
-    Returns
-    -------
-    which : int
-        The piece, -1 for none.
-    height, px, py : float
-        With `rate` 0, a point of the triangle in the piece, in the tool's frame from its axis.
+    `vertex` (n, 3, 3) float64. `body` (14,) float64. `piece` (k, COLUMNS) float64. `mask` (int): a bit for each piece that is
+    requested. Returns `which` (int): the piece, -1 for none. `height`, `px`, `py` (float): with `rate` 0, a point of the triangle
+    in the piece, in the tool's frame from its axis.
     """
     corner = scratch.corner
     widening, least, most, total = into_frame(vertex, i, body, rate, corner)
@@ -166,23 +153,9 @@ def everything(piece):
 def tree_hit(tree, body, piece, rate, hint, scratch):
     """First triangle found that reaches into the tool, the piece, and with `rate` 0 its point.
 
-    Parameters
-    ----------
-    tree : Tree
-    body : (14,) float64
-    piece : (k, COLUMNS) float64
-    rate : float
-    hint : int
-        Triangle to try first (the last one that was in the way), or -1.
-    scratch : Scratch
-        64 pieces let a triangle be halved often enough where `rate` > 0.
-
-    Returns
-    -------
-    triangle, which : int
-        -1 if none.
-    height, px, py : float
-        Its point, as `triangle_hit` gives it.
+    `body` (14,) float64. `piece` (k, COLUMNS) float64. `hint` (int): triangle to try first (the last one that was in the way), or
+    -1. `scratch` (Scratch): 64 pieces let a triangle be halved often enough where `rate` > 0. Returns `triangle`, `which` (int):
+    -1 if none. `height`, `px`, `py` (float): its point, as `triangle_hit` gives it.
     """
     stack, masks, whole = scratch.stack, scratch.masks, everything(piece)
     if hint >= 0:
@@ -296,13 +269,7 @@ def _shadow_distance(polygon, count, half):
 def extruded_hit(vertex, i, body, piece, mask, workspace):
     """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
 
-    Parameters
-    ----------
-    vertex : (n, 3, 3) float64
-    body : (14,) float64
-    piece : (k, COLUMNS) float64
-    mask : int
-    workspace : Scratch
+    `vertex` (n, 3, 3) float64. `body` (14,) float64. `piece` (k, COLUMNS) float64.
     """
     corner, half = workspace.corner, body[HALF]
     _, least, most, total = into_frame(vertex, i, body, 0.0, corner)
