@@ -339,6 +339,7 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     return most
 
 
+#: All of a cutter counts for its clearance but the lowest of its flutes, up to their diameter over the tip, where it works.
 #: Clearances are looked for up to this, mm, and told to this share of them, or to `FINEST`, whichever is more.
 MOST, SHARE, FINEST = 100.0, 0.02, 0.005
 

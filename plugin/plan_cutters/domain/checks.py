@@ -1,6 +1,6 @@
 """Is an argument the kind of thing that it must be? What is not ends in an error that says what was given.
 
-`True` is not taken for 1, nor `"6"` for 6, nor a table for a list: each is rather a mistake than a wish.
+Angles may be given in degrees, by names that end in `_deg`. `True` is not taken for 1, nor `"6"` for 6, nor a table for a list: each is rather a mistake than a wish.
 """
 
 import inspect

@@ -1,4 +1,7 @@
-"""How numbers are written, each form once: lengths, angles, areas, places; what must not be less or more is rounded so."""
+"""How numbers are written, each form once: lengths, angles, areas, places; what must not be less or more is rounded so.
+
+Lengths in the words for cutters and holders are read here, too: `12`, `12mm`, `0.5in`, `1/2in`.
+"""
 
 import functools
 import math

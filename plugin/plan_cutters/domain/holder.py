@@ -1,4 +1,8 @@
-"""Stages: round sections of which necks, shanks and holders are made, and how a holder is written on a command line."""
+"""Stages: round sections of which necks, shanks and holders are made, and how a holder is written on a command line.
+
+Collet chucks are known by word: `er32`, `hsk63a-er32`, `bt40-er16x100`. Around a body of revolution stages are made of which none
+is smaller than what it encloses.
+"""
 
 import math
 import re
@@ -153,6 +157,11 @@ class Holder:
     def of(cls, given: Any) -> "Holder":
         """A holder, or what `parse` makes of a text."""
         return given if isinstance(given, cls) else cls.parse(given)
+
+
+# Collet chucks are outer bounds of what standards and makers make (`docs/tools.md` has their sources). Where makers differ, what
+# is wider is taken, and what is wide begins as near to the tip as it does anywhere: a real chuck lies within the one that is
+# drawn. Nothing is drawn beyond the gauge line: the spindle is not part of a holder.
 
 
 class Nose(NamedTuple):

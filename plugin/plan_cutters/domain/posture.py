@@ -1,4 +1,4 @@
-"""Postures: the range of tilts and rotations to search."""
+"""Postures: the range of tilts and rotations to search, intervals of them as arrays (k, 2), and directions as callers give them."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Which of several cutters is wanted first: by kind, as the faces ask for it, then by size."""
+"""Which of several cutters is wanted first, by kind, as the faces ask for it, then by size; and which lies within which."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -183,6 +183,7 @@ def least_radius(cutter: Cutter) -> float | None:
     return (cutter.corner_radius or cutter.radius) + (cutter.allowance or 0.0)
 
 
+#: The built-in drawer: metric end mills of usual sizes in plain holders, for a first look. They are nobody's tools.
 #: Radius, stick-out, flutes, corner radius of the bull nose (0: none), nose radius of the holder; mm.
 _SIZES = (
     (1, 20, 6, 0, 10.5),

@@ -30,7 +30,7 @@ class StickOut(Record):
     `why`: what limits it: `obstacle`, `floor`, or why nothing was looked for: `no holder`, `reaches nothing`.
     `beyond`: the stick-out just below, with which the limiting sample was searched again; nan where nothing limits.
     `verdict`: what was found there: INACCESSIBLE or UNDECIDED.
-    `sample`: the one that limits it, -1 for none; at `least`, its posture and what is in the way of a shorter one are the next five.
+    `sample`: the one that limits it, -1 for none; at `least`, its posture what is in the way of a shorter one.
     `tilt`, `rotation`: rad.
     `axis`, `tilt_direction` (3,) float.
     `obstacle_point` (3,) float.

@@ -1,4 +1,9 @@
-"""Verdicts: the words and arrays that say what a cutter reaches, and why not where it does not."""
+"""Verdicts: the words and arrays that say what a cutter reaches, and why not where it does not.
+
+The tolerance rule says what a gouge tolerance and the chord error of triangles let be called safe, and prove to be blocked. Every
+point of the surface has a point of the triangles within their chord error, and the reverse. All that judges takes its depths
+from here.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Files as bytes and text: what is too large, packed too tightly or none is one line."""
+"""Files as bytes, text, JSON, XML and zip archives: what is too large, packed too tightly or none is one line."""
 
 import codecs
 import io

@@ -1,5 +1,6 @@
 """This module defines the records that kernels take, as named tuples: the compiler handles these like single values."""
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,28 +28,16 @@ class Tree(NamedTuple):
         return np.asarray(self.vertex[triangle] if triangle < first else self.more_vertex[triangle - first])
 
 
-class Contacts(NamedTuple):
-    """point, normal, direction_max (n, 3): where a cutter may touch, the normal out of the material, and the direction of the
-    larger curvature; curvature (n, 2): kappa_max, kappa_min, 1/mm, concave positive."""
-
-    point: Any
-    normal: Any
-    direction_max: Any
-    curvature: Any
+#: point, normal, direction_max (n, 3): where a cutter may touch, the normal out of the material, and the direction of the larger
+#: curvature; curvature (n, 2): kappa_max, kappa_min, 1/mm, concave positive.
+Contacts = namedtuple("Contacts", "point normal direction_max curvature")
 
 
-class Rotary(NamedTuple):
-    """Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
-    `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards
-    the first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two. aim (a, 3): tool axes
-    towards which each sample's rotations tilt, in place of those requested, where fewer than two axes turn the tool."""
-
-    circle: Any
-    direction: Any
-    limit: Any
-    tool: Any
-    swing: Any
-    aim: Any
+#: Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
+#: `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards the
+#: first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two. aim (a, 3): tool axes
+#: towards which each sample's rotations tilt, in place of those requested, where fewer than two axes turn the tool.
+Rotary = namedtuple("Rotary", "circle direction limit tool swing aim")
 
 
 class Ranges(NamedTuple):
@@ -91,38 +80,15 @@ class Cylinder(NamedTuple):
     piece: Any
 
 
-class Frame(NamedTuple):
-    """Contact p, normal n, tilt direction f, and t = n x f; each (3,)."""
-
-    p: Any
-    n: Any
-    f: Any
-    t: Any
+#: Contact p, normal n, tilt direction f, and t = n x f; each (3,).
+Frame = namedtuple("Frame", "p n f t")
 
 
-class Scratch(NamedTuple):
-    """This is a workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3).
-    looked (1,) int64: boxes looked at since it was made, and what else takes as long. balls (k, 5), stored (2,) int64: balls in
-    bodies, see `material.keep_ball`; of which solids, and how many were stored."""
-
-    stack: Any
-    masks: Any
-    corner: Any
-    drawn: Any
-    polygon: Any
-    spare: Any
-    pieces: Any
-    looked: Any
-    balls: Any
-    stored: Any
+#: A workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3). looked (1,)
+#: int64: boxes looked at since it was made, and what else takes as long. balls (k, 5), stored (2,) int64: balls in bodies, see
+#: `material.keep_ball`; of which solids, and how many were stored.
+Scratch = namedtuple("Scratch", "stack masks corner drawn polygon spare pieces looked balls stored")
 
 
-class VerdictArrays(NamedTuple):
-    """A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`."""
-
-    verdict: Any
-    axis: Any
-    tilt_direction: Any
-    tilt: Any
-    rotation: Any
-    reason: Any
+#: A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`.
+VerdictArrays = namedtuple("VerdictArrays", "verdict axis tilt_direction tilt rotation reason")

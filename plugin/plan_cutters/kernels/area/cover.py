@@ -3,10 +3,11 @@
 Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
 held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above one that is lower by no
 more than is allowed: nothing to test. Everything else is tested against the cutter moved along with the contact: each of its
-pieces larger, and drawn out across the axis, for the directions in which the contact wanders and the cutter turns about its
+pieces larger, and drawn out across the axis (lemmas B10, B13 and B16), for the directions in which the contact wanders and the cutter turns about its
 axis.
 """
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, CONE, HIGH, KIND, L
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.tree import half, half_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import mode_at
 from plan_cutters.kernels.tool import hit
 from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y, alive
@@ -44,19 +45,9 @@ BODIES = 27
 _TRIANGLE = 2
 
 
-class Workspace(NamedTuple):
-    """This is a workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, those of a tool whose axis
-    turns, bounds of curvature, what counts as near.
-    """
-
-    f: Any
-    t: Any
-    bodies: Any
-    pieces: Any
-    swung: Any
-    near: Any
-    seen: Any
-    scratch: Scratch
+#: A workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, those of a tool whose axis turns, bounds of
+#: curvature, what counts as near.
+Workspace = namedtuple("Workspace", "f t bodies pieces swung near seen scratch")
 
 
 @kernel
@@ -229,24 +220,12 @@ _LEANING, _ABOUT, _LEVEL = 0, 1, 2
 _NEAR, _ALONG = 4.0, 1e-9
 
 
-class Patches(NamedTuple):
-    """Contacts on one face, each with the patch about it that its axis may serve.
-
-    point, normal, axis (n, 3). tensor (n, 3, 3): second fundamental form in part coordinates, 1/mm, concave positive.
-    flat (n,) bool: interference-free, the axis is the normal in any tilt direction. side (n, 3): unit tilt direction where the
-    axis is the normal all over the patch. patch (n,): its radius, mm; nan: not decided.
-    home (n, 2) int32: the grid node in whose cell the contact lies.
-    """
-
-    point: Any
-    normal: Any
-    tensor: Any
-    axis: Any
-    flat: Any
-    side: Any
-    patch: Any
-    home: Any
-    swing: Any
+#: Contacts on one face, each with the patch about it that its axis may serve.
+#: point, normal, axis (n, 3). tensor (n, 3, 3): second fundamental form in part coordinates, 1/mm, concave positive. flat (n,)
+#: bool: interference-free, the axis is the normal in any tilt direction. side (n, 3): unit tilt direction where the axis is the
+#: normal all over the patch. patch (n,): its radius, mm; nan: not decided. home (n, 2) int32: the grid node in whose cell the
+#: contact lies.
+Patches = namedtuple("Patches", "point normal tensor axis flat side patch home swing")
 
 
 class Sweeping(NamedTuple):

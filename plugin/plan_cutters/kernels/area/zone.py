@@ -1,6 +1,11 @@
-"""How the surface around a contact is held below a paraboloid: bounds of curvature over the nodes of its face's grid."""
+"""How the surface around a contact is held below a paraboloid: bounds of curvature over the nodes of its face's grid.
 
-from typing import Any, NamedTuple
+Near a contact curvature alone keeps the surface from going too deep (`extent`): the lemmas are those of
+`docs/between_samples.md`, "Near the contact: curvature".
+"""
+
+from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,17 +33,11 @@ class Nose(NamedTuple):
     high: float
 
 
-class Nodes(NamedTuple):
-    """A face's grid: index (nu, nv) int32 into the rows of `about`, -1 outside the trim; closed (2,) bool.
-
-    about (k, 16): point (3) and normal (3) of a node; its curvature tensor's elements xx, xy, xz, yy, yz, zz; then how far the
-    tensor may differ in the node's cell, 1/mm; the radius of that cell, mm; and the most that a principal curvature, and the
-    difference of two, may be in it, 1/mm. nan where these are not known.
-    """
-
-    index: Any
-    closed: Any
-    about: Any
+#: A face's grid: index (nu, nv) int32 into the rows of `about`, -1 outside the trim; closed (2,) bool.
+#: about (k, 16): point (3) and normal (3) of a node; its curvature tensor's elements xx, xy, xz, yy, yz, zz; then how far the
+#: tensor may differ in the node's cell, 1/mm; the radius of that cell, mm; and the most that a principal curvature, and the
+#: difference of two, may be in it, 1/mm. nan where these are not known.
+Nodes = namedtuple("Nodes", "index closed about")
 
 
 @kernel
@@ -104,22 +103,14 @@ def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):
     return False
 
 
-class Seen(NamedTuple):
-    """This record holds what was found out about the surface around a contact.
-
-    most (EXTENTS, 7): row k holds, over the nodes whose cells come within distance k of any contact of the patch, but not within
-    distance k - 1: the largest normal curvature along f and t, the largest mixed term, the largest curvature and spread of
-    curvatures, the largest square of the distance between the nodes' normals and n, and the largest radius of a cell.
-    lines (4,) int: grid lines looked at before and after the home node, along u and along v. nearest (4,): how far from the
-    patch the nodes on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim. looked (1,) int:
-    nodes looked at since this record was made.
-    """
-
-    most: Any
-    lines: Any
-    nearest: Any
-    gap: Any
-    looked: Any
+#: It holds what was found out about the surface around a contact.
+#: most (EXTENTS, 7): row k holds, over the nodes whose cells come within distance k of any contact of the patch, but not within
+#: distance k - 1: the largest normal curvature along f and t, the largest mixed term, the largest curvature and spread of
+#: curvatures, the largest square of the distance between the nodes' normals and n, and the largest radius of a cell. lines (4,)
+#: int: grid lines looked at before and after the home node, along u and along v. nearest (4,): how far from the patch the nodes
+#: on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim. looked (1,) int: nodes looked at
+#: since this record was made.
+Seen = namedtuple("Seen", "most lines nearest gap looked")
 
 
 @maker

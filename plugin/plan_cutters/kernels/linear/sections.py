@@ -1,6 +1,7 @@
 """How far a face goes through a point: along lines on it, where a wall ends, and in a plane across it, the length of a pass."""
 
 import math
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -100,13 +101,8 @@ class OneFace(NamedTuple):
     number: int
 
 
-class _Workspace(NamedTuple):
-    """This is a workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64."""
-
-    side: Any
-    ends: Any
-    limit: Any
-    stack: Any
+#: A workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64.
+_Workspace = namedtuple("_Workspace", "side ends limit stack")
 
 
 @kernel
@@ -167,11 +163,8 @@ def extents(point, ruling, normal, own, band, low, high):
 _SAME = 1e-7
 
 
-class _Pieces(NamedTuple):
-    """Pieces of a section, (t, 4) as the ends' places along and over the face, and which of them have been counted (t,)."""
-
-    ends: Any
-    counted: Any
+#: Pieces of a section, (t, 4) as the ends' places along and over the face, and which of them have been counted (t,).
+_Pieces = namedtuple("_Pieces", "ends counted")
 
 
 @kernel

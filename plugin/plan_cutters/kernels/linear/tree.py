@@ -9,8 +9,12 @@ no pointers are kept. Splitting is at the median of the triangles' centres along
 Data that are used together lie together: centres move with their triangles, and the nodes below a node are done before the
 next node of its level, so that all but the uppermost levels run in the processor's cache. Corners lie coordinate by
 coordinate, so that several can be processed at a time.
+
+There are two trees, one of what is shared and one of what is added: kernels walk one after the other (`half`). Eight boxes or
+triangles of a tree, side by side in the lanes of the processor, are seen from a contact at a time (`wide_tree`).
 """
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,15 +23,8 @@ from plan_cutters.kernels.codes import BOX, CENTRE, DIAGONAL, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
-#: Triangles looked at together.
+#: Boxes and triangles looked at together.
 LANES = 8
-
-
-@kernel
-def _swap(order, centre, i, j):
-    order[i], order[j] = order[j], order[i]
-    for k in range(3):
-        centre[k, i], centre[k, j] = centre[k, j], centre[k, i]
 
 
 @kernel
@@ -43,7 +40,9 @@ def _select(order, centre, axis, lo, hi, nth):
             while centre[axis, j] > pivot:
                 j -= 1
             if i <= j:
-                _swap(order, centre, i, j)
+                order[i], order[j] = order[j], order[i]
+                for k in range(3):
+                    centre[k, i], centre[k, j] = centre[k, j], centre[k, i]
                 i += 1
                 j -= 1
         if nth <= j:
@@ -138,19 +137,9 @@ def _reach(corner, lo, hi, middle, axes, workspace):
             least[k], most[k] = min(least[k], lows[k, lane]), max(most[k], highs[k, lane])
 
 
-class _Workspace(NamedTuple):
-    """This is a workspace for bounding a node: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by
-    its level; middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, LANES).
-    """
-
-    low: Any
-    high: Any
-    middle: Any
-    axes: Any
-    least: Any
-    most: Any
-    lows: Any
-    highs: Any
+#: A workspace for bounding a node: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by its level;
+#: middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, LANES).
+_Workspace = namedtuple("_Workspace", "low high middle axes least most lows highs")
 
 
 @kernel
@@ -313,10 +302,6 @@ def half_of(tree, triangle):
     if triangle < first:
         return tree.vertex, triangle
     return tree.more_vertex, triangle - first
-
-
-#: Boxes and triangles looked at together.
-LANES = 8
 
 
 class WideTree(NamedTuple):

@@ -1,5 +1,6 @@
 """Take the tilts that a point or a triangle forbids out of the intervals of a rotation, piece by piece of the tool."""
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,7 +38,6 @@ from plan_cutters.kernels.maps.planes import (
     put_ends,
     triangles_clear,
 )
-from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, point_arc
 from plan_cutters.kernels.tool.hit import _swept_hit, scratch, stand, triangle_hit
@@ -47,28 +47,10 @@ from plan_cutters.kernels.tool.pieces import inset
 _QUARTERED = 4
 
 
-class Workspace(NamedTuple):
-    """This is a workspace: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
-
-    In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
-    of a triangle, and how often each was cut. `spent` (1,) counts how often a triangle was looked at: the work that it took.
-    """
-
-    corner: Any
-    first: Any
-    second: Any
-    body: Any
-    ranges: Any
-    arcs: Any
-    seen: Any
-    turned: Any
-    end: Any
-    clear: Any
-    moves: Any
-    parts: Any
-    times: Any
-    spent: Any
-    scratch: Scratch
+#: A workspace: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
+#: In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
+#: of a triangle, and how often each was cut. `spent` (1,) counts how often a triangle was looked at: the work that it took.
+Workspace = namedtuple("Workspace", "corner first second body ranges arcs seen turned end clear moves parts times spent scratch")
 
 
 @maker

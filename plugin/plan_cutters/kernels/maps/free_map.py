@@ -187,13 +187,6 @@ def _take_box(view, slot, lane, turn, interval, count, turning, mask, arcs):
 
 
 @kernel
-def _leave_undecided(interval, count):
-    """Count all that is left as undecided."""
-    for g in range(count):
-        interval[INTERVALS, UF] += interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
-
-
-@kernel
 def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, low, narrowest, wide, seen, workspace):
     """Take the intervals of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
 
@@ -262,7 +255,8 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                     tally[0] += 1
                 if coming == _QUEUE:
                     # Too much in the way to be told apart: nothing here is called free.
-                    _leave_undecided(interval, count)
+                    for g in range(count):
+                        interval[INTERVALS, UF] += interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
                     return 0
                 ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, remaining[lane]
                 coming += 1
@@ -353,12 +347,8 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
         if ball >= 0:
             for i in range(PIECE):
                 alone[0, i] = piece[ball, i]
-            alone[0, codes.LOW], alone[0, codes.HIGH], alone[0, codes.BOTTOM], alone[0, codes.TOP] = (
-                -np.inf,
-                np.inf,
-                -alone[0, codes.ROUND],
-                alone[0, codes.ROUND],
-            )
+            alone[0, codes.LOW], alone[0, codes.HIGH] = -np.inf, np.inf
+            alone[0, codes.BOTTOM], alone[0, codes.TOP] = -alone[0, codes.ROUND], alone[0, codes.ROUND]
         for place in range(len(rows)):
             row = rows[place]
             p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]

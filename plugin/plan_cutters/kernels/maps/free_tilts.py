@@ -5,7 +5,7 @@ A range of tilts is free if the body, widened by half the range times the distan
 the widened body is, the range is halved. Ranges narrower than `narrowest` stay undecided.
 """
 
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from plan_cutters.kernels.codes import OFFSET_OF
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.linear.vectors import cross
-from plan_cutters.kernels.rows import Frame, Ranges, Scratch
+from plan_cutters.kernels.rows import Frame, Ranges
 from plan_cutters.kernels.search.place import arc_of, put
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.arcs import ARCS, local_gouge
@@ -23,14 +23,8 @@ from plan_cutters.kernels.tool.hit import scratch, tree_hit
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
-class Parts(NamedTuple):
-    """This is a workspace: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists for walks."""
-
-    parts: Any
-    pending: Any
-    arcs: Any
-    body: Any
-    scratch: Scratch
+#: A workspace: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists for walks.
+Parts = namedtuple("Parts", "parts pending arcs body scratch")
 
 
 @entry

@@ -2,6 +2,9 @@
 
 The sides are those of lemmas M1 to M3 of `docs/posture_map_proof.md`. A triangle's polygon has rows (x, y, z) from the contact.
 Eight at a time go without a branch, so that the compiler uses the lanes of the processor.
+
+An interval of tilts at a rotation is a row: the tilts between which it lies, their cosines and sines, and how far its ends may
+be off. What passes an interval passes all that is left of it.
 """
 
 import numpy as np
@@ -52,14 +55,6 @@ def _end(interval, g, tilt, unsure):
 
 
 @kernel
-def _drop(interval, g, count):
-    """Take an interval out, its bands with it; the new count."""
-    for k in range(COLUMNS):
-        interval[g, k] = interval[count - 1, k]
-    return count - 1
-
-
-@kernel
 def _part(interval, g, count, left, right, unsure):
     """Take the tilts between `left` and `right`, within an interval, out of it; the new count.
 
@@ -88,7 +83,10 @@ def _part(interval, g, count, left, right, unsure):
         _end(interval, g, left, unsure)
     else:
         interval[INTERVALS, UF] += interval[g, UF] + interval[g, UL] + min(b - a, unsure)
-        return _drop(interval, g, count)
+        # The interval goes, its bands with it.
+        for k in range(COLUMNS):
+            interval[g, k] = interval[count - 1, k]
+        return count - 1
     return count
 
 

@@ -5,9 +5,13 @@ point it meets from all places nearer to that point than the piece's radius at t
 forbids at least what is nearer to a part of it than a radius: a convex polygon, grown. Places are left only outside all of these
 and within the flat's radius. If any are left there is one among few: on the rim of the flat, or where two borders cross
 (`docs/at_a_sample.md`, lemma S6). Each place is tried with all of the tool, as a search tries a posture.
+
+A tool whose straight flank lies along a surface touches with any point of it: the tool slides by its length, and the contact
+stays. A point that is in a piece of the tool is in it over one interval of the slide, for a piece is convex; what is left is
+probed, as a search probes tilts.
 """
 
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -34,12 +38,12 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.jit import entry, kernel, maker
 from plan_cutters.kernels.linear.tree import half_of
 from plan_cutters.kernels.linear.vectors import cross, dot
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at, next_tilt
 from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
 from plan_cutters.kernels.tool.arcs import remove
 from plan_cutters.kernels.tool.hit import deep_hit, everything, into_frame, scratch, stand, triangle_hit
-from plan_cutters.kernels.tool.pieces import clipped, shadow_area
+from plan_cutters.kernels.tool.pieces import clipped, inset, shadow_area
 
 #: What a place is: none, none that could be (proved), or one where the tool was put down.
 NONE, FORBIDDEN, PLACED = 0, 1, 2
@@ -54,22 +58,10 @@ _SHARE, _APART, _ROUNDING = 1e-6, 1e-7, 1e-9
 LEAST_SHARE = 1e-6
 
 
-class Flat(NamedTuple):
-    """This is a workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5),
-    the lines (0, from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden,
-    margin (p,), and whether it is open (p,). counts (3,): how many of each there are. A body for the tool."""
-
-    corner: Any
-    corners: Any
-    radius: Any
-    border: Any
-    place: Any
-    margin: Any
-    open_: Any
-    counts: Any
-    body: Any
-    y: Any
-    scratch: Scratch
+#: A workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5), the lines (0,
+#: from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden, margin (p,), and
+#: whether it is open (p,). counts (3,): how many of each there are. A body for the tool.
+Flat = namedtuple("Flat", "corner corners radius border place margin open_ counts body y scratch")
 
 
 @maker
@@ -406,29 +398,16 @@ _HALVINGS = 20
 
 
 @kernel
-def _holds(piece, k, height, x, y):
-    """Whether a point in the tool's frame lies in piece k."""
-    if not piece[k, LOW] < height < piece[k, HIGH]:
-        return False
-    q = np.sqrt(x * x + y * y)
-    if piece[k, KIND] == ARC:
-        away = max(0.0, q - piece[k, RADIUS])
-        return away * away + (height - piece[k, SLOPE]) ** 2 < piece[k, ROUND] ** 2
-    return q < piece[k, RADIUS] + piece[k, SLOPE] * (height - piece[k, LOW])
-
-
-@kernel
 def _end(piece, k, point, step, length):
     """How far the tool may slide, up to `length`, and surely still hold a point of piece k, which goes `step` for each mm."""
-    if _holds(piece, k, point[0] + length * step[0], point[1] + length * step[1], point[2]):
-        return length
-    held, free = 0.0, length
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (held + free)
-        if _holds(piece, k, point[0] + middle * step[0], point[1] + middle * step[1], point[2]):
-            held = middle
+    held, free, slide = 0.0, length, length
+    for _ in range(_HALVINGS + 1):
+        x = point[1] + slide * step[1]
+        if inset(piece, k, point[0] + slide * step[0], x * x + point[2] * point[2]) > 0.0:
+            held = slide
         else:
-            free = middle
+            free = slide
+        slide = 0.5 * (held + free)
     return held
 
 

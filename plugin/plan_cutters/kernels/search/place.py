@@ -1,5 +1,6 @@
 """Place a tool at a contact, find the tilts that are left there and the reasons that forbid others, for all searches."""
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,7 +38,6 @@ from plan_cutters.kernels.material import (
     way_out,
     winding,
 )
-from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X
 from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, local_gouge, remove
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
@@ -196,19 +196,9 @@ def enclosed(contacts, row, proof, scratch):
     return False
 
 
-class Workspace(NamedTuple):
-    """This is a workspace: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
-    tally by attribute; `proved` (1,) int64, whether the sample was looked at as `enclosed` does, and is."""
-
-    intervals: Any
-    arcs: Any
-    f: Any
-    t: Any
-    e2: Any
-    body: Any
-    tally: Any
-    scratch: Scratch
-    proved: Any
+#: A workspace: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a tally by
+#: attribute; `proved` (1,) int64, whether the sample was looked at as `enclosed` does, and is.
+Workspace = namedtuple("Workspace", "intervals arcs f t e2 body tally scratch proved")
 
 
 @maker
@@ -299,19 +289,11 @@ def booked(tally):
 def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace):
     """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the tool; the new count."""
     offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
-    piece = tool.piece[mode]
+    piece, arcs = tool.piece[mode], workspace.arcs
     for k in range(len(piece)):
-        blocked = forbidden(height, x + offset, y, 0.0, offset, piece, k, workspace.arcs)
-        for i in range(blocked):
-            count = forbid(
-                intervals,
-                count,
-                workspace.arcs[i, 0],
-                workspace.arcs[i, 1],
-                narrowest,
-                _attribute(x, y, z, tool, mode, k),
-                workspace.tally,
-            )
+        for i in range(forbidden(height, x + offset, y, 0.0, offset, piece, k, arcs)):
+            attribute = _attribute(x, y, z, tool, mode, k)
+            count = forbid(intervals, count, arcs[i, 0], arcs[i, 1], narrowest, attribute, workspace.tally)
     return count
 
 

@@ -8,8 +8,14 @@ so does every posture that it can be turned to without touching a skin.
 
 Curvature at the contact only tells where to look first: a posture that it forbids is one as well if the triangles prove that
 no point of the surface is too deep.
+
+Of a row of tools, each within the next, the largest that finds a posture is searched from the answer at the sample before: up or
+down by 1, 2, 4 ... tools until the answer lies between two of them, then what is between is halved. A tool is asked for a posture
+at the rotation found last; where that has none, what is surely in the way is asked next, for it answers for all rotations and
+mostly ends the search: an inaccessible tool costs one search without success, not two (`docs/nested_cutters_proof.md`, lemma N4).
 """
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,11 +49,10 @@ from plan_cutters.kernels.search.place import (
     lies_within,
     mode_at,
     permitted,
-    search_workspace,
     straight,
     straightened,
 )
-from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, memory, sweep, sweep_both
+from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, sweep, sweep_both
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
@@ -147,9 +152,9 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
     rotations, (outer_tool, inner_tool), (possible, certain) = len(ranges.rotation_cos), tools, solids
     # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
     pasts, workspaces = both(rotations, len(outer_tool.mode))
-    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, mode.most, pasts, proof)
-    pasts, _ = both(rotations if mode.decides else 0, len(inner_tool.mode))
-    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, mode.most, pasts, proof)
+    met, _ = both(rotations if mode.decides else 0, len(inner_tool.mode))
+    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, mode.most, proof)
+    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, mode.most, proof)
     start, at = (mode.start, mode.start), mode.at
     last, freed, missed, tilt = start, start, False, 0.0
     while at < len(rows) and not (mode.stops and missed):
@@ -160,14 +165,14 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
             if of_inner and not mode.decides:
                 continue
             if of_inner:
-                rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, mode.turns, workspaces)
+                rotation, _, freed = sweep_both(contacts, row, ranges, inner, met, freed, mode.turns, workspaces)
                 sure = rotation == NONE
             elif missed and shut_in(contacts, row, mode.deep, possible, workspaces[0].scratch):
                 # As its neighbour was: a search would put the tool down in the body again and again.
                 results.reason[row] = INSIDE
                 continue
             else:
-                rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, mode.turns, workspaces)
+                rotation, tilt, last = sweep_both(contacts, row, ranges, outer, pasts, last, mode.turns, workspaces)
                 missed = rotation < 0
             if rotation < 0 and mode.decides:
                 results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
@@ -231,7 +236,8 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
     rotations, modes = len(ranges.rotation_cos), len(inner_tool.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
-    obstacle_cache, (workspace, other) = memory(rotations, modes, True), (search_workspace(), search_workspace())
+    pasts, (other, workspace) = both(rotations, modes)
+    side = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, WITHOUT_END, Proof(_NOWHERE, 0.0, certain))
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
@@ -251,22 +257,7 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
             reason[row] = AXIS_LIMIT
         elif not curvature_remains:
             # As `search` would have told it.
-            start = START[1]
-            sweep(
-                contacts,
-                row,
-                ranges,
-                inner_tool,
-                certain,
-                SURELY_INSIDE,
-                _NO_INTERVAL,
-                WITHOUT_END,
-                start,
-                rotations,
-                obstacle_cache,
-                Proof(_NOWHERE, 0.0, certain),
-                workspace,
-            )
+            sweep(contacts, row, ranges, side, START[1], rotations, pasts[1], workspace)
             other.tally[:] = 0.0
             other.tally[AXIS_LIMIT] = 1.0
             reason[row] = _reason(other.tally, workspace.tally)
@@ -284,24 +275,30 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
     `stands` (n,) bool, written: False also at a tilt at which the tool does not touch.
     Returns how many boxes were looked at.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    workspace = scratch()
-    hint = -1
+    body, f, t, workspace, hint = np.empty(BODY), np.empty(3), np.empty(3), scratch(), -1
     for row in rows:
         stands[row] = False
-        n, share = normal[row], straightened(tilt_direction[row], f)
-        cross(n, f, t)
-        cosine, sine = dot(axis[row], n), dot(axis[row], f)
-        mode = mode_at(tool, np.arctan2(sine, cosine))
+        mode = _stand_as_given(row, point, normal, axis, tilt_direction, tool, body, f, t)
         if mode < 0:
             continue
-        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
         triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
         if triangle >= 0:
             hint = triangle
             continue
         stands[row] = not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
     return workspace.looked[0]
+
+
+@kernel
+def _stand_as_given(row, point, normal, axis, tilt_direction, tool, body, f, t):
+    """Put a tool down in a posture that is given; the mode in which it touches, -1 for none."""
+    n, share = normal[row], straightened(tilt_direction[row], f)
+    cross(n, f, t)
+    cosine, sine = dot(axis[row], n), dot(axis[row], f)
+    mode = mode_at(tool, np.arctan2(sine, cosine))
+    if mode >= 0:
+        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+    return mode
 
 
 @entry
@@ -312,18 +309,12 @@ def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which
     axis, tilt direction: a unit vector, or shorter with the contact under the flat. `tool`: without what does not matter.
     `triangle`, `which` (n,) int32, written: at a tilt at which the tool does not touch: -2.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    workspace = scratch()
-    hint = -1
+    body, f, t, workspace, hint = np.empty(BODY), np.empty(3), np.empty(3), scratch(), -1
     for row in rows:
-        n, share = normal[row], straightened(tilt_direction[row], f)
-        cross(n, f, t)
-        cosine, sine = dot(axis[row], n), dot(axis[row], f)
-        mode = mode_at(tool, np.arctan2(sine, cosine))
+        mode = _stand_as_given(row, point, normal, axis, tilt_direction, tool, body, f, t)
         if mode < 0:
             triangle[row], which[row] = -2, -2
             continue
-        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
         triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, workspace)
         if triangle[row] >= 0:
             hint = triangle[row]
@@ -337,9 +328,7 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     the way. `clear` (n,) bool, written: True where nothing reaches into the dummy, and the dummy lies in no body. Returns how
     many boxes were looked at.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    workspace = scratch()
-    hint = -1
+    body, f, t, workspace, hint = np.empty(BODY), np.empty(3), np.empty(3), scratch(), -1
     for row in rows:
         n = contacts.normal[row]
         perpendicular(n, f)
@@ -352,21 +341,17 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     return workspace.looked[0]
 
 
-class Ladder(NamedTuple):
-    """Tools from the smallest up: piece (tools, m, k, COLUMNS), mode (tools, m, 5), reach, inner and end (tools,), each as in
-    `Tool`."""
-
-    piece: Any
-    mode: Any
-    reach: Any
-    inner: Any
-    end: Any
+#: Tools from the smallest up: piece (tools, m, k, COLUMNS), mode (tools, m, 5), reach, inner and end (tools,), each as in `Tool`.
+Ladder = namedtuple("Ladder", "piece mode reach inner end")
 
 
 class _Sides(NamedTuple):
-    """This record is a `Side` of many tools: the tools; `piece` and `mode`, a workspace for one of them; the rest as there."""
+    """This record is a `Side` of many tools: the tools; `piece` and `mode`, a workspace for one of them; the rest as there.
 
-    tools: Ladder
+    pasts: the obstacle caches, one for each kind of sweep.
+    """
+
+    tools: Any
     piece: Any
     mode: Any
     solids: Solids
@@ -387,8 +372,8 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
             for column in range(piece.shape[2]):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
-    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.pasts, side.proof)
-    return sweep_both(contacts, row, ranges, one, starts, turns, workspaces)
+    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.proof)
+    return sweep_both(contacts, row, ranges, one, side.pasts, starts, turns, workspaces)
 
 
 @kernel

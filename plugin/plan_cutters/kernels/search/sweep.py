@@ -67,8 +67,8 @@ class Side(NamedTuple):
     """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones.
 
     It holds the tool; the obstacles; the winding number from which a posture lies within a body; the angular resolution, rad:
-    narrower intervals of tilts are passed over; the boxes looked at after which a sweep is given up; the obstacle caches,
-    one for each kind of sweep; and how one look proves that there is no posture.
+    narrower intervals of tilts are passed over; the boxes looked at after which the rotations that are left are not looked at;
+    and how one look proves that there is no posture (`place.Proof`).
     """
 
     tool: Any
@@ -76,7 +76,6 @@ class Side(NamedTuple):
     within: float
     narrowest: float
     most: int
-    pasts: Any
     proof: Any
 
 
@@ -142,15 +141,13 @@ def _deepest(obstacle_cache, count, turn, tilt, tool, mode):
 
 
 @kernel
-def _rotation(
-    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, last, wish, frame, obstacle_cache, pooled, proof,
-    workspace,
-):  # fmt: skip
+def _rotation(contacts, row, ranges, rotation, mode, side, last, wish, frame, obstacle_cache, pooled, workspace):
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact).
 
     Tilts that are left when the boxes looked at, in all, are more than `last` are not looked at. The first posture that lies
     within a body has the sample looked at as `enclosed` does, once: where that proves it, no tilt is left at all.
     """
+    tool, solids, within, narrowest = side.tool, side.solids, side.within, side.narrowest
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
     intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
     turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
@@ -186,7 +183,7 @@ def _rotation(
                     obstacle_cache.count[place] = written
                     return tilt, pooled
                 if workspace.proved[0] == _NEVER:
-                    workspace.proved[0] = _PROVED if enclosed(contacts, row, proof, workspace.scratch) else _TRIED
+                    workspace.proved[0] = _PROVED if enclosed(contacts, row, side.proof, workspace.scratch) else _TRIED
                 if workspace.proved[0] == _PROVED:
                     return -1.0, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
@@ -213,52 +210,32 @@ def _rotation(
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, turns, obstacle_cache, proof, workspace):
+def sweep(contacts, row, ranges, side, start, turns, obstacle_cache, workspace):
     """Look for a posture of one sample at all rotations, those next to the first looked at first.
 
-    It looks among the tilts that `obstacle_cache` is about.
+    It looks among the tilts that `obstacle_cache` is about, which it reads and writes.
 
-    `row` (int): the sample.
-    `tool`: the outer or the inner tool.
-    `solids`: the possible or the certain obstacles.
-    `within` (float): winding number from which a posture lies within a body.
-    `narrowest` (float): intervals of tilt narrower than this are passed over, rad.
-    `most` (int): boxes after which the rotations that are left are not looked at.
+    `row`: the sample.
+    `side` (Side): tool and obstacles, both possible or both certain.
     `start` (int, float): rotation to begin with, and the tilt that is tried first at each.
     `turns` (int): how many rotations to look at.
-    `obstacle_cache` (Memory), read and written.
     `workspace`: forbidden tilts are booked in its tally, by reason.
-    Returns `rotation` (int): `NONE` if there is no posture, `UNFINISHED` if none was found among the rotations looked at. `tilt`
-      (float): rad.
+    Returns the rotation, `NONE` if there is no posture, `UNFINISHED` if none was found among the rotations looked at; the tilt,
+      rad.
     """
     p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], workspace.e2
     f, t, tally = workspace.f, workspace.t, workspace.tally
     cross(n, e1, e2)
-    frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
+    frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(side.tool.mode)
     tally[:], workspace.proved[0] = 0.0, _NEVER
-    pooled, last = -1, workspace.scratch.looked[0] + most
+    pooled, last = -1, workspace.scratch.looked[0] + side.most
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
         workspace.scratch.looked[0] += ROTATION * modes
         for mode in range(modes):
             tilt, pooled = _rotation(
-                contacts,
-                row,
-                ranges,
-                rotation,
-                tool,
-                mode,
-                solids,
-                within,
-                narrowest,
-                last,
-                start[1],
-                frame,
-                obstacle_cache,
-                pooled,
-                proof,
-                workspace,
+                contacts, row, ranges, rotation, mode, side, last, start[1], frame, obstacle_cache, pooled, workspace
             )
             if tilt >= 0.0:
                 return rotation, tilt
@@ -277,25 +254,20 @@ def both(rotations, modes):
 
 
 @kernel
-def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
+def sweep_both(contacts, row, ranges, side, pasts, starts, turns, workspaces):
     """Search as `sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
 
-    `side` is a `Side`, `starts` and `workspaces` are one for each kind of sweep, as `sweep` takes them. The two remember nothing
-    of each other, so that a sample that needs the others moves no posture of the samples after it. Returns rotation and tilt, and
-    the starts for the next sample.
+    `pasts`, `starts` and `workspaces` are one for each kind of sweep, as `sweep` takes them. The two remember nothing of each
+    other, so that a sample that needs the others moves no posture of the samples after it. Returns rotation and tilt, and the
+    starts for the next sample.
     """
-    tool, solids, within, narrowest, most, pasts, proof = side
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, most, starts[0], turns, pasts[0], proof, workspaces[0]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, side, starts[0], turns, pasts[0], workspaces[0])
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
     if ranges.strict or rotation == UNFINISHED or workspaces[0].proved[0] == _PROVED:
         workspaces[1].tally[:] = 0.0
         return rotation, 0.0, starts
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, most, starts[1], turns, pasts[1], proof, workspaces[1]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, side, starts[1], turns, pasts[1], workspaces[1])
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
     if workspaces[1].proved[0] == _PROVED:

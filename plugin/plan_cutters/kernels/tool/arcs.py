@@ -1,4 +1,12 @@
-"""Compute ranges of tilt in closed form: those that an obstacle point forbids, and that a local gouge or an axis limit leaves."""
+"""Compute ranges of tilt in closed form: those that an obstacle point forbids, and that a local gouge or an axis limit leaves.
+
+Turning the tool about the line through its centre along y_T keeps a point's distance d from that line and shifts its angle
+`alpha`, counted from the direction centre -> axis towards the spindle. The point then stands `offset - d cos(alpha)` from the
+axis along x_T and at the height `d sin(alpha)`. Arcs may be too short, never too long: "inaccessible" rests on them.
+
+Sorted intervals of tilt are rows (first, last) of an array with spare ones at its end; `domain.posture` does the same with arrays
+of their own, a test holds the two against each other. Those whose ends are known only to a band are in `maps.passes`.
+"""
 
 import numpy as np
 

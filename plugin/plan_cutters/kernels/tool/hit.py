@@ -11,6 +11,9 @@ One walk of the tree serves all pieces: a piece that is apart from a box is not 
 `rate` widens all pieces, at a point Q, by `rate` times the distance of Q from the line through the centre along y_T. Tilting
 turns the tool about that line, and turning by at most `rate` moves Q by no more than that in the tool's frame: a miss with
 `rate` is a miss at every tilt within that turn (lemma S5).
+
+A piece drawn out by `half` to either side, what a cutter sweeps while its contact wanders, meets a triangle exactly if the piece
+itself meets the triangle drawn out: a prism, whose faces are polygons (`extruded_hit`).
 """
 
 import numpy as np
@@ -232,13 +235,6 @@ def deep_hit(tree, body, piece, scratch):
 
 
 @kernel
-def _to_segment(px, py, half):
-    """Squared distance of a point from the segment (0, -half) (0, half)."""
-    py -= min(half, max(-half, py))
-    return px * px + py * py
-
-
-@kernel
 def _shadow_distance(polygon, count, half):
     """Squared distance between the shadow of a convex polygon and the segment (0, -half) (0, half)."""
     area = shadow_area(polygon, count)
@@ -248,7 +244,8 @@ def _shadow_distance(polygon, count, half):
         j = i + 1 if i + 1 < count else 0
         xi, yi = polygon[i, 1], polygon[i, 2]
         ex, ey = polygon[j, 1] - xi, polygon[j, 2] - yi
-        best = min(best, _to_segment(xi, yi, half))
+        off = yi - min(half, max(-half, yi))
+        best = min(best, xi * xi + off * off)
         # The segment's ends against the side, and whether one of them (the lower) lies within the polygon.
         square = ex * ex + ey * ey
         for end in (-half, half):
