@@ -13,37 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record
+from plan_cutters.domain import pieces
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.pieces import (
-    HAIR,
-    PARTS,
-    Band,
-    Kind,
-    alone,
-    among,
-    band_row,
-    between,
-    flute_rows,
-    kink,
-    least_depth,
-    opening,
-    row_of,
-    seam,
-    sharpest,
-    solid,
-)
-from plan_cutters.domain.shapes import (
-    MOST_PIECES,
-    Flank,
-    Mode,
-    flanks,
-    flute_length,
-    modes,
-    rim_length,
-    rim_radius,
-    stages,
-    top_flank_angle,
-)
+from plan_cutters.domain.pieces import HAIR, PARTS, Band, Kind
+from plan_cutters.domain.shapes import MOST_PIECES, Flank, flanks, flute_length, modes, rim_length, rim_radius, top_flank_angle
 from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts
 from plan_cutters.errors import CutterError
 from plan_cutters.kernels.codes import (
@@ -207,43 +180,45 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
     that counts is outside the pieces. `inner`: every point of the pieces counts.
     """
     flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
-    bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
+    bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in cutter.stages]
     top = flute_length(cutter)
     rows = []
     if kind == "inner" or not bands:
         # Grown ones end with square edges, which may hold too much, or below all edges.
-        rows += flute_rows(cutter, flutes, top + flutes if kind == "inner" and flutes < 0.0 else top - flutes, kind)
+        rows += pieces.flute_rows(cutter, flutes, top + flutes if kind == "inner" and flutes < 0.0 else top - flutes, kind)
         for band in bands:
-            rows += alone(band)
+            rows += pieces.alone(band)
     else:
         first = bands[0]
         straight = (rim_length(cutter), first.stage.length if first.stage.slope >= 0.0 else 0.0)
-        end, start = seam(rim_radius(cutter), flutes, first.stage.radius, first.inset, top, straight)
+        end, start = pieces.seam(rim_radius(cutter), flutes, first.stage.radius, first.inset, top, straight)
         if cutter.shape == "lollipop":
-            rows += opening(cutter, flutes, top)
+            rows += pieces.opening(cutter, flutes, top)
         else:
-            rows += between(rim_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
+            rows += pieces.between(rim_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
                             min(flutes, first.inset), FLUTES)  # fmt: skip
             if first.inset <= 0.0 and end >= top:
-                rows += kink(min(rim_radius(cutter), first.stage.radius), top_flank_angle(cutter), top, flutes, FLUTES)
+                rows += pieces.kink(min(rim_radius(cutter), first.stage.radius), top_flank_angle(cutter), top, flutes, FLUTES)
         if flutes < 0.0:
             end = max(end, top + flutes * min(0.0, math.sin(top_flank_angle(cutter))))
-        rows += flute_rows(cutter, flutes, end, kind)
+        rows += pieces.flute_rows(cutter, flutes, end, kind)
         for i, band in enumerate(bands):
             if i + 1 < len(bands):
                 above = bands[i + 1]
-                end, after = seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
-                rows += between(band.stage.upper_radius, band.flank_angle, above.stage.radius, above.flank_angle, band.high,
-                                min(band.inset, above.inset), band.part)  # fmt: skip
+                end, after = pieces.seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
+                rows += pieces.between(
+                    band.stage.upper_radius, band.flank_angle, above.stage.radius, above.flank_angle, band.high,
+                    min(band.inset, above.inset), band.part,
+                )  # fmt: skip
             else:
                 end, after = band.high - band.inset, math.inf
-            rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
+            rows += pieces.among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
             start = after
-    table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
+    table = np.array([row for row in rows if pieces.solid(row)], float).reshape(-1, COLUMNS)
     if len(table) > MOST_PIECES:
         raise CutterError(f"cutter {cutter.typed}: it has more sections than can be judged; give fewer that enclose it")
-    result = modes(cutter)
-    touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in result])
+    grown_by = cutter.allowance or 0.0
+    touching = np.array([(each.offset, each.radius + grown_by, each.low, each.high, each.height) for each in modes(cutter)])
     inner, highest = _inner(cutter, bands)
     return Assembly(
         _placed(table, touching[:, 4]),
@@ -269,10 +244,6 @@ def _placed(table: Floats, height: Floats) -> Floats:
         arcs = rows[i][:, KIND] == ARC
         rows[i][arcs, SLOPE] -= centre
     return rows
-
-
-def _mode(mode: Mode, allowance: float) -> tuple[float, float, float, float, float]:
-    return mode.offset, mode.radius + allowance, mode.low, mode.high, mode.height
 
 
 def _inner(cutter: Cutter, bands: list[Band]) -> tuple[float, float]:
@@ -314,11 +285,11 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     if cutter.shape == "form":
         for i, ((r0, w0), (r1, w1)) in enumerate(pairwise(cutter.outline)):
             if inset < 0.0:
-                most = max(most, sharpest(cutter.outline, i, inset))
+                most = max(most, pieces.sharpest(cutter.outline, i, inset))
             if w1 > w0:
                 # Grown sides end at the heights of their corners.
                 grown = -inset * (math.hypot(1.0, (r1 - r0) / (w1 - w0)) - 1.0)
-                most = max(most, inset - least_depth(cutter.outline, i, inset) if inset > 0.0 else grown)
+                most = max(most, inset - pieces.least_depth(cutter.outline, i, inset) if inset > 0.0 else grown)
     top = abs(top_flank_angle(cutter))
     if inset < 0.0:
         # Grown flutes have square upper edges.
@@ -356,12 +327,12 @@ def grown(cutter: Cutter, by: float) -> Assembly:
 
     `cutter`: its own allowance and clearance are not counted in. `by`: not negative.
     """
-    rows = [_from(row, working_height(cutter) - by) for row in flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
+    rows = [_from(row, working_height(cutter) - by) for row in pieces.flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
     if flute_length(cutter) <= working_height(cutter):
         rows = []
-    for part, low, stage in stages(cutter):
-        rows += alone(Band(PARTS[part], low, stage, -by))
-    table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
+    for part, low, stage in cutter.stages:
+        rows += pieces.alone(Band(PARTS[part], low, stage, -by))
+    table = np.array([row for row in rows if pieces.solid(row)], float).reshape(-1, COLUMNS)
     return placed(assembly(cutter, 0.0, 0.0), table)
 
 
@@ -383,5 +354,5 @@ def _from(row: list[float], low: float) -> list[float]:
     if row[LOW] >= low:
         return row
     if row[KIND] == ARC:
-        return row_of(ARC, low, row[HIGH], row[RADIUS], row[SLOPE], row[ROUND], int(row[PART]))
-    return band_row(low, row[HIGH], row[RADIUS] + row[SLOPE] * (low - row[LOW]), row[SLOPE], int(row[PART]))
+        return pieces.row_of(ARC, low, row[HIGH], row[RADIUS], row[SLOPE], row[ROUND], int(row[PART]))
+    return pieces.band_row(low, row[HIGH], row[RADIUS] + row[SLOPE] * (low - row[LOW]), row[SLOPE], int(row[PART]))

@@ -1,6 +1,7 @@
 """Is an argument the kind of thing that it must be? What is not ends in an error that says what was given.
 
-Angles may be given in degrees, by names that end in `_deg`. `True` is not taken for 1, nor `"6"` for 6, nor a table for a list: each is rather a mistake than a wish.
+`True` is not taken for 1, nor `"6"` for 6, nor a table for a list: each is rather a mistake than a wish. Angles may be given in
+degrees, by names that end in `_deg`.
 """
 
 import inspect
@@ -132,6 +133,15 @@ def shown(value: Any) -> str:
     if value is None or isinstance(value, str | int):
         return " ".join(reprlib.repr(str(value) if isinstance(value, str) else value).split())
     return f"a value of type {type(value).__name__}"
+
+
+def stated_degrees(angle: float) -> float | str:
+    """An angle, rad, in degrees, where they turn into the same radians; else the text that `stated_radians` reads."""
+    degrees = math.degrees(angle)
+    for each in (round(degrees, 9), degrees, math.nextafter(degrees, 0.0), math.nextafter(degrees, 2.0 * degrees)):
+        if math.radians(each) == angle:
+            return each
+    return f"{angle!r} rad"
 
 
 def stated_radians(text: str) -> float:

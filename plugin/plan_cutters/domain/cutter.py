@@ -29,18 +29,10 @@ class Cutter(Dimensions):
     if TYPE_CHECKING:
 
         def __init__(
-            self,
-            radius: float,
-            length: float,
-            corner_radius: float = 0.0,
-            name: str = "",
-            *,
-            shape: Shape = "end",
-            arc_radius: float = 0.0,
-            arc_height: float = 0.0,
-            outline: Sequence[Sequence[float]] | Floats = (),
+            self, radius: float, length: float, corner_radius: float = 0.0, name: str = "", *, shape: Shape = "end",
+            arc_radius: float = 0.0, arc_height: float = 0.0, outline: Sequence[Sequence[float]] | Floats = (),
             **more: Unpack[AboveTip],
-        ) -> None: ...
+        ) -> None: ...  # fmt: skip
 
     def __post_init__(self) -> None:
         Dimensions.__post_init__(self)
@@ -61,14 +53,9 @@ class Cutter(Dimensions):
     @classmethod
     @spelled_out(Attributes, Dimensions)
     def bull(
-        cls,
-        *,
-        radius: float | None = None,
-        diameter: float | None = None,
-        corner_radius: float,
-        length: float,
+        cls, *, radius: float | None = None, diameter: float | None = None, corner_radius: float, length: float,
         **more: Unpack[Attributes],
-    ) -> "Cutter":
+    ) -> "Cutter":  # fmt: skip
         """A bull nose."""
         return cls(_radius(radius, diameter), length, corner_radius, **more)
 

@@ -151,10 +151,7 @@ class Fixture:
     def grips(self) -> Requested | None:
         """Read what the word of a vise or chuck says; None for all else.
 
-        Raises
-        ------
-        FixtureError
-            It has no meaning.
+        Raises FixtureError: it has no meaning.
         """
         if self.kind not in FORMS:
             return None
@@ -221,9 +218,7 @@ class Fixture:
         What follows the last `@` is the placement, unless it holds a slash or ends as a file that is known; a word of letters
         after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit.
 
-        Raises
-        ------
-        FixtureError
+        Raises FixtureError.
         """
         if not isinstance(text, str):
             raise FixtureError(f"{shown(text)} is no fixture: give a Fixture or a text {_FORM}")
@@ -254,10 +249,8 @@ class Fixture:
     def each_of(cls, given: Any) -> tuple["Fixture", ...]:
         """One fixture, text or object, or a list of such, each with a name of its own.
 
-        Raises
-        ------
-        FixtureError
-            A fixture has no meaning, or one that is to be placed on the part stands beside another that grips it.
+        Raises FixtureError: a fixture has no meaning, or one that is to be placed on the part stands beside another that grips
+        it.
         """
         if given is None:
             return ()

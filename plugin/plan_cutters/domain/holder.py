@@ -127,12 +127,8 @@ class Holder:
         `R12:15L20+R15L30` is a cone and a cylinder by their radii; `D24:30L20+D30L30` is the same by diameters. Lengths are in mm
         unless `in` stands behind them.
 
-        Raises
-        ------
-        CutterError
+        Raises CutterError.
 
-        Examples
-        --------
         >>> Holder.parse("D1inL2in").id, Holder.parse("er16").name
         ('R12.7L50.8', 'ER16')
         """

@@ -58,17 +58,10 @@ class Axis:
     if TYPE_CHECKING:
 
         def __init__(
-            self,
-            name: str,
-            kind: Kind,
-            carries: Carried,
-            direction: Sequence[float] | Floats,
-            limits: Sequence[float] | Floats | None = None,
-            point: Sequence[float] | Floats = ...,
-            rate: float | None = None,
-            accuracy: float | None = None,
-            acceleration: float | None = None,
-        ) -> None: ...
+            self, name: str, kind: Kind, carries: Carried, direction: Sequence[float] | Floats,
+            limits: Sequence[float] | Floats | None = None, point: Sequence[float] | Floats = ..., rate: float | None = None,
+            accuracy: float | None = None, acceleration: float | None = None,
+        ) -> None: ...  # fmt: skip
 
     @classmethod
     def rotary(
@@ -175,16 +168,10 @@ class Machine:
     if TYPE_CHECKING:
 
         def __init__(
-            self,
-            name: str = "unlimited",
-            tilt_limit: float | None = None,
-            axes: Sequence[Axis] = (),
-            tool_axis: Sequence[float] | Floats = ...,
-            notes: Sequence[str] = (),
-            fixed: bool = False,
-            *,
+            self, name: str = "unlimited", tilt_limit: float | None = None, axes: Sequence[Axis] = (),
+            tool_axis: Sequence[float] | Floats = ..., notes: Sequence[str] = (), fixed: bool = False, *,
             tilt_limit_deg: float | None = None,
-        ) -> None: ...
+        ) -> None: ...  # fmt: skip
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -261,10 +248,7 @@ class Machine:
     def kinematics(self, setup: Floats) -> Kinematics | None:
         """Its rotary axes in the part's frame; None where any tool axis is possible.
 
-        Parameters
-        ----------
-        setup : (3, 3) float
-            The machine's X, Y and Z in part coordinates, as rows, at zero angles.
+        `setup` (3, 3) float: the machine's X, Y and Z in part coordinates, as rows, at zero angles.
         """
         if not self.turns:
             return None
@@ -289,13 +273,8 @@ class Machine:
     def parse(cls, text: str) -> "Machine":
         """Read `unlimited`, `tilt:DEG` or the name of a built-in machine.
 
-        Raises
-        ------
-        MachineError
-            Anything else.
+        Raises MachineError: anything else.
 
-        Examples
-        --------
         >>> round(Machine.parse("tilt:60").limit_cos, 9), Machine.parse("unlimited").tilt_limit
         (0.5, None)
         """

@@ -236,21 +236,16 @@ def _lollipop(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[
 
 def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
     wide, tip = cutter.arc_radius - inset, cutter.corner_radius
-    offset, centre = cutter.radius - cutter.arc_radius, cutter.arc_height
-    if not tip:
-        low = inset
-        if inset < 0.0:
-            # Grown, its sharp lower edge is round, and the flank begins where its normal there ends.
-            edge = flank(cutter, 0.0)
-            rows = [row_of(ARC, -math.inf, math.inf, edge, 0.0, -inset, FLUTES)]
-            return [*rows, row_of(ARC, inset * centre / cutter.arc_radius - HAIR, top, offset, centre, wide, FLUTES)]
-        return [row_of(ARC, low, top, offset, centre, wide, FLUTES)]
-    joint, start = tip_angle(cutter), tip - inset
-    if start > 0.0:
-        low = tip - start * math.cos(joint)
-        ball = _unless_higher(row_of(ARC, -math.inf, math.inf, 0.0, tip, start, FLUTES), top)
-        return [ball, row_of(ARC, low, top, offset, centre, wide, FLUTES)]
-    return [row_of(ARC, inset, top, offset, centre, wide, FLUTES)]
+    offset, centre, low = cutter.radius - cutter.arc_radius, cutter.arc_height, inset
+    rows = []
+    if tip - inset > 0.0 and tip:
+        low = tip - (tip - inset) * math.cos(tip_angle(cutter))
+        rows.append(_unless_higher(row_of(ARC, -math.inf, math.inf, 0.0, tip, tip - inset, FLUTES), top))
+    elif not tip and inset < 0.0:
+        # Grown, its sharp lower edge is round, and the flank begins where its normal there ends.
+        rows.append(row_of(ARC, -math.inf, math.inf, flank(cutter, 0.0), 0.0, -inset, FLUTES))
+        low = inset * centre / cutter.arc_radius - HAIR
+    return [*rows, row_of(ARC, low, top, offset, centre, wide, FLUTES)]
 
 
 def _lens(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:

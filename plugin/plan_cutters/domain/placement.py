@@ -68,16 +68,10 @@ class Placement:
     if TYPE_CHECKING:
 
         def __init__(
-            self,
-            z: Heading = ...,
-            x: Heading | None = None,
-            origin: Sequence[float] | Floats | None = None,
-            clamped: str | Sequence[str] = ...,
-            fixtures: Any = ...,
-            file: str = "",
-            stands_on: tuple[str, ...] = (),
+            self, z: Heading = ..., x: Heading | None = None, origin: Sequence[float] | Floats | None = None,
+            clamped: str | Sequence[str] = ..., fixtures: Any = ..., file: str = "", stands_on: tuple[str, ...] = (),
             proposed: bool = False,
-        ) -> None: ...
+        ) -> None: ...  # fmt: skip
 
     def __post_init__(self) -> None:
         z = unit(self.z, "setup axis")

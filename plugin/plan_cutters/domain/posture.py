@@ -1,4 +1,4 @@
-"""Postures: the range of tilts and rotations to search, intervals of them as arrays (k, 2), and directions as callers give them."""
+"""Postures: the range of tilts and rotations to search, intervals as arrays (k, 2), and directions as callers give them."""
 
 import math
 import re
@@ -40,15 +40,9 @@ class PostureRange:
     if TYPE_CHECKING:
 
         def __init__(
-            self,
-            tilt: Range = ...,
-            rotation: Range = ...,
-            step: float = ...,
-            *,
-            tilt_deg: Range | None = None,
-            rotation_deg: Range | None = None,
-            step_deg: float | None = None,
-        ) -> None: ...
+            self, tilt: Range = ..., rotation: Range = ..., step: float = ..., *, tilt_deg: Range | None = None,
+            rotation_deg: Range | None = None, step_deg: float | None = None,
+        ) -> None: ...  # fmt: skip
 
     def __post_init__(self) -> None:
         tilt, rotation = pair(self.tilt, "tilt range"), pair(self.rotation, "rotation range")
@@ -64,10 +58,7 @@ class PostureRange:
     def degrees(cls, tilt: tuple[float, float], rotation: tuple[float, float], step: float) -> "PostureRange":
         """The same in degrees; rotations may also count from another turn, as 350:380 does.
 
-        Raises
-        ------
-        OptionError
-            A range has no meaning.
+        Raises OptionError: a range has no meaning.
         """
         _check(tilt, rotation, step, 90.0, "deg")
         turns = 0.0 if max(map(abs, rotation)) <= 360 else 360.0 * round(sum(rotation) / 720)

@@ -54,16 +54,11 @@ class Flank(NamedTuple):
     length: float
 
 
-def _neck_height(cutter: Dimensions) -> float:
-    """Height over the tip at which a lollipop's ball meets its neck."""
-    thin = cutter.shank_radius or 0.0
-    return cutter.radius + math.sqrt(max(0.0, cutter.radius**2 - thin**2))
-
-
 def flute_length(cutter: Dimensions) -> float:
     """Height over the tip up to which a cutter cuts, mm."""
     if cutter.shape == "lollipop":
-        return _neck_height(cutter)
+        # Where its ball meets its neck.
+        return cutter.radius + math.sqrt(max(0.0, cutter.radius**2 - (cutter.shank_radius or 0.0) ** 2))
     if cutter.shape == "form":
         return cutter.outline[-1][1]
     if cutter.flutes is not None:
@@ -80,7 +75,9 @@ def top_radius(cutter: Dimensions) -> float:
         return cutter.outline[-1][0]
     if cutter.shape == "barrel":
         return flank(cutter, top)
-    return cutter.radius + flank_offset(cutter) + (top - cutter.corner_radius) * math.tan(cutter.taper)
+    # How much farther from the axis a tapered flank is at the height of the corner's centre than a straight one.
+    offset = cutter.corner_radius * (1.0 / math.cos(cutter.taper) - 1.0)
+    return cutter.radius + offset + (top - cutter.corner_radius) * math.tan(cutter.taper)
 
 
 def rim_radius(cutter: Dimensions) -> float:
@@ -115,11 +112,6 @@ def top_flank_angle(cutter: Dimensions) -> float:
         (r, w), (s, v) = next(sides)
         return math.atan2(s - r, v - w)
     return cutter.taper
-
-
-def flank_offset(cutter: Dimensions) -> float:
-    """How much farther from the axis a tapered flank is at the height of the corner's centre than a straight one, mm."""
-    return cutter.corner_radius * (1.0 / math.cos(cutter.taper) - 1.0)
 
 
 def flank(cutter: Dimensions, height: float) -> float:

@@ -359,3 +359,19 @@ def _refuse(content: Content, foreign: Iterable[Foreign]) -> None:
     for each in foreign:
         if each.recognises(content):
             raise content.error(f"is {each.name}, which is not read: {each.instead}", file=content.name)
+
+
+def toml_text(value: Any) -> str:
+    """A text, a number, a list or a table as TOML has it; of a list None stands for an end that is not there."""
+    if isinstance(value, str):
+        clean = value.encode("utf-8", "replace").decode("utf-8")
+        return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {toml_text(each)}' for key, each in value.items())} }}"
+    if isinstance(value, list):
+        # TOML has no null; only limits lack an end.
+        ends = ["-inf", "inf"]
+        return f"[{', '.join(ends[i] if each is None else toml_text(each) for i, each in enumerate(value))}]"
+    return repr(value)

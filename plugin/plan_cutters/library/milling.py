@@ -20,17 +20,11 @@ from plan_cutters.library.raw_tool import Entry, Listed, Stated
 _DIGITS = 9
 
 
-def joined(stages: Sequence[Segment]) -> tuple[Segment, ...]:
-    """The same outline, with what goes on straight in one section."""
-    return _merged(stages, 0, SAME)[0]
+def fewer(stages: Sequence[Segment], most: int = 0) -> tuple[tuple[Segment, ...], float]:
+    """At most so many sections that enclose the given ones, and by how much they are wider at most, mm.
 
-
-def fewer(stages: Sequence[Segment], most: int) -> tuple[tuple[Segment, ...], float]:
-    """At most so many sections that enclose the given ones, and by how much they are wider at most, mm."""
-    return _merged(stages, max(1, most), SAME)
-
-
-def _merged(stages: Sequence[Segment], most: int, free: float) -> tuple[tuple[Segment, ...], float]:
+    Without a number the outline stays the same, with what goes on straight in one section.
+    """
     # Each section with what it stands for, so that what is added is measured against the truth.
     merged = [(stage, [stage]) for stage in stages]
     worst = 0.0
@@ -38,7 +32,7 @@ def _merged(stages: Sequence[Segment], most: int, free: float) -> tuple[tuple[Se
     while len(merged) > 1:
         i = min(range(len(both)), key=lambda k: both[k][1])
         stage, added = both[i]
-        if added > free and (most == 0 or len(merged) <= most):
+        if added > SAME and (most == 0 or len(merged) <= most):
             break
         worst = max(worst, added)
         merged[i : i + 2] = [(stage, [*merged[i][1], *merged[i + 1][1]])]
@@ -47,7 +41,7 @@ def _merged(stages: Sequence[Segment], most: int, free: float) -> tuple[tuple[Se
         for k in (i - 1, i):
             if 0 <= k < len(both):
                 both[k] = _enclosing([*merged[k][1], *merged[k + 1][1]])
-    return tuple(stage for stage, _ in merged), worst if worst > free else 0.0
+    return tuple(stage for stage, _ in merged), worst if worst > SAME else 0.0
 
 
 def _enclosing(stages: Sequence[Segment]) -> tuple[Segment, float]:
@@ -274,7 +268,7 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
             wide = 2.0 * top_radius(bare) / tool.scale
             tool.notes.append(f"{tool.cite('DMM')} is thinner than its flutes where they end, {wide:.6g}")
-    straight = joined(segments)
+    straight, _ = fewer(segments)
     if len(straight) <= _MOST_ABOVE:
         return straight
     envelope, wider = fewer(segments, _MOST_ABOVE)
@@ -350,7 +344,7 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     """With its holder, of as many sections as can be judged."""
     if holder == "none":
         return cutter
-    plain = holder if tool.stated is not None else Holder(joined(holder.stages), holder.name)
+    plain = holder if tool.stated is not None else Holder(fewer(holder.stages)[0], holder.name)
     fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
     # A section has three pieces at least: no more than a third of them is worth a trial.
     most = min(len(plain.stages) - 1, MOST_PIECES // 3)

@@ -1,6 +1,5 @@
 """Our own tool libraries: TOML that people write, read and written."""
 
-import json
 import math
 import re
 import tomllib
@@ -10,10 +9,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.domain.checks import shown, stated_radians
+from plan_cutters.domain.checks import shown, stated_degrees, stated_radians
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.files.content import toml_text
 from plan_cutters.library.cutting import Preset, take_feed
 from plan_cutters.library.milling import cause_of
 from plan_cutters.library.raw_tool import (
@@ -300,27 +300,8 @@ def _stages(rows: list[Section], scale: float, field: str) -> list[Segment]:
     return [Segment(*(mm(value, scale, field, exact=True) for value in row)) for row in rows]
 
 
-def toml_text(text: str) -> str:
-    """A TOML string."""
-    clean = text.encode("utf-8", "replace").decode("utf-8")
-    return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _rows(stages: Iterable[Segment]) -> str:
-    rows = []
-    for stage in stages:
-        upper = [] if stage.upper_radius == stage.radius else [stage.upper_radius]
-        rows.append(f"[{', '.join(repr(float(v)) for v in (stage.radius, stage.length, *upper))}]")
-    return f"[{', '.join(rows)}]"
-
-
-def _angle(taper: float) -> str:
-    """Degrees, where they turn into the same radians."""
-    degrees = math.degrees(taper)
-    for each in (round(degrees, 9), degrees, math.nextafter(degrees, 0.0), math.nextafter(degrees, 2.0 * degrees)):
-        if math.radians(each) == taper:
-            return repr(each)
-    return f'"{taper!r} rad"'
+def _rows(stages: Iterable[Segment]) -> list[list[float]]:
+    return [[s.radius, s.length, *([] if s.upper_radius == s.radius else [s.upper_radius])] for s in stages]
 
 
 def _kind(cutter: Cutter) -> str:
@@ -331,47 +312,35 @@ def _kind(cutter: Cutter) -> str:
     return "flat" if not cutter.corner_radius else "ball" if cutter.corner_radius == cutter.radius else "bull"
 
 
-def _holder_row(holder: Holder | None) -> str:
-    if holder is None:
-        return '"none"'
-    name = f"name = {toml_text(holder.name)}, " if holder.name else ""
-    return f"{{ {name}stages = {_rows(holder.stages)} }}"
-
-
 def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None) -> list[str]:
-    lines = ["", "[[tool]]"]
-    if number is not None:
-        lines.append(f"number = {number}")
+    entry: dict[str, Any] = {} if number is None else {"number": number}
     if name:
-        lines.append(f"name = {toml_text(name)}")
-    lines.append(f'type = "{_kind(cutter)}"')
+        entry["name"] = name
+    entry["type"] = _kind(cutter)
     if cutter.shape != "form":
-        lines.append(f"DC = {2.0 * cutter.radius!r}")
+        entry["DC"] = 2.0 * cutter.radius
     if cutter.corner_radius and cutter.shape != "lollipop":
-        lines.append(f"RE = {cutter.corner_radius!r}")
+        entry["RE"] = cutter.corner_radius
     if cutter.taper:
-        lines.append(f"TA = {_angle(abs(cutter.taper) if cutter.taper < 0.0 else cutter.taper)}")
+        entry["TA"] = stated_degrees(abs(cutter.taper))
     if cutter.shape in ("barrel", "lens"):
-        lines.append(f"PRFRAD = {cutter.arc_radius!r}")
-        lines.append(f"profile_height = {cutter.arc_height!r}")
+        entry |= {"PRFRAD": cutter.arc_radius, "profile_height": cutter.arc_height}
     if cutter.outline:
-        lines.append(f"outline = [{', '.join(f'[{float(h)!r}, {float(r)!r}]' for r, h in cutter.outline)}]")
+        entry["outline"] = [[height, radius] for radius, height in cutter.outline]
     if cutter.shape not in ("lollipop", "form"):
-        lines.append('LCF = "rest"' if cutter.flutes is None else f"LCF = {cutter.flutes!r}")
-    lines.append(f"LPR = {cutter.length!r}")
+        entry["LCF"] = "rest" if cutter.flutes is None else cutter.flutes
+    entry["LPR"] = cutter.length
     if cutter.necks:
-        lines.append(f"neck = {_rows(cutter.necks)}")
+        entry["neck"] = _rows(cutter.necks)
     if cutter.shape == "lollipop":
-        lines.append(f"DN = {2.0 * (cutter.shank_radius or 0.0)!r}")
+        entry["DN"] = 2.0 * (cutter.shank_radius or 0.0)
     else:
-        lines.append('DMM = "same"' if cutter.shank_radius is None else f"DMM = {2.0 * cutter.shank_radius!r}")
-    lines.append(f"holder = {_holder_row(cutter.holder)}")
-    for word in ("allowance", "clearance"):
-        if getattr(cutter, word) is not None:
-            lines.append(f"{word} = {getattr(cutter, word)!r}")
-    if feed is not None:
-        lines.append(f"feed = {float(feed)!r}")
-    return lines
+        entry["DMM"] = "same" if cutter.shank_radius is None else 2.0 * cutter.shank_radius
+    called = {"name": cutter.holder.name} if cutter.holder and cutter.holder.name else {}
+    entry["holder"] = "none" if cutter.holder is None else {**called, "stages": _rows(cutter.holder.stages)}
+    stated = {"allowance": cutter.allowance, "clearance": cutter.clearance, "feed": None if feed is None else float(feed)}
+    entry |= {word: value for word, value in stated.items() if value is not None}
+    return ["", "[[tool]]", *(f"{word} = {toml_text(value)}" for word, value in entry.items())]
 
 
 def to_toml(cutters: Library | Iterable[Cutter]) -> str:
@@ -397,7 +366,7 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
     lines.insert(0, f"# From {name_of(cutters.file)} ({cutters.format})")
     for holder in cutters.holders:
         name = "" if holder.name == "none" else holder.name
-        lines += ["", "[[holder]]", f"name = {toml_text(name)}", f"stages = {_rows(holder.stages)}"]
+        lines += ["", "[[holder]]", f"name = {toml_text(name)}", f"stages = {toml_text(_rows(holder.stages))}"]
     for entry in cutters.entries:
         if entry.cutter is None:
             lines += ["", f"# Not used: {name_of(entry.label)}: {name_of(entry.unused)}"]

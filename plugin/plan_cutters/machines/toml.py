@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.domain.checks import shown, stated_radians
+from plan_cutters.domain.checks import shown, stated_degrees, stated_radians
 from plan_cutters.domain.machine import Axis, Carried, Machine
 from plan_cutters.errors import MachineError
+from plan_cutters.files.content import toml_text
 from plan_cutters.machines.chain import ANGLES, LENGTHS, Added, Content, opposite, scaled
 
 FORMAT = "plan-cutters-machine"
@@ -151,9 +152,10 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
         if limits[0] == math.inf or limits[1] == -math.inf:
             raise MachineError(f"{what}: its limits must run upwards, from -inf to inf")
     px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
-    rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate", turns)
-    accuracy = None if table.accuracy is None else _size(table.accuracy, size, f"{what}: its accuracy", turns)
-    change = None if table.acceleration is None else _size(table.acceleration, size, f"{what}: its acceleration", turns)
+    rate, accuracy, change = (
+        None if (value := getattr(table, word)) is None else _size(value, size, f"{what}: its {word}", turns)
+        for word in ("rate", "accuracy", "acceleration")
+    )
     turned = opposite((x, y, z)) if sign == "table" and carries == "part" else (x, y, z)
     return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate, accuracy, change)
 
@@ -211,7 +213,7 @@ def plain(machine: Machine) -> dict[str, Any]:
         "fixed": machine.fixed,
     }
     if machine.tilt_limit is not None:
-        entry["tilt_limit"] = _angle(machine.tilt_limit)
+        entry["tilt_limit"] = stated_degrees(machine.tilt_limit)
     if machine.notes:
         entry["notes"] = list(machine.notes)
     entry["part_chain"] = [_axis_table(each) for each in machine.axes[::-1] if each.carries == "part"]
@@ -236,50 +238,21 @@ def to_toml(machine: Machine) -> str:
     """
     entry = plain(machine)
     chains = [(name, entry[name]) for name in ("part_chain", "tool_chain")]
-    lines = [f"{key} = {_toml(value)}" for key, value in entry.items() if key not in dict(chains)]
+    lines = [f"{key} = {toml_text(value)}" for key, value in entry.items() if key not in dict(chains)]
     lines += [f"{name} = []" for name, chain in chains if not chain]
     for name, chain in chains:
         for i, each in enumerate(chain):
             lines += ["", *([] if i else ["# From the bed outward."]), f"[[{name}]]"]
-            lines += [f"{key} = {_toml(value)}" for key, value in each.items()]
+            lines += [f"{key} = {toml_text(value)}" for key, value in each.items()]
     return "\n".join([*lines, ""])
 
 
 def _axis_table(axis: Axis) -> dict[str, Any]:
     entry: dict[str, Any] = {"axis": axis.name, "type": axis.kind, "direction": list(axis.direction)}
-    size = _angle if axis.kind == "rotary" else float
+    size = stated_degrees if axis.kind == "rotary" else float
     if any(axis.point):
         entry["point"] = list(axis.point)
     if axis.limits is not None:
         entry["limits"] = [None if math.isinf(end) else size(end) for end in axis.limits]
-    if axis.rate is not None:
-        entry["rate"] = size(axis.rate)
-    if axis.accuracy is not None:
-        entry["accuracy"] = size(axis.accuracy)
-    if axis.acceleration is not None:
-        entry["acceleration"] = size(axis.acceleration)
-    return entry
-
-
-def _angle(angle: float) -> float | str:
-    """Degrees, where they turn into the same radians."""
-    degrees = math.degrees(angle)
-    for each in (round(degrees, 9), degrees, math.nextafter(degrees, 0.0), math.nextafter(degrees, 2.0 * degrees)):
-        if math.radians(each) == angle:
-            return each
-    return f"{angle!r} rad"
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, str):
-        clean = value.encode("utf-8", "replace").decode("utf-8")
-        return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return f"{{ {', '.join(f'{key} = {_toml(each)}' for key, each in value.items())} }}"
-    if isinstance(value, list):
-        # TOML has no null; only limits lack an end.
-        ends = ["-inf", "inf"]
-        return f"[{', '.join(ends[i] if each is None else _toml(each) for i, each in enumerate(value))}]"
-    return repr(value)
+    stated = {word: getattr(axis, word) for word in ("rate", "accuracy", "acceleration")}
+    return entry | {word: size(value) for word, value in stated.items() if value is not None}

@@ -8,7 +8,7 @@ from typing import Any
 
 from plan_cutters.domain.dimensions import typed
 from plan_cutters.domain.figures import area, duration, percent
-from plan_cutters.library.toml import toml_text
+from plan_cutters.files.content import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep
 from plan_cutters.plan_file.setups import ProposedSetup

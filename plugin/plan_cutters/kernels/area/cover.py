@@ -3,8 +3,8 @@
 Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
 held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above one that is lower by no
 more than is allowed: nothing to test. Everything else is tested against the cutter moved along with the contact: each of its
-pieces larger, and drawn out across the axis (lemmas B10, B13 and B16), for the directions in which the contact wanders and the cutter turns about its
-axis.
+pieces larger, and drawn out across the axis, for the directions in which the contact wanders and the cutter turns about its axis
+(lemmas B10, B13 and B16).
 """
 
 from collections import namedtuple
