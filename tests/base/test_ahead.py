@@ -136,6 +136,6 @@ def test_a_plain_cutter_loads_what_it_needs_and_nothing_else(made_ahead):
     ).stdout
     ahead, plain, maps = (set(line.split()) for line in said.splitlines())
     searched = {"search.dummy_clear", "search.probe", "search.search_rows"}
-    assert plain == {"cover.cover", "material.windings", "tree.build", "upright.upright", *searched}
+    assert plain == {"cover.cover", "material.windings", "tree.build", "flats_and_flanks.upright", *searched}
     assert ahead == plain, "what is made ahead is what a plan needs"
-    assert maps - plain == {"free_map.free_map", "lanes.wide_tree"}
+    assert maps - plain == {"free_map.free_map", "tree.wide_tree"}

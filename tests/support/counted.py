@@ -7,17 +7,12 @@ from functools import wraps
 import numpy as np
 
 from plan_cutters.kernels import material
-from plan_cutters.kernels.linear import tree as lanes
-from plan_cutters.kernels.linear import vectors
-from plan_cutters.kernels.maps import cuts, free_map, passes
-from plan_cutters.kernels.maps import passes as intervals
+from plan_cutters.kernels.linear import tree, vectors
+from plan_cutters.kernels.maps import cuts, free_map, passes, planes
 from plan_cutters.kernels.search import place, search, sweep
 from plan_cutters.kernels.tool import apart, arcs, hit, pieces
-from plan_cutters.kernels.tool import arcs as tool_arcs
 
-MODULES = (
-    apart, arcs, cuts, free_map, intervals, hit, lanes, material, passes, pieces, place, search, sweep, tool_arcs, vectors,
-)  # fmt: skip
+MODULES = (apart, arcs, cuts, free_map, hit, material, passes, pieces, place, planes, search, sweep, tree, vectors)
 
 
 @contextmanager

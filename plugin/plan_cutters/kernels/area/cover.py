@@ -12,23 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.area.zone import (
-    EXTENTS,
-    LIFT,
-    MOST_TURN,
-    STRETCH,
-    Nose,
-    begin,
-    distance_of,
-    extent,
-    halvings,
-    held_below,
-    look_round,
-    near_by,
-    seen,
-    spared,
-    too_steep,
-)
+from plan_cutters.kernels.area import zone
+from plan_cutters.kernels.area.zone import EXTENTS, LIFT, MOST_TURN, STRETCH, Nose
 from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, CONE, HIGH, KIND, LOW, NEVER, RADIUS, ROUND, SCALE, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.tree import half, half_of
@@ -167,7 +152,7 @@ def _blocks(i, mask, nose, flutes, whole, frame, face, vertex, triangle_face, wo
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     workspace.scratch.looked[0] += _TRIANGLE
     hit = extruded_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
-    if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
+    if hit & nose and zone.near_by(vertex, triangle_face, i, frame, face, workspace.near):
         hit &= ~nose
     if hit & flutes and _below(vertex, i, frame, workspace.near):
         hit &= ~flutes
@@ -410,13 +395,13 @@ def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
     tilt = np.arctan2(stance.sine, stance.cosine)
     most, full, wander = workspace.seen.most, np.inf, _decided(-1)
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    least = spared(chord + distance_of(0) * _SMALLEST * h, sweeping.depth, chord)
-    if not upright and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
+    least = zone.spared(chord + zone.distance_of(0) * _SMALLEST * h, sweeping.depth, chord)
+    if not upright and not zone.held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return _decided(NEVER)
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
-            full = look_round(frame, h, home, nodes, workspace.seen, h * distance_of(last))
+            full = zone.look_round(frame, h, home, nodes, workspace.seen, h * zone.distance_of(last))
         if full < 0.0:
             return _decided(1)
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane; the lean changes by what
@@ -426,14 +411,14 @@ def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
         settled = _settled(stance, changes, tilt, high, len(tool.mode)) if upright and not flat else -1
         if settled >= 0:
             return _decided(settled)
-        if not turn <= MOST_TURN or too_steep(pose, changes, upright, nose):
-            return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
+        if not turn <= MOST_TURN or zone.too_steep(pose, changes, upright, nose):
+            return _decided(zone.halvings(most, h, pose, upright, nose, depth, chord, near))
         wander = Wander(-1, turn, lift, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if not upright:
             wander = _wander(row, patches, nodes, frame, stance.sine, offset, turn, lift)
-        held = extent(most, last, full, h, pose, upright, wander.psi + wander.sway, changes, nose, depth, chord, near)
+        held = zone.extent(most, last, full, h, pose, upright, wander.psi + wander.sway, changes, nose, depth, chord, near)
         if held < 0:
-            return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
+            return _decided(zone.halvings(most, h, pose, upright, nose, depth, chord, near))
         if held < last:
             break
     return wander if near[0] > 0.0 else _decided(NEVER)
@@ -489,7 +474,7 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     mode = 0 if flat else mode_at(sweeping.tool, np.arctan2(stance.sine, stance.cosine))
     stance = Stance(rule, stance.upright, stance.along, stance.sine, stance.cosine, stance.steepness, mode)
     frame, seen_nodes = Frame(patches.point[row], n, f, t), workspace.seen
-    if not _touches(stance, flat, sweeping) or not begin(frame, patches.patch[row], patches.home[row], nodes, seen_nodes):
+    if not _touches(stance, flat, sweeping) or not zone.begin(frame, patches.patch[row], patches.home[row], nodes, seen_nodes):
         return NEVER, -1
     if rule == _LEVEL:
         if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:
@@ -527,7 +512,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
         np.empty((BODIES, count, COLUMNS)),
         np.empty((count, COLUMNS)),
         np.empty(9),
-        seen(),
+        zone.seen(),
         hit.scratch(),
     )
     body, blocker = np.empty(BODY), -1

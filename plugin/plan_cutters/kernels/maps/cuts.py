@@ -8,36 +8,9 @@ import numpy as np
 from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.linear.tree import LANES
-from plan_cutters.kernels.maps.passes import (
-    CF,
-    CL,
-    FIRST,
-    INTERVALS,
-    LAST,
-    SF,
-    SL,
-    UF,
-    UL,
-    _begin,
-    _cuts,
-    _end,
-    _part,
-    _passes,
-    _take,
-)
-from plan_cutters.kernels.maps.planes import (
-    BOXES,
-    ENDS,
-    FAR,
-    FLOOR,
-    LATERAL,
-    NEAR,
-    all_ends,
-    distances,
-    flutes,
-    put_ends,
-    triangles_clear,
-)
+from plan_cutters.kernels.maps import passes, planes
+from plan_cutters.kernels.maps.passes import CF, CL, FIRST, INTERVALS, LAST, SF, SL, UF, UL
+from plan_cutters.kernels.maps.planes import BOXES, ENDS, FAR, FLOOR, LATERAL, NEAR
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, point_arc
 from plan_cutters.kernels.tool.hit import _swept_hit, scratch, stand, triangle_hit
@@ -80,17 +53,17 @@ def take_point(x, y, z, interval, count, turning, k, arcs):
     """
     offset, piece, known = turning.offset, turning.piece, turning.known
     if (turning.eight >> k) & 1:
-        if not _cuts(x, y, z, interval, count, flutes(turning, k)):
+        if not passes._cuts(x, y, z, interval, count, planes.flutes(turning, k)):
             return count, False
         left, right = point_arc(z, x + offset, y, 0.0, offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH])
-        return _take(interval, count, left, right), True
+        return passes._take(interval, count, left, right), True
     away = x * x + z * z
     if abs(y) >= known[k, LATERAL] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
         return count, False
     cut = False
     for i in range(forbidden(z, x + offset, y, 0.0, offset, piece, k, arcs)):
         if _meets(interval, count, arcs[i, 0], arcs[i, 1]):
-            count, cut = _take(interval, count, arcs[i, 0], arcs[i, 1]), True
+            count, cut = passes._take(interval, count, arcs[i, 0], arcs[i, 1]), True
     if closed(offset, piece, k):
         return count, cut
     g = 0
@@ -102,7 +75,7 @@ def take_point(x, y, z, interval, count, turning, k, arcs):
             if inset(piece, k, height, px * px + y * y) > 0.0:
                 left, right = arc_about(height, px, y, tilt, offset, piece, k)
                 if right > left and _meets(interval, count, left, right):
-                    count, cut = _take(interval, count, left, right), True
+                    count, cut = passes._take(interval, count, left, right), True
                     break
         if count >= before:
             g += 1
@@ -115,7 +88,7 @@ def _fill(seen, corner):
     for k in range(3):
         for lane in range(LANES):
             seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 1], corner[k, 2]
-    distances(seen)
+    planes.distances(seen)
 
 
 @kernel
@@ -123,10 +96,10 @@ def _out(corner, ca, sa, cb, sb, turning, k, workspace):
     """Whether a triangle, rows (x, y, z) from the centre, is shown to stay out of piece k at all tilts of an interval."""
     workspace.spent[0] += 1
     if (turning.eight >> k) & 1:
-        return _passes(corner, ca, sa, cb, sb, flutes(turning, k), workspace.first, workspace.second)
+        return passes._passes(corner, ca, sa, cb, sb, planes.flutes(turning, k), workspace.first, workspace.second)
     _fill(workspace.seen, corner)
-    all_ends(workspace.end, ca, sa, cb, sb)
-    return triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
+    planes.all_ends(workspace.end, ca, sa, cb, sb)
+    return planes.triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
 
 
 @kernel
@@ -140,7 +113,7 @@ def _quarters(part, seen):
                 # The middle one has the middles of the sides, the others a corner each and the middles next to it.
                 to = other if lane % 4 == 3 else lane % 4
                 seen[3 * k + row, lane] = 0.5 * (here + part[to, row])
-    distances(seen)
+    planes.distances(seen)
 
 
 @kernel
@@ -151,13 +124,13 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
         for row in range(3):
             parts[0, row, column] = corner[row, column]
     times[0], top = 0, 1
-    all_ends(workspace.end, ca, sa, cb, sb)
+    planes.all_ends(workspace.end, ca, sa, cb, sb)
     while top > 0:
         top -= 1
         workspace.spent[0] += 1
         cut = times[top] + 1
         _quarters(parts[top], seen)
-        if triangles_clear(seen, workspace.end, turning, k, workspace.clear):
+        if planes.triangles_clear(seen, workspace.end, turning, k, workspace.clear):
             continue
         for lane in range(4):
             if workspace.clear[lane] > 0.0:
@@ -253,10 +226,10 @@ def _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace
             c, s = np.cos(interval[g, FIRST] + move), np.sin(interval[g, FIRST] + move)
             if sign < 0.0:
                 c, s = np.cos(interval[g, LAST] - move), np.sin(interval[g, LAST] - move)
-                put_ends(workspace.end, lane, ca, sa, c, s)
+                planes.put_ends(workspace.end, lane, ca, sa, c, s)
             else:
-                put_ends(workspace.end, lane, c, s, cb, sb)
-        triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
+                planes.put_ends(workspace.end, lane, c, s, cb, sb)
+        planes.triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
         for lane in range(LANES):
             if workspace.clear[lane] > 0.0 and workspace.moves[lane] > 0.0:
                 passed = workspace.moves[lane]
@@ -274,7 +247,7 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
     """
     if not (turning.eight >> k) & 1:
         return _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace)
-    tool, first, second = flutes(turning, k), workspace.first, workspace.second
+    tool, first, second = planes.flutes(turning, k), workspace.first, workspace.second
     ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
     width = interval[g, LAST] - interval[g, FIRST]
     passed, failed, move = np.inf, 0.0, narrowest
@@ -289,9 +262,9 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
         end = interval[g, FIRST] + move if sign > 0.0 else interval[g, LAST] - move
         c, s = np.cos(end), np.sin(end)
         if sign > 0.0:
-            good = _passes(corner, c, s, cb, sb, tool, first, second)
+            good = passes._passes(corner, c, s, cb, sb, tool, first, second)
         else:
-            good = _passes(corner, ca, sa, c, s, tool, first, second)
+            good = passes._passes(corner, ca, sa, c, s, tool, first, second)
         if good:
             passed = move
         else:
@@ -362,13 +335,13 @@ def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, work
         if not at_last:
             up, up_failed = _shrink(corner, interval, g, 1.0, narrowest, turning, k, workspace)
         if up <= 2.0 * narrowest and interval[g, UF] + up <= 3.0 * narrowest:
-            _begin(interval, g, a + up, interval[g, UF] + up)
+            passes._begin(interval, g, a + up, interval[g, UF] + up)
             cut = True
             continue
         if not at_first:
             down, down_failed = _shrink(corner, interval, g, -1.0, narrowest, turning, k, workspace)
         if down <= 2.0 * narrowest and interval[g, UL] + down <= 3.0 * narrowest:
-            _end(interval, g, b - down, interval[g, UL] + down)
+            passes._end(interval, g, b - down, interval[g, UL] + down)
             cut = True
             continue
         left, right, unsure = max(a, b - down), min(b, a + up), narrowest
@@ -387,7 +360,7 @@ def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, work
                 interval[INTERVALS, UF] += right - left
         cut = True
         before = count
-        count = _part(interval, g, count, left, right, unsure)
+        count = passes._part(interval, g, count, left, right, unsure)
         if count >= before:
             g += 1
     return count, cut

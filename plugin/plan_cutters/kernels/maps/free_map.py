@@ -15,36 +15,10 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.tree import LANES, _see, _see_leaf, _see_triangle, _turn
 from plan_cutters.kernels.linear.vectors import cross, tilt_frame
+from plan_cutters.kernels.maps import passes, planes
 from plan_cutters.kernels.maps.cuts import cut_intervals, cut_workspace, take_point
-from plan_cutters.kernels.maps.passes import (
-    CF,
-    CL,
-    COLUMNS,
-    FIRST,
-    INTERVALS,
-    LAST,
-    SF,
-    SL,
-    UF,
-    UL,
-    _begin,
-    _boxes_pass,
-    _end,
-    _triangles_pass,
-)
-from plan_cutters.kernels.maps.planes import (
-    FAR,
-    FLOOR,
-    NEAR,
-    Turning,
-    all_ends,
-    boxes_clear,
-    flutes,
-    triangles_clear,
-    turn_boxes,
-    turn_triangles,
-    turning_of,
-)
+from plan_cutters.kernels.maps.passes import CF, CL, COLUMNS, FIRST, INTERVALS, LAST, SF, SL, UF, UL
+from plan_cutters.kernels.maps.planes import FAR, FLOOR, NEAR
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import permitted
 from plan_cutters.kernels.tool.arcs import insert, join
@@ -92,14 +66,14 @@ def _leaf(leaf, which, vertex, frame, turn, interval, count, turning, mask, narr
         if not (mask >> k) & 1 or count == 0:
             continue
         if (turning.eight >> k) & 1:
-            _triangles_pass(leaf, cosine, sine, interval, count, flutes(turning, k), margin)
+            passes._triangles_pass(leaf, cosine, sine, interval, count, planes.flutes(turning, k), margin)
         else:
-            turn_triangles(leaf, cosine, sine, workspace.turned)
+            planes.turn_triangles(leaf, cosine, sine, workspace.turned)
             for lane in range(LANES):
                 margin[lane] = 1.0
             for g in range(count):
-                all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
-                triangles_clear(workspace.turned, workspace.end, turning, k, workspace.clear)
+                planes.all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
+                planes.triangles_clear(workspace.turned, workspace.end, turning, k, workspace.clear)
                 for lane in range(LANES):
                     margin[lane] = min(margin[lane], workspace.clear[lane] - 0.5)
         for lane in range(LANES):
@@ -122,16 +96,16 @@ def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin,
         if not (mask >> k) & 1:
             continue
         if (turning.eight >> k) & 1:
-            _boxes_pass(view, block, cosine, sine, interval, count, flutes(turning, k), margin)
+            passes._boxes_pass(view, block, cosine, sine, interval, count, planes.flutes(turning, k), margin)
             for lane in range(LANES):
                 remaining[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
             continue
         if not turned:
-            turn_boxes(view, block, cosine, sine, workspace.turned)
+            planes.turn_boxes(view, block, cosine, sine, workspace.turned)
             turned = True
         for g in range(count):
-            all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
-            if not boxes_clear(workspace.turned, workspace.end, turning, k, workspace.clear):
+            planes.all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
+            if not planes.boxes_clear(workspace.turned, workspace.end, turning, k, workspace.clear):
                 for lane in range(LANES):
                     remaining[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
 
@@ -335,8 +309,8 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
         high = min(ranges.tilt_high, tool.mode[mode, codes.TILT_TO])
         if low > high:
             continue
-        bound, facts, eight = turning_of(piece, offset, low, high)
-        turning = Turning(offset, piece, bound, facts, eight)
+        bound, facts, eight = planes.turning_of(piece, offset, low, high)
+        turning = planes.Turning(offset, piece, bound, facts, eight)
         view = _View(
             np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
             np.empty((_SEEN, 2), np.int64), np.zeros(4, np.int64), np.zeros((turns + 1, LANES), np.int64),
@@ -381,8 +355,8 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
                     continue
                 interval[INTERVALS, UF], interval[INTERVALS, UL] = 0.0, 0.0
                 for g in range(count):
-                    _begin(interval, g, arcs[g, 0], 0.0)
-                    _end(interval, g, arcs[g, 1], 0.0)
+                    passes._begin(interval, g, arcs[g, 0], 0.0)
+                    passes._end(interval, g, arcs[g, 1], 0.0)
                 if some:
                     count = _rotation(
                         frame, e1, e2, (cosine, sine), rotation, interval, count, turning, whole, floor, narrowest, wide, view,

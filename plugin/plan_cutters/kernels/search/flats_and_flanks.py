@@ -15,31 +15,12 @@ from collections import namedtuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    ARC,
-    BY_NECK,
-    COLLISION,
-    CYLINDER,
-    FLUTES,
-    HIGH,
-    INSIDE,
-    KIND,
-    LOW,
-    NECK,
-    NO_REASON,
-    OFFSET_OF,
-    PART,
-    RADIUS,
-    REAR_GOUGE,
-    RISE,
-    ROUND,
-    SLOPE,
-)
+from plan_cutters.kernels.codes import ARC, CYLINDER, HIGH, INSIDE, KIND, LOW, NO_REASON, OFFSET_OF, RADIUS, RISE, ROUND, SLOPE
 from plan_cutters.kernels.jit import entry, kernel, maker
 from plan_cutters.kernels.linear.tree import half_of
 from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import inside, mode_at, next_tilt
+from plan_cutters.kernels.search.place import attribute_of, inside, mode_at, next_tilt
 from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
 from plan_cutters.kernels.tool.arcs import remove
 from plan_cutters.kernels.tool.hit import deep_hit, everything, into_frame, scratch, stand, triangle_hit
@@ -445,9 +426,7 @@ def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals
                 return NONE, 0.0, reason, most
             continue
         if reason == NO_REASON:
-            part = int(piece[which, PART])
-            near = (height * cosine + rise) ** 2 + (x - offset) ** 2 + y * y <= tool.reach * tool.reach
-            reason = BY_NECK + part - NECK if part != FLUTES else REAR_GOUGE if near else COLLISION
+            reason = attribute_of(height * cosine + rise, x - offset, y, tool, mode, which)
         if length <= 0.0:
             return NONE, 0.0, reason, triangle
         # The tool slides against the tilt direction: in its frame a point goes with it.

@@ -5,39 +5,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    AXIS_LIMIT,
-    BALL,
-    BY_HOLDER,
-    BY_NECK,
-    BY_SHANK,
-    COLLISION,
-    FIXTURE,
-    FLUTES,
-    INSIDE,
-    LOCAL_GOUGE,
-    NECK,
-    OFFSET_OF,
-    OVER_TIP,
-    PART,
-    REAR_GOUGE,
-    RISE,
-    TILT_FROM,
-    TILT_TO,
-)
+from plan_cutters.kernels import codes, material
+from plan_cutters.kernels.codes import BALL, FLUTES, NECK, OFFSET_OF, OVER_TIP, PART, RISE, TILT_FROM, TILT_TO
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
-from plan_cutters.kernels.material import (
-    SURELY_INSIDE,
-    in_known_ball,
-    keep_ball,
-    outside,
-    plainly_outside,
-    touches,
-    way_out,
-    winding,
-)
+from plan_cutters.kernels.material import SURELY_INSIDE
 from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X
 from plan_cutters.kernels.tool.arcs import ARCS, arc_about, closed, forbidden, local_gouge, remove
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
@@ -70,28 +43,28 @@ def forbid(intervals, count, first, last, narrowest, attribute, tally):
 
 
 @kernel
-def _attribute(x, y, z, tool, mode, k):
+def attribute_of(x, y, z, tool, mode, k):
     """Return the reason that an obstacle point gives, which lies in piece k and at (x, y, z) from the contact.
 
     In the flutes it is a rear gouge within the rear-gouge radius and a collision beyond it; in other pieces it is their part.
     """
     part = int(tool.piece[mode, k, PART])
     if part != FLUTES:
-        return BY_NECK + part - NECK
-    return REAR_GOUGE if x * x + y * y + z * z <= tool.reach * tool.reach else COLLISION
+        return codes.BY_NECK + part - NECK
+    return codes.REAR_GOUGE if x * x + y * y + z * z <= tool.reach * tool.reach else codes.COLLISION
 
 
 @kernel
 def lies_within(x, y, z, solids, within, scratch):
     """Whether the winding number of the bodies about a point is `within` or more; where one is, others near it need no sum."""
-    if in_known_ball(x, y, z, solids, within, scratch.balls, scratch.stored):
+    if material.in_known_ball(x, y, z, solids, within, scratch.balls, scratch.stored):
         return True
-    if plainly_outside(x, y, z, solids, scratch.stack):
+    if material.plainly_outside(x, y, z, solids, scratch.stack):
         return False
-    number = winding(x, y, z, solids, scratch.stack)
+    number = material.winding(x, y, z, solids, scratch.stack)
     if number < within:
         return False
-    keep_ball(x, y, z, number, solids, scratch.balls, scratch.stored, scratch.stack)
+    material.keep_ball(x, y, z, number, solids, scratch.balls, scratch.stored, scratch.stack)
     return True
 
 
@@ -105,7 +78,7 @@ def inside(body, tool, mode, solids, within, scratch):
     x = body[P] + high * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
-    if outside(x, y, z, solids):
+    if material.outside(x, y, z, solids):
         return False
     if not solids.whole:
         # Above the cells: a point that is low enough to be among them.
@@ -113,9 +86,9 @@ def inside(body, tool, mode, solids, within, scratch):
         x = body[P] + height * body[A] - body[OFFSET] * body[X]
         y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
         z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
-        if outside(x, y, z, solids):
+        if material.outside(x, y, z, solids):
             return False
-    if way_out(x, y, z, body[A], body[A + 1], body[A + 2], solids, scratch.stack):
+    if material.way_out(x, y, z, body[A], body[A + 1], body[A + 2], solids, scratch.stack):
         return False
     height = tool.inner - tool.mode[mode, OVER_TIP]
     x = body[P] + height * body[A] - body[OFFSET] * body[X]
@@ -189,7 +162,7 @@ def enclosed(contacts, row, proof, scratch):
     wider = (1.0 + BALL) * solids.grow
     for d in proof.distance:
         x, y, z = p[0] + d * n[0], p[1] + d * n[1], p[2] + d * n[2]
-        if outside(x, y, z, solids) or touches(x, y, z, proof.radius + wider, solids, scratch.stack):
+        if material.outside(x, y, z, solids) or material.touches(x, y, z, proof.radius + wider, solids, scratch.stack):
             continue
         if lies_within(x, y, z, solids, SURELY_INSIDE, scratch):
             return True
@@ -205,8 +178,8 @@ Workspace = namedtuple("Workspace", "intervals arcs f t e2 body tally scratch pr
 def search_workspace():
     """Make a workspace for searches."""
     return Workspace(
-        np.empty((_INTERVALS, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
-        scratch(), np.zeros(1, np.int64),
+        np.empty((_INTERVALS, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY),
+        np.empty(codes.FIXTURE), scratch(), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -260,7 +233,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
         return 0
     tilt_frame(contacts.direction_max[row], workspace.e2, cosine, sine, workspace.f, workspace.t)
     width, before = permitted(contacts, row, ranges, tool, mode, workspace.f, intervals)
-    tally[AXIS_LIMIT] += width + before * NARROWEST
+    tally[codes.AXIS_LIMIT] += width + before * NARROWEST
     if not bent:
         count = clip_straight(least, most, intervals, before)
     elif np.isnan(least):
@@ -268,7 +241,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
     else:
         count = remove(intervals, before, least if least > 0.0 else -1.0, most, NARROWEST)
     for i in range(count):
-        tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+        tally[codes.LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
     return count
 
 
@@ -276,13 +249,14 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
 def book_inside(tally):
     """Book on bodies that a contact lies within all tilts that limits and curvature leave."""
     tally[:] = 0.0
-    tally[AXIS_LIMIT], tally[LOCAL_GOUGE], tally[INSIDE] = 1.0, 1.0, 1.0
+    tally[codes.AXIS_LIMIT], tally[codes.LOCAL_GOUGE], tally[codes.INSIDE] = 1.0, 1.0, 1.0
 
 
 @kernel
 def booked(tally):
     """Tilts that obstacles have taken."""
-    return tally[REAR_GOUGE] + tally[COLLISION] + tally[BY_NECK] + tally[BY_SHANK] + tally[BY_HOLDER]
+    cutting = tally[codes.REAR_GOUGE] + tally[codes.COLLISION]
+    return cutting + tally[codes.BY_NECK] + tally[codes.BY_SHANK] + tally[codes.BY_HOLDER]
 
 
 @kernel
@@ -292,7 +266,7 @@ def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace):
     piece, arcs = tool.piece[mode], workspace.arcs
     for k in range(len(piece)):
         for i in range(forbidden(height, x + offset, y, 0.0, offset, piece, k, arcs)):
-            attribute = _attribute(x, y, z, tool, mode, k)
+            attribute = attribute_of(x, y, z, tool, mode, k)
             count = forbid(intervals, count, arcs[i, 0], arcs[i, 1], narrowest, attribute, workspace.tally)
     return count
 
@@ -320,7 +294,7 @@ def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, cou
     offset, piece = tool.mode[mode, OFFSET_OF], tool.piece[mode]
     back, cosine, sine = px - offset, np.cos(tilt), np.sin(tilt)
     x, z = cosine * back + sine * height, cosine * height - sine * back + tool.mode[mode, RISE]
-    attribute = _attribute(x, py, z, tool, mode, k)
+    attribute = attribute_of(x, py, z, tool, mode, k)
     # At the edge of the tool the arc may be no wider than rounding: take the probe's own neighbourhood too.
     first, last = arc_of(k, height, px, py, tilt, offset, piece, 0.5 * narrowest, workspace.arcs)
     return forbid(intervals, count, first, last, narrowest, attribute, workspace.tally), x, py, z

@@ -20,38 +20,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    ACCESSIBLE,
-    AWAY,
-    AXIS_LIMIT,
-    BALL,
-    BY_HOLDER,
-    BY_NECK,
-    BY_SHANK,
-    COLLISION,
-    INACCESSIBLE,
-    INSIDE,
-    LOCAL_GOUGE,
-    OFFSET_OF,
-    REAR_GOUGE,
-    RISE,
-    UNDECIDED,
-)
+from plan_cutters.kernels import codes
+from plan_cutters.kernels.codes import AWAY, BALL, OFFSET_OF, RISE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids, outside, touches
 from plan_cutters.kernels.rows import Frame, Tool
-from plan_cutters.kernels.search.place import (
-    Proof,
-    clip_straight,
-    inside,
-    lies_within,
-    mode_at,
-    permitted,
-    straight,
-    straightened,
-)
+from plan_cutters.kernels.search import place
+from plan_cutters.kernels.search.place import Proof
 from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, sweep, sweep_both
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
@@ -78,13 +55,13 @@ def _reason(tally, bent):
     one that alone leaves no tilt, or else the one that took most. Where curvature forbids all tilts, a rear gouge counts as the
     local gouge.
     """
-    if tally[AXIS_LIMIT] == 0.0:
-        return AXIS_LIMIT
-    reason, most = REAR_GOUGE, tally
-    if tally[LOCAL_GOUGE] == 0.0:
-        reason, most = LOCAL_GOUGE, bent
-    least = most[REAR_GOUGE]
-    for attribute in (COLLISION, INSIDE, BY_NECK, BY_SHANK, BY_HOLDER):
+    if tally[codes.AXIS_LIMIT] == 0.0:
+        return codes.AXIS_LIMIT
+    reason, most = codes.REAR_GOUGE, tally
+    if tally[codes.LOCAL_GOUGE] == 0.0:
+        reason, most = codes.LOCAL_GOUGE, bent
+    least = most[codes.REAR_GOUGE]
+    for attribute in (codes.COLLISION, codes.INSIDE, codes.BY_NECK, codes.BY_SHANK, codes.BY_HOLDER):
         if most[attribute] > least:
             reason, least = attribute, most[attribute]
     return reason
@@ -101,7 +78,7 @@ def shut_in(contacts, row, deep, solids, scratch):
     # A posture that a body blocks, beside it or within, is none: with no depth nothing is known.
     if not deep > 0.0 or outside(x, y, z, solids) or touches(x, y, z, BALL * deep, solids, scratch.stack):
         return False
-    return lies_within(x, y, z, solids, MAYBE_INSIDE, scratch)
+    return place.lies_within(x, y, z, solids, MAYBE_INSIDE, scratch)
 
 
 @kernel
@@ -169,7 +146,7 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
                 sure = rotation == NONE
             elif missed and shut_in(contacts, row, mode.deep, possible, workspaces[0].scratch):
                 # As its neighbour was: a search would put the tool down in the body again and again.
-                results.reason[row] = INSIDE
+                results.reason[row] = codes.INSIDE
                 continue
             else:
                 rotation, tilt, last = sweep_both(contacts, row, ranges, outer, pasts, last, mode.turns, workspaces)
@@ -179,9 +156,9 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
             if sure or not missed or (rotation == UNFINISHED and not of_inner):
                 break
         if missed:
-            results.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+            results.verdict[row] = codes.INACCESSIBLE if sure else codes.UNDECIDED
         else:
-            results.verdict[row] = ACCESSIBLE
+            results.verdict[row] = codes.ACCESSIBLE
             _write(results, row, contacts, ranges, rotation, tilt)
     return at, workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
@@ -224,7 +201,7 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *,
     mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
     proof = Proof(_NOWHERE, 0.0, solids)
     looked = search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)[1]
-    return bool(results.verdict[0] == ACCESSIBLE), int(looked)
+    return bool(results.verdict[0] == codes.ACCESSIBLE), int(looked)
 
 
 @entry
@@ -246,20 +223,20 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
             cosine, sine = turn_of(n, e1, ranges, rotation)
             tilt_frame(e1, e2, cosine, sine, f, t)
             for mode in range(modes):
-                _, count = permitted(contacts, row, ranges, inner_tool, mode, f, intervals)
+                _, count = place.permitted(contacts, row, ranges, inner_tool, mode, f, intervals)
                 axis_remains = axis_remains or count > 0
-                least, most = straight(contacts, row, cosine, sine, inner_tool, mode)
-                count = clip_straight(least, most, intervals, count)
+                least, most = place.straight(contacts, row, cosine, sine, inner_tool, mode)
+                count = place.clip_straight(least, most, intervals, count)
                 curvature_remains = curvature_remains or count > 0
             if curvature_remains:
                 break
         if not axis_remains:
-            reason[row] = AXIS_LIMIT
+            reason[row] = codes.AXIS_LIMIT
         elif not curvature_remains:
             # As `search` would have told it.
             sweep(contacts, row, ranges, side, START[1], rotations, pasts[1], workspace)
             other.tally[:] = 0.0
-            other.tally[AXIS_LIMIT] = 1.0
+            other.tally[codes.AXIS_LIMIT] = 1.0
             reason[row] = _reason(other.tally, workspace.tally)
 
 
@@ -285,17 +262,17 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
         if triangle >= 0:
             hint = triangle
             continue
-        stands[row] = not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
+        stands[row] = not place.inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
     return workspace.looked[0]
 
 
 @kernel
 def _stand_as_given(row, point, normal, axis, tilt_direction, tool, body, f, t):
     """Put a tool down in a posture that is given; the mode in which it touches, -1 for none."""
-    n, share = normal[row], straightened(tilt_direction[row], f)
+    n, share = normal[row], place.straightened(tilt_direction[row], f)
     cross(n, f, t)
     cosine, sine = dot(axis[row], n), dot(axis[row], f)
-    mode = mode_at(tool, np.arctan2(sine, cosine))
+    mode = place.mode_at(tool, np.arctan2(sine, cosine))
     if mode >= 0:
         stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
     return mode
@@ -335,7 +312,7 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, tool.mode[0, RISE])
         triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, workspace)
-        clear[row] = triangle < 0 and not inside(body, tool, 0, solids, MAYBE_INSIDE, workspace)
+        clear[row] = triangle < 0 and not place.inside(body, tool, 0, solids, MAYBE_INSIDE, workspace)
         if triangle >= 0:
             hint = triangle
     return workspace.looked[0]
@@ -410,7 +387,7 @@ def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces
         else:
             level = (low + high) // 2
         stride *= 2
-    return low, INACCESSIBLE if beyond == high else UNDECIDED, last, freed
+    return low, codes.INACCESSIBLE if beyond == high else codes.UNDECIDED, last, freed
 
 
 @entry

@@ -16,20 +16,7 @@ from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import (
-    allowed,
-    book_inside,
-    booked,
-    enclosed,
-    forbid,
-    forbid_point,
-    forbid_probed,
-    inside,
-    next_tilt,
-    put,
-    search_workspace,
-    turned,
-)
+from plan_cutters.kernels.search import place
 from plan_cutters.kernels.tool.hit import deep_hit
 
 #: Points remembered for each rotation, and of those that the tree gave last.
@@ -150,49 +137,49 @@ def _rotation(contacts, row, ranges, rotation, mode, side, last, wish, frame, ob
     tool, solids, within, narrowest = side.tool, side.solids, side.within, side.narrowest
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
     intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
-    turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
-    count = allowed(contacts, row, ranges, rotation, tool, mode, obstacle_cache.bent, workspace)
-    known, written = obstacle_cache.count[place], 0
+    turn, slots = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
+    count = place.allowed(contacts, row, ranges, rotation, tool, mode, obstacle_cache.bent, workspace)
+    known, written = obstacle_cache.count[slots], 0
     for i in range(known):
         if count == 0:
             break
         x, y, z = 0.0, 0.0, 0.0
         for k in range(3):
-            offset = obstacle_cache.point[place, i, k] - p[k]
+            offset = obstacle_cache.point[slots, i, k] - p[k]
             x += offset * f[k]
             y += offset * t[k]
             z += offset * n[k]
-        before = booked(tally)
-        count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace)
-        if booked(tally) > before:
+        before = place.booked(tally)
+        count = place.forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace)
+        if place.booked(tally) > before:
             for k in range(3):
-                obstacle_cache.point[place, written, k] = obstacle_cache.point[place, i, k]
+                obstacle_cache.point[slots, written, k] = obstacle_cache.point[slots, i, k]
             written += 1
     while count > 0 and workspace.scratch.looked[0] <= last:
-        tilt, wish = next_tilt(intervals, count, wish), -1.0
+        tilt, wish = place.next_tilt(intervals, count, wish), -1.0
         # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
         which = -1
         if pooled >= 0:
             which, height, px, py = _deepest(obstacle_cache, pooled, turn, tilt, tool, mode)
         new = which < 0
         if new:
-            put(body, frame, tilt, tool, mode)
+            place.put(body, frame, tilt, tool, mode)
             triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], workspace.scratch)
             if triangle < 0:
-                if not inside(body, tool, mode, solids, within, workspace.scratch):
-                    obstacle_cache.count[place] = written
+                if not place.inside(body, tool, mode, solids, within, workspace.scratch):
+                    obstacle_cache.count[slots] = written
                     return tilt, pooled
                 if workspace.proved[0] == _NEVER:
-                    workspace.proved[0] = _PROVED if enclosed(contacts, row, side.proof, workspace.scratch) else _TRIED
+                    workspace.proved[0] = _PROVED if place.enclosed(contacts, row, side.proof, workspace.scratch) else _TRIED
                 if workspace.proved[0] == _PROVED:
                     return -1.0, pooled
-                half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
-                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
+                half = max(place.turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
+                count = place.forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
                 continue
-        count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
+        count, x, y, z = place.forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
         if written < _CACHED:
             for k in range(3):
-                obstacle_cache.point[place, written, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
+                obstacle_cache.point[slots, written, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
             written += 1
         if new:
             slot = obstacle_cache.given[0] % _POOL
@@ -205,7 +192,7 @@ def _rotation(contacts, row, ranges, rotation, mode, side, last, wish, frame, ob
             else:
                 _see(obstacle_cache, slot, p, e1, e2, n)
             pooled = min(obstacle_cache.given[0], _POOL)
-    obstacle_cache.count[place] = written
+    obstacle_cache.count[slots] = written
     return -1.0, pooled
 
 
@@ -240,7 +227,7 @@ def sweep(contacts, row, ranges, side, start, turns, obstacle_cache, workspace):
             if tilt >= 0.0:
                 return rotation, tilt
             if workspace.proved[0] == _PROVED:
-                book_inside(tally)
+                place.book_inside(tally)
                 return NONE, 0.0
             if workspace.scratch.looked[0] > last:
                 return UNFINISHED, 0.0
@@ -250,7 +237,7 @@ def sweep(contacts, row, ranges, side, start, turns, obstacle_cache, workspace):
 @maker
 def both(rotations, modes):
     """Make empty obstacle caches for both kinds of sweep, and a workspace for each."""
-    return (memory(rotations, modes, False), memory(rotations, modes, True)), (search_workspace(), search_workspace())
+    return (memory(rotations, modes, False), memory(rotations, modes, True)), (place.search_workspace(), place.search_workspace())
 
 
 @kernel
@@ -271,5 +258,5 @@ def sweep_both(contacts, row, ranges, side, pasts, starts, turns, workspaces):
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
     if workspaces[1].proved[0] == _PROVED:
-        book_inside(workspaces[0].tally)
+        place.book_inside(workspaces[0].tally)
     return rotation, 0.0, starts
