@@ -26,11 +26,8 @@ def plain(value: Any) -> Any:
     """
     if not isinstance(value, str) or isinstance(value, Markup):
         return value
-    return _NO_TEXT.sub(_written_out, _BETWEEN.sub(lambda match: clean(match[0]), value))
-
-
-def _written_out(match: re.Match[str]) -> str:
-    return match[0].encode("unicode_escape").decode()
+    cleaned = _BETWEEN.sub(lambda match: clean(match[0]), value)
+    return _NO_TEXT.sub(lambda match: match[0].encode("unicode_escape").decode(), cleaned)
 
 
 def embedded(value: Any) -> str:

@@ -28,21 +28,21 @@ from plan_cutters.library.raw_tool import (
     whole_of,
 )
 
-#: Our name of each dimension, and the name in brackets of its column.
-_COLUMNS = (
-    ("DC", "tool_diameter"),
-    ("RE", "tool_cornerRadius"),
-    ("LCF", "tool_fluteLength"),
-    ("LPR", "tool_bodyLength"),
-    ("OAL", "tool_overallLength"),
-    ("DMM", "tool_shaftDiameter"),
-    ("LN", "tool_shoulderLength"),
-    ("DN", "tool_shoulderDiameter"),
-    ("TA", "tool_taperAngle"),
-    ("TIP", "tool_tipDiameter"),
-    ("LF", "tool_assemblyGaugeLength"),
-    ("LH", "tool_holderGaugeLength"),
-    ("DCX", "tool_maximumCuttingDiameter"),
+#: Our name of each dimension, and theirs: the name in brackets of its column, the key of `geometry`, the attribute of `body`.
+_FIELDS = (
+    ("DC", "tool_diameter", "DC", "diameter"),
+    ("RE", "tool_cornerRadius", "RE", "corner-radius"),
+    ("LCF", "tool_fluteLength", "LCF", "flute-length"),
+    ("LPR", "tool_bodyLength", "LB", "body-length"),
+    ("OAL", "tool_overallLength", "OAL", "overall-length"),
+    ("DMM", "tool_shaftDiameter", "SFDM", "shaft-diameter"),
+    ("LN", "tool_shoulderLength", "shoulder-length", "shoulder-length"),
+    ("DN", "tool_shoulderDiameter", "shoulder-diameter", "shoulder-diameter"),
+    ("TA", "tool_taperAngle", "TA", "taper-angle"),
+    ("TIP", "tool_tipDiameter", "tip-diameter", "tip-diameter"),
+    ("LF", "tool_assemblyGaugeLength", "assemblyGaugeLength", "assembly-gauge-length"),
+    ("LH", "tool_holderGaugeLength", "", ""),
+    ("DCX", "tool_maximumCuttingDiameter", "DCX", ""),
 )
 _NAME = re.compile(r"\((\w+)\)\s*$")
 _SECTION = re.compile(r"H\s*(\S+)\s+U\s*(\S+)\s+L\s*(\S+)")
@@ -112,7 +112,7 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
             tool.notes.append("decimal commas")
         return result
 
-    for key, column in _COLUMNS:
+    for key, column, _, _ in _FIELDS:
         tool.take(key, row.get(column, "").strip(), column, number)
     try:
         tool.shaft = _csv_sections(row.get("shaft_segments", ""), tool, "shaft_segments")
@@ -121,12 +121,8 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
             tool.holder = Holder(tuple(stages), name_of(row.get("holder_description")))
     except (FaultError, CutterError) as fault:
         tool.faults.append(str(fault))
-    take_feed(
-        tool,
-        [Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())],
-        "tool_feedCutting",
-        lambda text, field: number_in(text, field)[0],
-    )
+    preset = Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())
+    take_feed(tool, [preset], "tool_feedCutting", _number)
     return tool
 
 
@@ -145,21 +141,6 @@ def _csv_sections(text: str, tool: Listed, where: str) -> list[Segment]:
     return sections(rows, where)
 
 
-#: Our name of each dimension, and the key of `geometry`.
-GEOMETRY = (
-    ("DC", "DC"),
-    ("RE", "RE"),
-    ("LCF", "LCF"),
-    ("LPR", "LB"),
-    ("OAL", "OAL"),
-    ("DMM", "SFDM"),
-    ("LN", "shoulder-length"),
-    ("DN", "shoulder-diameter"),
-    ("TA", "TA"),
-    ("TIP", "tip-diameter"),
-    ("LF", "assemblyGaugeLength"),
-    ("DCX", "DCX"),
-)
 #: Sections that a holder or shaft may have.
 MOST_SECTIONS = 200
 #: Note of files with expressions.
@@ -218,8 +199,9 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
     post = tool.tried(lambda: _table(item, "post-process"), {})
     tool.number = tool.tried(lambda: whole_of(post.get("number"), "post-process.number"), None)
     geometry = tool.tried(lambda: _table(item, "geometry"), {})
-    for key, word in GEOMETRY:
-        tool.take(key, geometry.get(word), word)
+    for key, _, word, _ in _FIELDS:
+        if word:
+            tool.take(key, geometry.get(word), word)
     shaft = tool.tried(lambda: _table(item, "shaft"), {})
     if shaft.get("segments"):
         tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
@@ -278,20 +260,6 @@ def _holder(item: dict[str, Any], scale: float, where: str) -> Holder:
     return Holder(tuple(stages), name_of(item.get("description")) or name_of(item.get("product-id")))
 
 
-#: Our name of each dimension, and the attribute of `body`.
-_BODY = (
-    ("DC", "diameter"),
-    ("RE", "corner-radius"),
-    ("LCF", "flute-length"),
-    ("LPR", "body-length"),
-    ("OAL", "overall-length"),
-    ("DMM", "shaft-diameter"),
-    ("LN", "shoulder-length"),
-    ("DN", "shoulder-diameter"),
-    ("TA", "taper-angle"),
-    ("TIP", "tip-diameter"),
-    ("LF", "assembly-gauge-length"),
-)
 _ROOT = re.compile(r"<\s*(?:\w+:)?tool-library\b")
 
 
@@ -333,8 +301,9 @@ def _hsm_tool(element: Element, place: str) -> Listed:
     if nc is not None:
         tool.number = tool.tried(lambda: whole_of(nc.given.get("number"), "nc number"), None)
     tool.tapered = name_of(body.given.get("tapered-type")) if body else ""
-    for key, word in _BODY:
-        tool.take(key, body.given.get(word) if body else None, word, _number)
+    for key, _, _, word in _FIELDS:
+        if word:
+            tool.take(key, body.given.get(word) if body else None, word, _number)
     if shaft is not None:
         tool.shaft = tool.tried(lambda: _hsm_sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:

@@ -238,14 +238,10 @@ def _holder(tool: Listed, ask: Ask) -> Holder | Literal["none"]:
     return ask.holder
 
 
-def _top(bare: Cutter, tool: Listed) -> float:
-    """Where what cuts ends, mm over the tip."""
-    return bare.stages[0][1] if bare.shape == "lollipop" else tool.values["LCF"]
-
-
 def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     """The sections from the end of the flutes to the holder's nose."""
-    v, at = tool.values, _top(bare, tool)
+    # From where what cuts ends, over the tip.
+    v, at = tool.values, bare.stages[0][1] if bare.shape == "lollipop" else tool.values["LCF"]
     segments: list[Segment] = []
     neck = 0.5 * v["DN"] if "DN" in v and "LN" not in v else 0.0
     if neck and tool.shaft:

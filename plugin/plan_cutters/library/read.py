@@ -50,10 +50,6 @@ def _member(word: str) -> Callable[[Content], bool]:
     return lambda c: c.members is not None and any(name.lower().endswith(word) for name in c.members)
 
 
-def _begins(*words: str) -> Callable[[Content], bool]:
-    return lambda c: c.head.startswith(words)
-
-
 def _page(content: Content) -> bool:
     return content.head.startswith("<") and re.search(r"<(!doctype\s+html|html|head|body)\b", content.head) is not None
 
@@ -82,11 +78,11 @@ FOREIGN = (
     Foreign("a GTC package (ISO 13399)", lambda c: _member("package_meta_data.xml")(c) or _member(".p21")(c), _FUSION),
     Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
     Foreign("a spreadsheet or office document", _member("[content_types].xml"), "save it as CSV in Fusion's columns"),
-    Foreign("an ISO 10303-21 file (STEP or ISO 13399)", _begins("iso-10303-21"), _FUSION),
+    Foreign("an ISO 10303-21 file (STEP or ISO 13399)", lambda c: c.head.startswith("iso-10303-21"), _FUSION),
     Foreign("an Estlcam tool list", _estlcam, _TOML),
     Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
     Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
-    Foreign("a Carbide 3D tool list", _begins("number,vendor,model,"), f"it has no holder; {_TOML}"),
+    Foreign("a Carbide 3D tool list", lambda c: c.head.startswith("number,vendor,model,"), f"it has no holder; {_TOML}"),
     Foreign(
         "a table (CSV) without Fusion's columns",
         lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
@@ -163,7 +159,10 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
     library = Library(file.name, form.name, (*entries, *raw.faulty), tuple(raw.holders), tuple(notes))
     broken = [entry for entry in library.entries if entry.broken]
     if broken and not skip_bad:
-        raise _broken(library, broken)
+        first, more = broken[0], len(broken) - 1
+        others = f"; {more} more {'are' if more > 1 else 'is'} broken" if more else ""
+        use = f"; --skip-bad uses the other {len(library)} cutters" if library else "; no other tool can be used"
+        raise LibraryError(f"{library.format}, {first.label}: {first.unused}{others}{use}", file=library.file)
     return library
 
 
@@ -174,13 +173,6 @@ def _ask(stickout: float | None, holder: Holder | str | None) -> Ask:
     else:
         choice = None if holder is None else Holder.of(holder)
     return Ask(None if stickout is None else positive(stickout, "assumed stick-out"), choice)
-
-
-def _broken(library: Library, broken: list[Entry]) -> LibraryError:
-    first, more = broken[0], len(broken) - 1
-    others = f"; {more} more {'are' if more > 1 else 'is'} broken" if more else ""
-    use = f"; --skip-bad uses the other {len(library)} cutters" if library else "; no other tool can be used"
-    return LibraryError(f"{library.format}, {first.label}: {first.unused}{others}{use}", file=library.file)
 
 
 def nothing(library: Library) -> LibraryError:

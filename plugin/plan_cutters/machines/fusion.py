@@ -59,7 +59,10 @@ def read_mch(content: Content, added: Added) -> Machine:
     control = _controls(content.json)
     reading = _Reading(length, angle, hand == "left-handed", added.sign, control, notes)
     axes = [*reading.axes(table.parts, "part")[::-1], *reading.axes(head.parts, "tool")]
-    _check_once(table, head)
+    for each in table.parts:
+        # A part above both moves both, so that it moves neither against the other.
+        if any(each is other for other in head.parts) and each.get("type") in ("linear", "rotary"):
+            raise MachineError(f"axis {shown(each.get('name', each.get('id')))} carries both the table and the head")
     tool = chain.ISO["Z"]
     frame = head.end.get("attach_frame")
     if isinstance(frame, dict) and frame.get("z_direction") is not None:
@@ -110,13 +113,6 @@ def _only(frames: list[Frame], kind: str) -> Frame:
         ids = ", ".join(shown(frame.end.get("id")) for frame in matches)
         raise MachineError(f"its kinematics have {count} of type {kind}{f' ({ids})' if ids else ''}: machines of one are read")
     return matches[0]
-
-
-def _check_once(table: Frame, head: Frame) -> None:
-    """A part above both moves both, so that it moves neither against the other."""
-    for each in table.parts:
-        if any(each is other for other in head.parts) and each.get("type") in ("linear", "rotary"):
-            raise MachineError(f"axis {shown(each.get('name', each.get('id')))} carries both the table and the head")
 
 
 class _Reading:

@@ -37,10 +37,6 @@ def _suffix(*words: str) -> Callable[[Content], bool]:
     return lambda c: c.path.suffix.lower() in words
 
 
-def _binary(content: Content) -> bool:
-    return re.search(r"[\0-\x08\x0e-\x1f]", content.text[:65536]) is not None
-
-
 FOREIGN = (
     Foreign("a web page (HTML)", _root("!doctype html", "html", "head", "body"),
             "download the machine itself: perhaps a log-in stands before it"),
@@ -56,7 +52,7 @@ FOREIGN = (
     Foreign("an ISO 10303-21 file (STEP)", lambda c: c.head.startswith("iso-10303-21"), _TOML),
     Foreign("a zip archive", lambda c: c.data.startswith(b"PK\x03\x04"), "give the machine that is in it"),
     Foreign("an SQLite database", lambda c: c.data.startswith(b"SQLite format 3\0"), _TOML),
-    Foreign("a binary file", _binary, _TOML),
+    Foreign("a binary file", lambda c: re.search(r"[\0-\x08\x0e-\x1f]", c.text[:65536]) is not None, _TOML),
 )  # fmt: skip
 
 
