@@ -37,21 +37,14 @@ def answers_of(value: Any) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """Connected samples of one kind.
+    """Connected samples of one kind."""
 
-    `area`: that they stand for, mm2.
-    `share`: of the finished area, 0 to 1.
-    `faces`: ids, the one with the most of it first.
-    `place` (float, float, float): the sample nearest to its middle, mm.
-    `across`: its largest extent, mm, from sample to sample; 0 of a single one.
-    """
-
-    area: float
-    share: float
+    area: float  #: That they stand for, mm2.
+    share: float  #: Of the finished area, 0 to 1.
     samples: int
-    faces: tuple[str, ...]
-    place: tuple[float, float, float]
-    across: float
+    faces: tuple[str, ...]  #: Ids, the one with the most of it first.
+    place: tuple[float, float, float]  #: The sample nearest to its middle, mm.
+    across: float  #: Its largest extent, mm, from sample to sample; 0 of a single one.
 
 
 def weights(area: Floats) -> Floats:
@@ -89,97 +82,74 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step is a thing to do next; its gain was judged on every sample.
+    """A step is a thing to do next; its gain was judged on every sample."""
 
-    `moves`: one change, or two.
-    `before`, `after`: share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample
-      was judged.
-    `gained`, `left`: samples that it frees, and that are still not reached.
-    `cutters`: that do it together, the one that is mended, or what becomes of it, first.
-    `setups`: setup axes in which they do.
-    `option`: the options for the command line: `--cutter` is added to those of now, each other option replaces the same option.
-      None where no option says it.
-    `remains`: the largest areas that are still not reached.
-    `freed` (m,) int64: the samples that it frees.
-    """
-
-    moves: tuple[Move, ...]
+    moves: tuple[Move, ...]  #: One change, or two.
+    #: `before`, `after`: share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample
+    #: was judged.
     before: float
     after: float
+    #: `gained`, `left`: samples that it frees, and that are still not reached.
     gained: int
     left: int
-    cutters: tuple[Cutter, ...]
-    setups: tuple[tuple[float, float, float], ...]
+    cutters: tuple[Cutter, ...]  #: That do it together, the one that is mended, or what becomes of it, first.
+    setups: tuple[tuple[float, float, float], ...]  #: Setup axes in which they do.
+    #: The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
+    #: where no option says it.
     option: str | None
-    remains: tuple[Patch, ...]
+    remains: tuple[Patch, ...]  #: The largest areas that are still not reached.
+    #: (m,) int64: the samples that it frees.
     freed: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """Advice names what to do next with one cutter.
+    """Advice names what to do next with one cutter."""
 
-    `cutter`: its id.
-    `lost`, `buried`: samples that are inaccessible or undecided now, and those of them that lie within another body of the part:
-      these are no surface of the finished part, and nothing is asked about them.
-    `why`: why no steps were looked for; empty where they were.
-    `share`: of the finished area that is not reached now, in all setups of the plan.
-    `steps`: the next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
-    `areas`: connected areas that are not reached now, the largest first, and how many more there are.
-    `uncompared`: changes that promised less than those judged and were not judged, and kinds of changes that were not looked at,
-      since the work for advice was spent.
-    `unsure`: faces are missing from what is in the way, so that no gain is sure.
-    """
-
-    cutter: str
+    cutter: str  #: Its id.
+    #: `lost`, `buried`: samples that are inaccessible or undecided now, and those of them that lie within another body of the
+    #: part: these are no surface of the finished part, and nothing is asked about them.
     lost: int
     buried: int
-    why: str
-    share: float = 0.0
+    why: str  #: Why no steps were looked for; empty where they were.
+    share: float = 0.0  #: Of the finished area that is not reached now, in all setups of the plan.
+    #: The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
     steps: tuple[Step, ...] = ()
-    areas: tuple[Patch, ...] = ()
+    areas: tuple[Patch, ...] = ()  #: Connected areas that are not reached now, the largest first, and how many more there are.
     more_areas: int = 0
+    #: Changes that promised less than those judged and were not judged, and kinds of changes that were not looked at, since the
+    #: work for advice was spent.
     uncompared: int = 0
-    unsure: bool = False
+    unsure: bool = False  #: Faces are missing from what is in the way, so that no gain is sure.
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A cutter in a setup, and what it takes: what no run before it reaches.
-
-    `setup` (float, float, float): its axis.
-    `number`: of the setup, 0 for the first one.
-    `area`, `share`: mm2, and of the finished area, 0 to 1.
-    `faces`: ids of those on which it takes samples, ascending.
-    `alone`: samples that it reaches and no other run of the set.
-    """
+    """A cutter in a setup, and what it takes: what no run before it reaches."""
 
     cutter: Cutter
-    setup: tuple[float, float, float]
-    number: int
+    setup: tuple[float, float, float]  #: Its axis.
+    number: int  #: Of the setup, 0 for the first one.
     samples: int
+    #: `area`, `share`: mm2, and of the finished area, 0 to 1.
     area: float
     share: float
-    faces: tuple[str, ...]
-    alone: int
+    faces: tuple[str, ...]  #: Ids of those on which it takes samples, ascending.
+    alone: int  #: Samples that it reaches and no other run of the set.
 
 
 @dataclass(frozen=True, slots=True)
 class LeastSet:
-    """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters.
+    """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters."""
 
-    `runs`: in the order of setups, then of rank; none where nothing is reached.
-    `reached`, `left`: samples of the finished surface that they reach, and that nothing given reaches for sure.
-    `share`, `left_share`: of the finished area, 0 to 1.
-    `proven`: whether it is proved that no fewer do.
-    """
-
-    runs: tuple[Run, ...]
+    runs: tuple[Run, ...]  #: In the order of setups, then of rank; none where nothing is reached.
+    #: `reached`, `left`: samples of the finished surface that they reach, and that nothing given reaches for sure.
     reached: int
     left: int
+    #: `share`, `left_share`: of the finished area, 0 to 1.
     share: float
     left_share: float
-    proven: bool
+    proven: bool  #: Whether it is proved that no fewer do.
 
 
 #: Rows that are compared with each other, at most.
@@ -214,33 +184,24 @@ PERCENTILES = (0, 5, 25, 50, 75, 95)
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RadiusMap(Record):
-    """Of a row of radii, each larger than the one before by a step, the largest that reaches each sample.
+    """Of a row of radii, each larger than the one before by a step, the largest that reaches each sample."""
 
-    `shape`: `flat` or `ball`: a bare end mill, which cuts over all of its length.
-    `ratio`: its length over its radius.
-    `step`: by which share each radius is larger than the one before.
-    `least`, `most`: radii looked at, from and to, mm.
-    `radius` (n,) float: mm. 0 where not even the least one reaches a sample; `most` where that one does: the largest is no less.
-      nan where the sample is not judged.
-    `beyond` (n,) uint8: the verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
-    `reason` (n,) uint8: why that one does not reach the sample, an index into REASONS; else NO_REASON.
-    `axis`, `tilt_direction` (n, 3) float: unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
-    `tilt` (n,) float: rad, nan where there is none.
-    `rotation` (n,) int32: index into the posture range's rotations, -1 where there is none.
-    """
-
-    shape: Shape
-    ratio: float
-    step: float
+    shape: Shape  #: `flat` or `ball`: a bare end mill, which cuts over all of its length.
+    ratio: float  #: Its length over its radius.
+    step: float  #: By which share each radius is larger than the one before.
+    #: `least`, `most`: radii looked at, from and to, mm.
     least: float
     most: float
+    #: (n,) float: mm. 0 where not even the least one reaches a sample; `most` where that one does: the largest is no less. nan
+    #: where the sample is not judged.
     radius: Floats
-    beyond: Bytes
-    reason: Bytes
+    beyond: Bytes  #: (n,) uint8: the verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
+    reason: Bytes  #: (n,) uint8: why that one does not reach the sample, an index into REASONS; else NO_REASON.
+    #: `axis`, `tilt_direction` (n, 3) float: unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
     axis: Floats
     tilt_direction: Floats
-    tilt: Floats
-    rotation: Ints
+    tilt: Floats  #: (n,) float: rad, nan where there is none.
+    rotation: Ints  #: (n,) int32: index into the posture range's rotations, -1 where there is none.
 
     @property
     def lean(self) -> Floats:

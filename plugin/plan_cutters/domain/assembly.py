@@ -45,24 +45,19 @@ from plan_cutters.kernels.codes import (
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Assembly(Record):
-    """Pieces of a cutter and how it touches.
+    """Pieces of a cutter and how it touches."""
 
-    `piece` (m, k, COLUMNS) float: for each mode the same pieces, their heights counted from the mode's centre of curvature.
-    `mode` (m, 5) float: of each: its offset from the axis, its radius of curvature (with the allowance), the tilts from and to at
-      which it touches, rad, and its height over the tip.
-    `reach`: distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
-    `inner`, `end`: heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
-    `flanks`: the straight sides with which it touches.
-    `slack`: by how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
-    """
-
+    #: (m, k, COLUMNS) float: for each mode the same pieces, their heights counted from the mode's centre of curvature.
     piece: Floats
+    #: (m, 5) float: of each: its offset from the axis, its radius of curvature (with the allowance), the tilts from and to at
+    #: which it touches, rad, and its height over the tip.
     mode: Floats
-    reach: float
+    reach: float  #: Distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
+    #: `inner`, `end`: heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
     inner: float
     end: float
-    slack: float
-    flanks: tuple[Flank, ...] = ()
+    slack: float  #: By how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
+    flanks: tuple[Flank, ...] = ()  #: The straight sides with which it touches.
 
     @property
     def flat(self) -> float:

@@ -42,11 +42,9 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A prism between two polylines of as many points, seen from above, from a height `low` to `high`; mm.
+    """A prism between two polylines of as many points, seen from above, from a height `low` to `high`; mm."""
 
-    `inner`, `outer`: x and y; the outline runs along `inner` and back along `outer`, counter-clockwise seen from above.
-    """
-
+    #: `inner`, `outer`: x and y; the outline runs along `inner` and back along `outer`, counter-clockwise seen from above.
     inner: tuple[Point, ...]
     outer: tuple[Point, ...]
     low: float
@@ -67,19 +65,14 @@ Solid = Block | Disc
 
 @dataclass(frozen=True, slots=True)
 class Vise:
-    """A self-centring vise on a riser, in its own frame: jaws close along x, z is up, and what they hold rests at z = 0.
+    """A self-centring vise on a riser, in its own frame: jaws close along x, z is up, and what they hold rests at z = 0."""
 
-    `width`, `height`: of the jaws, mm: along y, and from their upper edge down to the vise's body.
-    `opening`: the most that the jaws come apart, mm.
-    `grip`: how far the jaws reach above what the part rests on, mm.
-    `gap`: how far the jaws stand apart, mm; None: the vise is still to be placed.
-    """
-
+    #: `width`, `height`: of the jaws, mm: along y, and from their upper edge down to the vise's body.
     width: float
     height: float
-    opening: float
-    grip: float = GRIP
-    gap: float | None = None
+    opening: float  #: The most that the jaws come apart, mm.
+    grip: float = GRIP  #: How far the jaws reach above what the part rests on, mm.
+    gap: float | None = None  #: How far the jaws stand apart, mm; None: the vise is still to be placed.
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -126,17 +119,12 @@ class Vise:
 
 @dataclass(frozen=True, slots=True)
 class Chuck:
-    """A self-centring chuck on a riser, in its own frame: z is the axis, and what it holds rests at z = 0; a jaw stands along x.
-
-    `height`: of the jaws over the chuck's face, mm.
-    `grip`: how far the jaws reach above what the part rests on, mm.
-    `diameter`: of what is gripped, mm: the jaws are bored to it. None: the chuck is still to be placed.
-    """
+    """A self-centring chuck on a riser, in its own frame: z is the axis, what it holds rests at z = 0; a jaw stands along x."""
 
     jaws: int
-    height: float
-    grip: float = GRIP
-    diameter: float | None = None
+    height: float  #: Of the jaws over the chuck's face, mm.
+    grip: float = GRIP  #: How far the jaws reach above what the part rests on, mm.
+    diameter: float | None = None  #: Of what is gripped, mm: the jaws are bored to it. None: the chuck is still to be placed.
 
     @property
     def numbers(self) -> tuple[float, ...]:

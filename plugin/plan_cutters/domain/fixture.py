@@ -149,10 +149,7 @@ class Fixture:
 
     @property
     def grips(self) -> Requested | None:
-        """Read what the word of a vise or chuck says; None for all else.
-
-        Raises FixtureError: it has no meaning.
-        """
+        """Read what the word of a vise or chuck says; None for all else. Raises FixtureError: it has no meaning."""
         if self.kind not in FORMS:
             return None
         _, colon, numbers = self.source.partition(":")

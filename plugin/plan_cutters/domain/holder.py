@@ -169,21 +169,13 @@ class Nose(NamedTuple):
 
 
 class Taper(NamedTuple):
-    """The dimensions of a holder below its gauge line, mm: the flange, the body behind it, and the usual gauge length.
-
-    flange, depth : float
-        Diameter, and how far it reaches down from the gauge line or the contact face.
-    body : float
-        Diameter that the body between flange and nut may have.
-    gauge : float
-        From the gauge line to the nose, of the shortest of the usual chucks: so the flange stands no higher than it does.
-    """
+    """The dimensions of a holder below its gauge line, mm: the flange, the body behind it, and the usual gauge length."""
 
     name: str
-    flange: float
-    depth: float
-    body: float
-    gauge: float
+    flange: float  #: Diameter.
+    depth: float  #: How far the flange reaches down from the gauge line or the contact face.
+    body: float  #: Diameter that the body between flange and nut may have.
+    gauge: float  #: From the gauge line to the nose, of the shortest of the usual chucks: the flange stands no higher.
 
 
 #: ISO 15488 (DIN 6499): collets and their nuts, plain and slotted, whichever is wider.

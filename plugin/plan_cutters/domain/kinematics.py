@@ -47,16 +47,11 @@ def within(angle: Floats, low: float, high: float) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Kinematics(Record):
-    """The rotary axes of a machine under one setup, all directions in one frame.
+    """The rotary axes of a machine under one setup, all directions in one frame."""
 
-    `direction` (k, 3) float: unit directions of the axes at zero angles, k at most 2, the one next to the part first.
-    `limit` (k, 2) float: least and largest angle of each, rad; infinite: none.
-    `tool` (3,) float: unit direction from the tip to the spindle at zero angles.
-    """
-
-    direction: Floats
-    limit: Floats
-    tool: Floats
+    direction: Floats  #: (k, 3) float: unit directions of the axes at zero angles, k at most 2, the one next to the part first.
+    limit: Floats  #: (k, 2) float: least and largest angle of each, rad; infinite: none.
+    tool: Floats  #: (3,) float: unit direction from the tip to the spindle at zero angles.
 
     def seen_from(self, turn: Floats) -> "Kinematics":
         """The same in another frame, whose coordinates a rotation (3, 3) makes of these."""

@@ -50,17 +50,14 @@ def strategy_of(number: NDArray[np.uint8], area: Floats) -> Strategy:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Columns(Record):
-    """Operations that may be chosen, each with one cutter, setup and tool axis.
+    """Operations that may be chosen, each with one cutter, setup and tool axis."""
 
-    `cutter`, `setup` (m,) int32: index into the cutters and setups that were requested.
-    `axis` (m, 3) float: unit tool axis in part coordinates: the one that the rounded `angle` gives.
-    `angle` (m, 2) float: positions of the rotary axes, deg, as a control shows them; without rotary axes the azimuth and the tilt
-      about the setup axis.
-    """
-
+    #: `cutter`, `setup` (m,) int32: index into the cutters and setups that were requested.
     cutter: Ints
     setup: Ints
-    axis: Floats
+    axis: Floats  #: (m, 3) float: unit tool axis in part coordinates: the one that the rounded `angle` gives.
+    #: (m, 2) float: positions of the rotary axes, deg, as a control shows them; without rotary axes the azimuth and the tilt
+    #: about the setup axis.
     angle: Floats
 
     def __len__(self) -> int:

@@ -24,26 +24,18 @@ LEFT = "left"
 
 @dataclass(frozen=True, slots=True)
 class OwnStep:
-    """One step.
+    """One step."""
 
-    `number`: in the file, from 1.
-    `setup`: 0 for the first.
-    `mode`: `fixed` or `simultaneous`.
-    `cutter`: its id, the word by which it was given, or its name.
-    `angles`: positions of the rotary axes by name, deg; None where the axis is written instead, or it is simultaneous.
-    `axis`: unit tool axis, part coordinates.
-    `faces`: face numbers; None: all that no step before it finishes.
-    `take`: `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by
-      time, and simultaneous ones take what no fixed one serves.
-    """
-
-    number: int
-    setup: int
-    mode: Mode
-    cutter: str
+    number: int  #: In the file, from 1.
+    setup: int  #: 0 for the first.
+    mode: Mode  #: `fixed` or `simultaneous`.
+    cutter: str  #: Its id, the word by which it was given, or its name.
+    #: Positions of the rotary axes by name, deg; None where the axis is written instead, or it is simultaneous.
     angles: tuple[tuple[str, float], ...] | None = None
-    axis: tuple[float, float, float] | None = None
-    faces: tuple[int, ...] | None = None
+    axis: tuple[float, float, float] | None = None  #: Unit tool axis, part coordinates.
+    faces: tuple[int, ...] | None = None  #: Face numbers; None: all that no step before it finishes.
+    #: `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by time, and
+    #: simultaneous ones take what no fixed one serves.
     take: Literal["first", "share"] = "first"
 
 
@@ -61,16 +53,13 @@ CONTROL_DIGITS = 3
 
 @dataclass(frozen=True, slots=True)
 class OwnProcess:
-    """The steps in their order, and what is to be done with what they leave.
-
-    `rest`: `plan`: more steps are planned behind them for what they leave; `leave`: it is left.
-    `file`: where it was read from; empty: it was given in Python.
-    """
+    """The steps in their order, and what is to be done with what they leave."""
 
     steps: tuple[OwnStep, ...]
     forbidden: tuple[Forbidden, ...] = ()
+    #: `plan`: more steps are planned behind them for what they leave; `leave`: it is left.
     rest: Literal["plan", "leave"] = "plan"
-    file: str = ""
+    file: str = ""  #: Where it was read from; empty: it was given in Python.
 
     def check(self, cutters: Sequence[Cutter], setups: int, names: tuple[str, str]) -> None:
         """See to it that every cutter, setup and angle is one that there is.
@@ -97,10 +86,7 @@ class OwnProcess:
         return {step.number: shown[step.number] for step in self.steps if dict(step.angles or ()) != shown[step.number]}
 
     def check_faces(self, targets: Iterable[int]) -> None:
-        """See to it that every face is one that is to be machined.
-
-        Raises OptionError.
-        """
+        """See to it that every face is one that is to be machined. Raises OptionError."""
         known = set(targets)
         for where, faces in [(self._where(step), step.faces or ()) for step in self.steps] + [
             (f"{self._named()}forbid {number}", each.faces) for number, each in enumerate(self.forbidden, 1)
@@ -156,10 +142,7 @@ def _ids(faces: Iterable[int]) -> list[str]:
 
 
 def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
-    """An axis (3,) of length 1.
-
-    Raises OptionError: it has no direction.
-    """
+    """An axis (3,) of length 1. Raises OptionError: it has no direction."""
     largest = max(abs(each) for each in axis)
     # Numbers next to 0 have few digits.
     if not 1e-100 < largest < math.inf:
@@ -180,29 +163,20 @@ class Nearest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OwnResult:
-    """A step of the planner's own process does this.
+    """A step of the planner's own process does this."""
 
-    `number`: in the file, from 1.
-    `axis` (3,) float: None where it is simultaneous.
-    `angle` (2,) float: as written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
-    `requested` (m,) int64: samples of its faces that no step before it finishes.
-    `rows` (r,) int64: those of them that it finishes.
-    `serves` (k,) int64: all samples of its faces that it could finish, whoever takes them.
-    `wrong`: why it does less than is asked of it, in words; empty where it does all.
-    `nearest`: an orientation that would do, where there is one.
-    """
-
-    number: int
+    number: int  #: In the file, from 1.
     setup: int
     mode: Mode
     cutter: Cutter
-    axis: Floats | None
+    axis: Floats | None  #: (3,) float: None where it is simultaneous.
+    #: (2,) float: as written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
     angle: Floats | None
-    requested: NDArray[np.int64]
-    rows: NDArray[np.int64]
-    serves: NDArray[np.int64]
-    wrong: str = ""
-    nearest: Nearest | None = None
+    requested: NDArray[np.int64]  #: (m,) int64: samples of its faces that no step before it finishes.
+    rows: NDArray[np.int64]  #: (r,) int64: those of them that it finishes.
+    serves: NDArray[np.int64]  #: (k,) int64: all samples of its faces that it could finish, whoever takes them.
+    wrong: str = ""  #: Why it does less than is asked of it, in words; empty where it does all.
+    nearest: Nearest | None = None  #: An orientation that would do, where there is one.
 
 
 def operations_requested(

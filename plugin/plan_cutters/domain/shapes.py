@@ -21,37 +21,22 @@ _STEEPEST = math.radians(80)
 
 
 class Mode(NamedTuple):
-    """A part of the cutting edge that touches the surface with one centre of curvature.
+    """A part of the cutting edge that touches the surface with one centre of curvature."""
 
-    offset, height : float
-        Where that centre lies: how far from the axis towards the contact, and over the tip, mm.
-    radius : float
-        Of curvature there, mm; 0 for a sharp edge.
-    low, high : float
-        Tilts at which it touches, rad.
-    """
-
-    offset: float
-    height: float
-    radius: float
+    offset: float  #: How far that centre lies from the axis towards the contact, mm.
+    height: float  #: How far it lies over the tip, mm.
+    radius: float  #: Of curvature there, mm; 0 for a sharp edge.
+    #: `low`, `high`: tilts at which it touches, rad.
     low: float
     high: float
 
 
 class Flank(NamedTuple):
-    """A straight side of the cutting edge: it touches at one tilt, anywhere along its length.
+    """A straight side of the cutting edge: it touches at one tilt, anywhere along its length."""
 
-    mode : int
-        In which its lower end touches, as `modes` counts them.
-    tilt : float
-        rad.
-    length : float
-        mm; 0 where nothing above it is narrower, so that no other place along it serves where its lower end does not.
-    """
-
-    mode: int
-    tilt: float
-    length: float
+    mode: int  #: In which its lower end touches, as `modes` counts them.
+    tilt: float  #: rad.
+    length: float  #: mm; 0 where nothing above is narrower, so that no other place along it serves where its lower end does not.
 
 
 def flute_length(cutter: Dimensions) -> float:

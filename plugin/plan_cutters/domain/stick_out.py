@@ -22,37 +22,28 @@ _EXACT = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class StickOut(Record):
-    """The least stick-out with which a cutter reaches what it reaches; lengths in mm.
+    """The least stick-out with which a cutter reaches what it reaches; lengths in mm."""
 
-    `least`: nan where there is none to find: `why` says so.
-    `floor`, `longest`: between which it was looked for: the shortest that leaves flutes and neck out of the holder, and what the
-      cutter was judged with.
-    `why`: what limits it: `obstacle`, `floor`, or why nothing was looked for: `no holder`, `reaches nothing`.
-    `beyond`: the stick-out just below, with which the limiting sample was searched again; nan where nothing limits.
-    `verdict`: what was found there: INACCESSIBLE or UNDECIDED.
-    `sample`: the one that limits it, -1 for none; at `least`, its posture what is in the way of a shorter one.
-    `tilt`, `rotation`: rad.
-    `axis`, `tilt_direction` (3,) float.
-    `obstacle_point` (3,) float.
-    `served`: samples that were searched with it, and are reached.
-    `setup`: the setup of the sample that limits it, from 0.
-    """
-
-    least: float
+    least: float  #: nan where there is none to find: `why` says so.
+    #: `floor`, `longest`: between which it was looked for: the shortest that leaves flutes and neck out of the holder, and what
+    #: the cutter was judged with.
     floor: float
     longest: float
-    why: str
+    why: str  #: What limits it: `obstacle`, `floor`, or why nothing was looked for: `no holder`, `reaches nothing`.
+    #: The stick-out just below, with which the limiting sample was searched again; nan where nothing limits.
     beyond: float = math.nan
-    verdict: int = 255
-    sample: int = -1
+    verdict: int = 255  #: What was found there: INACCESSIBLE or UNDECIDED.
+    sample: int = -1  #: The one that limits it, -1 for none; at `least`, its posture what is in the way of a shorter one.
+    #: `tilt`, `rotation`: rad.
     tilt: float = math.nan
     rotation: float = math.nan
+    #: `axis`, `tilt_direction` (3,) float:
     axis: Floats | None = None
     tilt_direction: Floats | None = None
     obstacle_face: int | None = None
-    obstacle_point: Floats | None = None
-    served: int = 0
-    setup: int = 0
+    obstacle_point: Floats | None = None  #: (3,) float.
+    served: int = 0  #: Samples that were searched with it, and are reached.
+    setup: int = 0  #: The setup of the sample that limits it, from 0.
 
     @property
     def lean(self) -> Floats | None:

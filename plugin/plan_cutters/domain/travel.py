@@ -29,16 +29,12 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Travel(Record):
-    """Linear positions of a machine, sample by sample.
+    """Linear positions of a machine, sample by sample."""
 
-    `position` (n, 3) float: of its linear axes in their order, mm; nan where no posture is known or the axes cannot be found.
-    `taken` (n,) int8: which solution of its rotary axes that is; -1 for none.
-    `beyond` (n, 3) float: how far each axis is beyond its limits, mm; 0 within, nan as `position`.
-    """
-
+    #: (n, 3) float: of its linear axes in their order, mm; nan where no posture is known or the axes cannot be found.
     position: Floats
-    taken: NDArray[np.int8]
-    beyond: Floats
+    taken: NDArray[np.int8]  #: (n,) int8: which solution of its rotary axes that is; -1 for none.
+    beyond: Floats  #: (n, 3) float: how far each axis is beyond its limits, mm; 0 within, nan as `position`.
 
     @property
     def outside(self) -> NDArray[np.bool_]:

@@ -181,30 +181,21 @@ class VerdictBuffer(_Columns):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Witness(Record):
-    """A sample that is not reached, and the posture that comes nearest to reaching it.
-
-    `reason`: one of REASONS.
-    `obstacle_face`: face that is in the way at that posture; negative for a fixture (`Surroundings.called`).
-    `obstacle_point` (3,) float: point of it that lies in the cutter.
-    `tilt`, `rotation`: rad; None where the axis limit leaves no posture at all.
-    `axis` (3,) float.
-    `depth`: how deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched
-      for.
-    `samples`: how many samples it stands for: those not reached on its face for its reason, and within its body where it lies in
-      one.
-    `untried`: no posture was looked for, though there may be a depth.
-    """
+    """A sample that is not reached, and the posture that comes nearest to reaching it."""
 
     sample: int
-    reason: str
-    obstacle_face: int | None = None
-    obstacle_point: Floats | None = None
+    reason: str  #: One of REASONS.
+    obstacle_face: int | None = None  #: Face that is in the way at that posture; negative for a fixture (`Surroundings.called`).
+    obstacle_point: Floats | None = None  #: (3,) float: point of it that lies in the cutter.
+    #: `tilt`, `rotation`: rad; None where the axis limit leaves no posture at all.
     tilt: float | None = None
     rotation: float | None = None
-    axis: Floats | None = None
+    axis: Floats | None = None  #: (3,) float.
+    #: How deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched for.
     depth: float | None = None
+    #: How many samples it stands for: those not reached on its face for its reason, and within its body where it lies in one.
     samples: int = 1
-    untried: bool = False
+    untried: bool = False  #: No posture was looked for, though there may be a depth.
 
 
 def blank(n: int) -> VerdictBuffer:

@@ -17,10 +17,7 @@ _MISSING = f"is not there: {extra_hint('batch')}"
 
 
 def file_system(url: str) -> tuple[Any, str]:
-    """The file system of a path or URL, and the path on it.
-
-    Raises PlanError: a package is missing, or the URL has no meaning.
-    """
+    """The file system of a path or URL, and the path on it. Raises PlanError: a package is missing, or the URL has no meaning."""
     try:
         from fsspec.core import url_to_fs
     except ImportError:
@@ -34,10 +31,7 @@ def file_system(url: str) -> tuple[Any, str]:
 
 
 def refuse_memory(url: str) -> None:
-    """Refuse a URL that names the memory of this process, which no worker sees.
-
-    Raises PlanError.
-    """
+    """Refuse a URL that names the memory of this process, which no worker sees. Raises PlanError."""
     if url.startswith("memory://"):
         raise PlanError(
             "memory:// is the memory of one process, and each part has its own: give a folder, or a URL that all reach", file=url
@@ -45,10 +39,7 @@ def refuse_memory(url: str) -> None:
 
 
 def read(url: str) -> bytes:
-    """The content of a file.
-
-    Raises PlanError: it cannot be read.
-    """
+    """The content of a file. Raises PlanError: it cannot be read."""
     fs, path = file_system(url)
     try:
         return user_files.content(path) if _is_local(fs) else bytes(fs.cat_file(path))

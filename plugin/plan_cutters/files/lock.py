@@ -17,10 +17,7 @@ from plan_cutters_base.system_lock import acquired, system_lock
 
 
 def require_temporary() -> None:
-    """See to it that temporary files can be written somewhere.
-
-    Raises PlanError: no folder for them can be written to.
-    """
+    """See to it that temporary files can be written somewhere. Raises PlanError: no folder for them can be written to."""
     try:
         tempfile.gettempdir()
     except FileNotFoundError:

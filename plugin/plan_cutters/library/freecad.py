@@ -17,23 +17,10 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import lines_of
+from plan_cutters.library import raw_tool
 from plan_cutters.library.cutting import Preset, slack, take_feed
 from plan_cutters.library.fusion import MOST_SECTIONS
-from plan_cutters.library.raw_tool import (
-    MOST_TOOLS,
-    Content,
-    Entry,
-    FaultError,
-    LibraryContent,
-    Listed,
-    mm,
-    name_of,
-    number_in,
-    number_of,
-    sections,
-    too_many,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, LibraryContent, Listed
 from plan_cutters_base.user_files import is_there
 
 _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,
@@ -103,7 +90,7 @@ def read_bit(content: Content) -> LibraryContent:
 def read_library(content: Content) -> LibraryContent:
     """Read it and the bits that it lists, beside it or in a folder `Bit`."""
     if len(content.json["tools"]) > MOST_TOOLS:
-        raise too_many(content.name)
+        raise raw_tool.too_many(content.name)
     library, lines = LibraryContent(), lines_of(content.text, "tools")
     for i, item in enumerate(content.json["tools"]):
         line = f" (line {lines[i]})" if len(lines) == len(content.json["tools"]) else ""
@@ -111,11 +98,11 @@ def read_library(content: Content) -> LibraryContent:
         try:
             if not isinstance(item, dict) or not isinstance(item.get("path"), str):
                 raise FaultError("it has no path of a bit")
-            number = whole_of(item.get("nr"), "nr")
+            number = raw_tool.whole_of(item.get("nr"), "nr")
             bit = _bit(content.path.parent, item["path"])
             library.tools.append(_tool(bit, place, number))
         except FaultError as fault:
-            name = name_of(item.get("path")) if isinstance(item, dict) else ""
+            name = raw_tool.name_of(item.get("path")) if isinstance(item, dict) else ""
             library.tools.append(Entry(place, None, name, unused=str(fault), broken=True))
     return library
 
@@ -139,7 +126,7 @@ def _bit(folder: Path, path: str) -> Content:
 
 def read_holder(content: Content) -> LibraryContent:
     """Read an outline of (radius, height), counted from the holder's nose."""
-    name = name_of(content.json.get("name")) or content.path.stem
+    name = raw_tool.name_of(content.json.get("name")) or content.path.stem
     try:
         return LibraryContent(holders=[_holder(content.json, name)])
     except (FaultError, CutterError) as fault:
@@ -157,7 +144,7 @@ def _holder(entry: dict[str, Any], name: str) -> Holder:
     for i, point in enumerate(entry["profile"], 1):
         if not isinstance(point, list) or len(point) != 2:
             raise FaultError(f"profile {i} is no pair of radius and height")
-        points.append(tuple(mm(number_of(value, f"profile {i}"), scale, f"profile {i}") for value in point))
+        points.append(tuple(raw_tool.mm(raw_tool.number_of(value, f"profile {i}"), scale, f"profile {i}") for value in point))
     # The faces at both ends are part of the outline, not of its sides.
     while points and points[0][0] == 0.0:
         points.pop(0)
@@ -170,7 +157,7 @@ def _holder(entry: dict[str, Any], name: str) -> Holder:
         if z1 < z0:
             raise FaultError(f"profile falls from height {z0:g} to {z1:g}: it must rise")
         rows.append((round(z1 - z0, 9), 2.0 * r0, 2.0 * r1))
-    return Holder(tuple(sections(rows, "profile")), name)
+    return Holder(tuple(raw_tool.sections(rows, "profile")), name)
 
 
 def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
@@ -187,7 +174,7 @@ def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
                 content = Content.of(each)
                 if not is_holder(content):
                     raise FaultError("it is no FreeCAD holder")
-                tool.holder = _holder(content.json, name_of(content.json.get("name")) or word)
+                tool.holder = _holder(content.json, raw_tool.name_of(content.json.get("name")) or word)
             except LibraryError as error:
                 tool.faults.append(f"ToolHolder {shown(word)}: {error.cause}")
             except (FaultError, CutterError) as fault:
@@ -201,7 +188,7 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
     entry = content.json
     called, shape = (_stem(entry.get(word)) for word in ("shape-type", "shape"))
     kind = called or shape
-    tool = Listed(place, number, name_of(entry.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
+    tool = Listed(place, number, raw_tool.name_of(entry.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
     parameters = entry["parameter"]
     imperial = isinstance(parameters.get("Units"), str) and parameters["Units"].lower() == "imperial"
 
@@ -246,7 +233,7 @@ def _dimension(
     tool.take(key, parameters[first] if parameters.get(first) not in (None, "") else None, first, length)
     for other in others:
         try:
-            same = abs(mm(length(parameters[other], other), 1.0, other) - tool.values.get(key, 0.0)) <= 1e-3
+            same = abs(raw_tool.mm(length(parameters[other], other), 1.0, other) - tool.values.get(key, 0.0)) <= 1e-3
         except FaultError as fault:
             tool.faults.append(str(fault))
             continue
@@ -269,7 +256,7 @@ def _cone(tool: Listed, angle: Any) -> None:
 
 def _stem(shape: Any) -> str:
     """The name of a shape, of its file without folder and suffix."""
-    return re.sub(r"\.fcstd$", "", name_of(shape), flags=re.IGNORECASE).replace("\\", "/").rpartition("/")[2]
+    return re.sub(r"\.fcstd$", "", raw_tool.name_of(shape), flags=re.IGNORECASE).replace("\\", "/").rpartition("/")[2]
 
 
 def _plain(shape: str) -> str:
@@ -287,7 +274,7 @@ def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], f
     if value in (None, "") or "DC" not in tool.values:
         return
     try:
-        radius = mm(length(value, field), 1.0, field)
+        radius = raw_tool.mm(length(value, field), 1.0, field)
     except FaultError as fault:
         tool.faults.append(str(fault))
         return
@@ -318,22 +305,22 @@ def _feed(value: Any, field: str) -> float:
     """mm/min of a number or a text; without a unit it is mm/min, as the programs that write bits count."""
     match = _FEED.fullmatch(value) if isinstance(value, str) else None
     if match is None:
-        return number_of(value, field)
+        return raw_tool.number_of(value, field)
     scale = _MM.get((match[2] or "mm").lower())
     if scale is None:
         raise FaultError(f"{field} is {shown(value)}, not a feed as 500 mm/min")
-    return number_in(match[1], field)[0] * scale * (60.0 if match[3] == "s" else 1.0)
+    return raw_tool.number_in(match[1], field)[0] * scale * (60.0 if match[3] == "s" else 1.0)
 
 
 def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
     """mm of a text with a unit."""
     if not isinstance(value, str):
-        number, unit = number_of(value, field), ""
+        number, unit = raw_tool.number_of(value, field), ""
     else:
         match = _QUANTITY.fullmatch(value)
         if not match:
             raise FaultError(f"{field} is {shown(value)}, not a length as 6.35 mm or 0.25 in")
-        number, comma = number_in(match[1], field)
+        number, comma = raw_tool.number_in(match[1], field)
         unit = match[2]
         if comma:
             tool.notes.append("decimal commas")
@@ -354,11 +341,11 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
 
 def _angle(value: Any, field: str) -> float:
     if not isinstance(value, str):
-        return number_of(value, field)
+        return raw_tool.number_of(value, field)
     match = _QUANTITY.fullmatch(value)
     if not match or match[2].lower() not in _DEGREES:
         raise FaultError(f"{field} is {shown(value)}, not an angle in degrees")
-    return number_in(match[1], field)[0]
+    return raw_tool.number_in(match[1], field)[0]
 
 
 def _half_angle(value: Any, field: str) -> float:

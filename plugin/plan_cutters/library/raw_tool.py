@@ -15,35 +15,22 @@ from plan_cutters.files import content
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One tool as a file lists it.
+    """One tool as a file lists it."""
 
-    `place`: where it stands, for people: `tool 3 (line 52)`.
-    `number`: in the machine's tool changer.
-    `name`, `kind`: as the file words them.
-    `unit`: that its lengths are given in: `mm`, `inch`; empty where the file does not say.
-    `cutter`: what can be judged of it. None: `unused` says why.
-    `unused`: the field concerned, what is wrong with it and what to add.
-    `broken`: it contradicts itself or cannot be read; else it is not for finishing, or lacks something.
-    `unheld`: it is not used because it does not fit its holder.
-    `notes`: how it was understood where that is not plain.
-    `given`: dimensions that were read, mm and degrees, by their ISO 13399 names.
-    `feed`: of its preset, mm/min. It is none of the cutter's, whose id stays the same.
-    `preset`: the name of the preset that the feed is of.
-    """
-
-    place: str
-    number: int | None = None
+    place: str  #: Where it stands, for people: `tool 3 (line 52)`.
+    number: int | None = None  #: In the machine's tool changer.
+    #: `name`, `kind`: as the file words them.
     name: str = ""
     kind: str = ""
-    unit: str = ""
-    cutter: Cutter | None = None
-    unused: str | None = None
-    broken: bool = False
-    notes: tuple[str, ...] = ()
-    given: tuple[tuple[str, float], ...] = ()
-    feed: float | None = None
-    preset: str = ""
-    unheld: bool = False
+    unit: str = ""  #: That its lengths are given in: `mm`, `inch`; empty where the file does not say.
+    cutter: Cutter | None = None  #: What can be judged of it. None: `unused` says why.
+    unused: str | None = None  #: The field concerned, what is wrong with it and what to add.
+    broken: bool = False  #: It contradicts itself or cannot be read; else it is not for finishing, or lacks something.
+    notes: tuple[str, ...] = ()  #: How it was understood where that is not plain.
+    given: tuple[tuple[str, float], ...] = ()  #: Dimensions that were read, mm and degrees, by their ISO 13399 names.
+    feed: float | None = None  #: Of its preset, mm/min. It is none of the cutter's, whose id stays the same.
+    preset: str = ""  #: The name of the preset that the feed is of.
+    unheld: bool = False  #: It is not used because it does not fit its holder.
 
     @property
     def label(self) -> str:
@@ -55,20 +42,16 @@ class Entry:
 class Library(Sequence[Cutter]):
     """The cutters of a file, each geometry once, in the file's order: `plan(part, cutters=library)`.
 
-    `file`, `format`: the file's name without its folder, and the name of its format.
-    `entries`: all that the file lists, used or not.
-    `holders`: listed by themselves, without a tool.
-    `notes`: how the file as a whole was understood.
-
     >>> Library("none.toml", "plan-cutters TOML")[0:]
     ()
     """
 
+    #: `file`, `format`: the file's name without its folder, and the name of its format.
     file: str
     format: str
-    entries: tuple[Entry, ...] = ()
-    holders: tuple[Holder, ...] = ()
-    notes: tuple[str, ...] = ()
+    entries: tuple[Entry, ...] = ()  #: All that the file lists, used or not.
+    holders: tuple[Holder, ...] = ()  #: Listed by themselves, without a tool.
+    notes: tuple[str, ...] = ()  #: How the file as a whole was understood.
     cutters: tuple[Cutter, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -195,55 +178,39 @@ def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
 
 @dataclass(slots=True)
 class Stated:
-    """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are.
+    """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are."""
 
-    `attributes`: of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
-    `straight`: no shank is requested: what is below it goes on.
-    """
-
+    #: Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
     attributes: dict[str, Any] = field(default_factory=dict)
-    straight: bool = False
+    straight: bool = False  #: No shank is requested: what is below it goes on.
 
 
 @dataclass(slots=True)
 class Listed:
-    """A tool as a file lists it, filled by the readers of formats.
-
-    `values`: by ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF
-      flute length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and
-      DN its diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest
-      diameter.
-    `words`: what the file calls each.
-    `kind`: as the file words it; `sort`, if given, is what that is among `milling.MILLS`.
-    `tapered`: which tip a tapered mill has, as the file words it: its dimensions can mean a ball and a bull nose.
-    `shaft`: sections that the file gives above LN (or LCF), from there up.
-    `holder`: `none`: the file says that there is none.
-    `zeros`: dimensions that the file states as 0: it does not lack them.
-    `faults`: what could not be read.
-    `doubts`: fields that can mean different tools.
-    `needs`: dimensions without which there is no cutter.
-    `feed`: mm/min, and the name of the `preset` that it is of.
-    """
+    """A tool as a file lists it, filled by the readers of formats."""
 
     place: str
     number: int | None = None
     name: str = ""
-    kind: str = ""
+    kind: str = ""  #: As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
     sort: str = ""
-    tapered: str = ""
+    tapered: str = ""  #: Which tip a tapered mill has, as the file words it: its dimensions can mean a ball and a bull nose.
     unit: str = ""
     scale: float = 1.0
+    #: By ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF flute
+    #: length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and DN its
+    #: diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest diameter.
     values: dict[str, float] = field(default_factory=dict)
-    words: dict[str, str] = field(default_factory=dict)
-    shaft: list[Segment] = field(default_factory=list)
-    holder: Holder | Literal["none"] | None = None
-    zeros: set[str] = field(default_factory=set)
-    faults: list[str] = field(default_factory=list)
-    doubts: list[str] = field(default_factory=list)
+    words: dict[str, str] = field(default_factory=dict)  #: What the file calls each.
+    shaft: list[Segment] = field(default_factory=list)  #: Sections that the file gives above LN (or LCF), from there up.
+    holder: Holder | Literal["none"] | None = None  #: `none`: the file says that there is none.
+    zeros: set[str] = field(default_factory=set)  #: Dimensions that the file states as 0: it does not lack them.
+    faults: list[str] = field(default_factory=list)  #: What could not be read.
+    doubts: list[str] = field(default_factory=list)  #: Fields that can mean different tools.
     notes: list[str] = field(default_factory=list)
-    needs: tuple[str, ...] = ("DC", "LCF")
+    needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
     stated: Stated | None = None
-    feed: float | None = None
+    feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.
     preset: str = ""
 
     def tried(self, make: Callable[[], Any], otherwise: Any) -> Any:

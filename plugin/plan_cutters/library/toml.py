@@ -14,24 +14,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import toml_text
+from plan_cutters.library import raw_tool
 from plan_cutters.library.cutting import Preset, take_feed
 from plan_cutters.library.milling import cause_of
-from plan_cutters.library.raw_tool import (
-    MOST_TOOLS,
-    Content,
-    Entry,
-    FaultError,
-    Library,
-    LibraryContent,
-    Listed,
-    Stated,
-    mm,
-    name_of,
-    number_of,
-    too_many,
-    unit_of,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, Library, LibraryContent, Listed, Stated
 
 _LOOKS = re.compile(r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE)
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
@@ -96,7 +82,7 @@ def read_toml(content: Content) -> LibraryContent:
         # TOML is read by Python itself, some MB in a second.
         raise LibraryError(f"is larger than {_MOST >> 20} MB: no tool library is; split it", file=content.name)
     if len(_TABLE.findall(content.text)) > MOST_TOOLS:
-        raise too_many(content.name)
+        raise raw_tool.too_many(content.name)
     try:
         document = tomllib.loads(content.text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
@@ -109,14 +95,14 @@ def read_toml(content: Content) -> LibraryContent:
         if not isinstance(tables, list):
             raise LibraryError(f"{key} is one table: write [[{key}]], with two brackets", file=content.name)
     if len(tools) > MOST_TOOLS or len(holders) > MOST_TOOLS:
-        raise too_many(content.name)
+        raise raw_tool.too_many(content.name)
     library = LibraryContent()
     # None: the name means more than one.
     named: dict[str, Holder | None] = {}
     for i, table in enumerate(holders, 1):
         try:
             model = HolderTable.model_validate(table)
-            holder = _outlined(model, unit_of(model.unit or document.get("unit"), "unit")[1])
+            holder = _outlined(model, raw_tool.unit_of(model.unit or document.get("unit"), "unit")[1])
         except (ValidationError, FaultError, CutterError) as error:
             library.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
             continue
@@ -173,16 +159,16 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     stated = Stated()
     tool = Listed(place, stated=stated)
     if isinstance(table, dict):
-        tool.name = name_of(table.get("name"))
+        tool.name = raw_tool.name_of(table.get("name"))
         if isinstance(table.get("number"), int):
-            tool.number = tool.tried(lambda: whole_of(table["number"], "number"), None)
+            tool.number = tool.tried(lambda: raw_tool.whole_of(table["number"], "number"), None)
     try:
         model = ToolTable.model_validate(table)
     except ValidationError as error:
         tool.faults.append(_why(error))
         return tool
     tool.kind = model.type
-    tool.unit, tool.scale = tool.tried(lambda: unit_of(model.unit or unit, "unit"), ("", 1.0))
+    tool.unit, tool.scale = tool.tried(lambda: raw_tool.unit_of(model.unit or unit, "unit"), ("", 1.0))
     for key in ("DC", "RE", "LPR", "OAL", "DN"):
         tool.take(key, getattr(model, key) if key in model.model_fields_set else None, key)
     tool.take("DMM", None if model.DMM == "same" else model.DMM, "DMM")
@@ -190,7 +176,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     tool.holder = tool.tried(lambda: _holder(model.holder, tool.scale, named), None)
 
     def length(value: Any, field: str) -> float:
-        return tool.tried(lambda: mm(value or 0.0, tool.scale, field, exact=True), 0.0)
+        return tool.tried(lambda: raw_tool.mm(value or 0.0, tool.scale, field, exact=True), 0.0)
 
     flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
@@ -249,7 +235,7 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
 def _degrees(value: Any, field: str) -> float:
     """A half angle: degrees, or a text with its unit."""
     if not isinstance(value, str):
-        return number_of(value, field)
+        return raw_tool.number_of(value, field)
     degrees = math.degrees(stated_radians(value))
     if math.isnan(degrees):
         raise FaultError(f"{field} is {shown(value)}: a half angle in degrees, or as 0.0873 rad")
@@ -263,7 +249,7 @@ def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder
     if isinstance(value, list):
         return _outlined(HolderTable(points=value), scale)
     if isinstance(value, HolderTable):
-        return _outlined(value, unit_of(value.unit, "unit")[1] if value.unit else scale)
+        return _outlined(value, raw_tool.unit_of(value.unit, "unit")[1] if value.unit else scale)
     if value == "none":
         if "none" in named:
             raise FaultError("holder 'none' means that there is none, but a [[holder]] has that name: rename it")
@@ -285,7 +271,7 @@ def _outlined(model: HolderTable, scale: float) -> Holder:
     if model.stages is not None:
         return Holder(tuple(_stages(model.stages, scale, "holder stages")), model.name)
     stages = []
-    points = [[mm(value, scale, "holder points", exact=True) for value in point] for point in model.points or ()]
+    points = [[raw_tool.mm(value, scale, "holder points", exact=True) for value in point] for point in model.points or ()]
     if not points or points[0][0] != 0.0:
         raise FaultError("holder points must begin at its nose, z 0")
     for (z0, r0), (z1, r1) in pairwise(points):
@@ -297,7 +283,7 @@ def _outlined(model: HolderTable, scale: float) -> Holder:
 
 
 def _stages(rows: list[Section], scale: float, field: str) -> list[Segment]:
-    return [Segment(*(mm(value, scale, field, exact=True) for value in row)) for row in rows]
+    return [Segment(*(raw_tool.mm(value, scale, field, exact=True) for value in row)) for row in rows]
 
 
 def _rows(stages: Iterable[Segment]) -> list[list[float]]:
@@ -363,14 +349,14 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
         for cutter in cutters:
             lines += _written(cutter, cutter.name, None)
         return "\n".join([*lines, ""])
-    lines.insert(0, f"# From {name_of(cutters.file)} ({cutters.format})")
+    lines.insert(0, f"# From {raw_tool.name_of(cutters.file)} ({cutters.format})")
     for holder in cutters.holders:
         name = "" if holder.name == "none" else holder.name
         lines += ["", "[[holder]]", f"name = {toml_text(name)}", f"stages = {toml_text(_rows(holder.stages))}"]
     for entry in cutters.entries:
         if entry.cutter is None:
-            lines += ["", f"# Not used: {name_of(entry.label)}: {name_of(entry.unused)}"]
+            lines += ["", f"# Not used: {raw_tool.name_of(entry.label)}: {raw_tool.name_of(entry.unused)}"]
             continue
         lines += _written(entry.cutter, entry.name, entry.number, entry.feed)
-        lines[-1:] = [lines[-1], *(f"# {name_of(note)}" for note in entry.notes)]
+        lines[-1:] = [lines[-1], *(f"# {raw_tool.name_of(note)}" for note in entry.notes)]
     return "\n".join([*lines, ""])

@@ -262,10 +262,7 @@ def _under(shape, boxes, end, bound, j, offset, clear):
 
 @kernel
 def _across(shape, boxes, end, bound, j, offset, clear):
-    """Mark boxes that a plane across their thin side, or else triangles that their own plane, parts from a bound.
-
-    Lemma M6.
-    """
+    """Mark boxes that a plane across their thin side, or else triangles that their own plane, parts from a bound. Lemma M6."""
     edge = edge_of(bound, j)
     q0, f0, q1, f1, _, _, _ = edge
     up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
