@@ -37,52 +37,29 @@ class Attributes(AboveTip, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Dimensions:
-    """A tool assembly as the search sees it: a solid of revolution, from the tip to the end of its holder.
+    """A tool assembly as the search sees it: a solid of revolution, from the tip to the end of its holder."""
 
-    Attributes
-    ----------
-    radius : float
-        Of the cutting part, mm: of a tapered one at the tip, as if its corner were that of a straight one; of a barrel the
-        largest.
-    length : float
-        mm from the tip to the holder's nose, or to the end of all that is checked where there is no holder.
-    corner_radius : float
-        mm; 0 for a flat end, the radius for a ball; of a barrel the radius of its tip, 0 for none.
-    name : str
-        For people; the id is made from the dimensions.
-    taper : float
-        Half angle, rad (of a `Cutter` also `taper_deg`, degrees): positive where the radius grows from the tip up, negative
-        for a dovetail.
-    flutes : float, optional
-        Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
-    neck : Segment or tuple of Segment, optional
-        What stands right above the flutes: one section, or several from there up.
-    shank_radius : float, optional
-        From there up to `length`, mm. None: the part that cuts, or the neck, goes on.
-    holder : Holder, optional
-    shape : str
-        `end`, `lollipop`, `barrel`, `lens` or `form`.
-    arc_radius, arc_height : float
-        Of a barrel's flank or a lens's bottom: its radius, and the height of a barrel's widest place over the tip, mm.
-    outline : tuple of (float, float)
-        Of a form: points (radius, height) from the axis at the tip to the end of the flutes, mm.
-    allowance, clearance : float, optional
-        Stock left on the surface, and clearance required of neck, shank and holder, mm. None: as asked for the whole plan.
-    """
-
+    #: Of the cutting part, mm: of a tapered one at the tip, as if its corner were that of a straight one; a barrel's largest.
     radius: float
-    length: float
-    corner_radius: float = 0.0
-    name: str = ""
+    length: float  #: mm from the tip to the holder's nose, or to the end of all that is checked where there is no holder.
+    corner_radius: float = 0.0  #: mm; 0 for a flat end, the radius for a ball; of a barrel the radius of its tip, 0 for none.
+    name: str = ""  #: For people; the id is made from the dimensions.
+    #: Half angle, rad (of a `Cutter` also `taper_deg`, degrees): positive where the radius grows from the tip up, negative for a
+    #: dovetail.
     taper: float = 0.0
+    #: Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
     flutes: float | None = None
+    #: What stands right above the flutes: one section, or several from there up.
     neck: Segment | tuple[Segment, ...] | None = None
-    shank_radius: float | None = None
+    shank_radius: float | None = None  #: From there up to `length`, mm. None: the part that cuts, or the neck, goes on.
     holder: Holder | None = None
     shape: Shape = "end"
+    #: Of a barrel's flank or a lens's bottom: its radius, and the height of a barrel's widest place over the tip, mm.
     arc_radius: float = 0.0
     arc_height: float = 0.0
+    #: Of a form: points (radius, height) from the axis at the tip to the end of the flutes, mm.
     outline: tuple[tuple[float, float], ...] = ()
+    #: Stock left on the surface, and clearance required of neck, shank and holder, mm. None: as asked for the whole plan.
     allowance: float | None = None
     clearance: float | None = None
 

@@ -32,19 +32,11 @@ def positive(value: Any, what: str, *, zero: bool = False) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A round section of a holder, shank or neck: a cylinder or a cone.
+    """A round section of a holder, shank or neck: a cylinder or a cone."""
 
-    Attributes
-    ----------
-    radius, upper_radius : float
-        At its lower (tip) and its upper (spindle) end, mm; the upper one is the lower one unless it is given.
-    length : float
-        mm.
-    """
-
-    radius: float
-    length: float
-    upper_radius: float = math.nan
+    radius: float  #: At its lower (tip) end, mm.
+    length: float  #: mm.
+    upper_radius: float = math.nan  #: At its upper (spindle) end, mm; the lower one unless it is given.
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", positive(self.radius, "a stage's radius"))

@@ -14,6 +14,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from plan_cutters.errors import PlanError
+from plan_cutters.files.content import translated
 from plan_cutters_base import user_files as files
 
 #: Members that are looked at, and bytes of an array's header.
@@ -51,14 +52,8 @@ class Archive:
 
     def __init__(self, path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> None:
         self.name, self.noun, self.error = Path(path).name, noun, error
-        try:
+        with translated(self.name, error):
             self._file = files.open_regular(files.permitted(path))
-        except files.IrregularError as fault:
-            raise error(str(fault), file=self.name) from None
-        except OSError as fault:
-            raise error(f"cannot be read: {fault.strerror or fault}", file=self.name) from None
-        except ValueError as fault:
-            raise error(f"is no name of a file: {fault}", file=ascii(self.name)) from None
         try:
             self._archive = self._opened()
             self.headers = self._headers()

@@ -9,6 +9,7 @@ import re
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -20,7 +21,7 @@ from defusedxml.common import DefusedXmlException
 from defusedxml.expatreader import create_parser
 
 from plan_cutters.errors import PlanError
-from plan_cutters_base import user_files as files
+from plan_cutters_base import user_files
 from plan_cutters_base.user_files import IrregularError, open_regular
 
 _DEEPEST, _ELEMENTS = 64, 2_000_000
@@ -106,6 +107,19 @@ def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) 
     return tree.top.children[0]
 
 
+@contextmanager
+def translated(name: str, error: type[PlanError]) -> Iterator[None]:
+    """Raise what goes wrong where a file is opened and read as an error that names the file."""
+    try:
+        yield
+    except IrregularError as fault:
+        raise error(str(fault), file=name) from None
+    except OSError as fault:
+        raise error(f"cannot be read: {fault.strerror or fault}", file=name) from None
+    except ValueError as fault:
+        raise error(f"is no name of a file: {fault}", file=ascii(name)) from None
+
+
 def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
     """Read all bytes of a regular file, or of a link to one; the result is None where there is no such file.
 
@@ -116,18 +130,13 @@ def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
     True
     """
     name = Path(path).name
-    try:
-        with open_regular(path) as opened:
-            large = os.fstat(opened.fileno()).st_size > most
-            data = b"" if large else opened.read(most + 1)
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-    except IrregularError as fault:
-        raise PlanError(str(fault), file=name) from None
-    except OSError as fault:
-        raise PlanError(f"cannot be read: {fault.strerror or fault}", file=name) from None
-    except ValueError as fault:
-        raise PlanError(f"is no name of a file: {fault}", file=ascii(name)) from None
+    with translated(name, PlanError):
+        try:
+            with open_regular(path) as opened:
+                large = os.fstat(opened.fileno()).st_size > most
+                data = b"" if large else opened.read(most + 1)
+        except (FileNotFoundError, NotADirectoryError):
+            return None
     if large or len(data) > most:
         raise PlanError(f"is larger than {most} bytes", file=name)
     return data
@@ -169,15 +178,12 @@ class Content:
     def of(cls, path: str | os.PathLike[str]) -> Self:
         """Read the content of a regular file; `error` names it as no `noun` where it cannot be one."""
         name = Path(path).name
-        try:
-            data = files.content(path, _FILE + 1)
-        except files.IrregularError as fault:
-            what = f"{cls.noun} in it" if os.path.isdir(path) else "file"
-            raise cls.error(f"{fault}; give a {what}", file=name) from None
-        except OSError as fault:
-            raise cls.error(f"cannot be read: {fault.strerror or fault}", file=name) from None
-        except ValueError as fault:
-            raise cls.error(f"is no name of a file: {fault}", file=ascii(name)) from None
+        with translated(name, cls.error):
+            try:
+                data = user_files.content(path, _FILE + 1)
+            except IrregularError as fault:
+                what = f"{cls.noun} in it" if os.path.isdir(path) else "file"
+                raise cls.error(f"{fault}; give a {what}", file=name) from None
         if len(data) > _FILE:
             raise cls.error(f"is larger than {_FILE >> 20} MB: no {cls.noun} is; split it", file=name)
         return cls(Path(path), data)

@@ -292,13 +292,8 @@ def _wander(row, patches, nodes, frame, sine, offset, turn, lift):
     return Wander(-1, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest, swing / (sine - turn - swing))
 
 
-class Obstacles(NamedTuple):
-    """This record holds a tree and the face numbers of its triangles, the face of the contact, and the triangle tested first."""
-
-    tree: Any
-    triangle_face: Any
-    face: int
-    hint: int
+#: It holds a tree and the face numbers of its triangles, the face of the contact, and the triangle tested first.
+Obstacles = namedtuple("Obstacles", "tree triangle_face face hint")
 
 
 @kernel

@@ -2,7 +2,6 @@
 
 import math
 from collections import namedtuple
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -93,12 +92,8 @@ def _apart(box, node, along, offset, most):
     return abs(at) > half + 1e-12 * size
 
 
-class OneFace(NamedTuple):
-    """The triangles of one face among others: their tree, the face numbers (n,) in tree order, and the number of the one."""
-
-    tree: Any
-    faces: Any
-    number: int
+#: The triangles of one face among others: their tree, the face numbers (n,) in tree order, and the number of the one.
+OneFace = namedtuple("OneFace", "tree faces number")
 
 
 #: A workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64.

@@ -15,7 +15,6 @@ triangles of a tree, side by side in the lanes of the processor, are seen from a
 """
 
 from collections import namedtuple
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -304,13 +303,8 @@ def half_of(tree, triangle):
     return tree.more_vertex, triangle - first
 
 
-class WideTree(NamedTuple):
-    """A tree as `wide_tree` arranges it."""
-
-    vertex: Any
-    blocks: Any
-    offset: Any
-    bottom: int
+#: A tree as `wide_tree` arranges it.
+WideTree = namedtuple("WideTree", "vertex blocks offset bottom")
 
 
 @entry

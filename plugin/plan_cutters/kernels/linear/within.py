@@ -1,6 +1,6 @@
 """Which triangles, or points of them, lie in a box or cylinder, and through which cells of a grid may triangles pass?"""
 
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -8,16 +8,9 @@ from plan_cutters.kernels.codes import CENTRE, DIAGONAL, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.tree import half
 
-
-class Space(NamedTuple):
-    """The inside of a box or cylinder: its frame's origin (3,) and axes (3, 3), as columns; corners (3,) of the box in it, and
-    about z the radius of the cylinder, infinite for a box; mm."""
-
-    origin: Any
-    axes: Any
-    low: Any
-    high: Any
-    radius: float
+#: The inside of a box or cylinder: its frame's origin (3,) and axes (3, 3), as columns; corners (3,) of the box in it, and about
+#: z the radius of the cylinder, infinite for a box; mm.
+Space = namedtuple("Space", "origin axes low high radius")
 
 
 @kernel

@@ -1,7 +1,6 @@
 """Take the tilts that a point or a triangle forbids out of the intervals of a rotation, piece by piece of the tool."""
 
 from collections import namedtuple
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -151,14 +150,8 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
     return True
 
 
-class Met(NamedTuple):
-    """This record holds triangle `i` of some, and piece `k` of the tool that it may be in the way of."""
-
-    vertex: Any
-    i: int
-    frame: Any
-    turning: Any
-    k: int
+#: It holds triangle `i` of some, and piece `k` of the tool that it may be in the way of.
+Met = namedtuple("Met", "vertex i frame turning k")
 
 
 @kernel

@@ -5,7 +5,7 @@ the tangent plane is out of reach at every posture and left out for all rotation
 of its points, whose arc is known in closed form: so intervals are nearly what they will be before any triangle is looked at.
 """
 
-from typing import Any, NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
@@ -110,30 +110,12 @@ def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin,
                     remaining[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
 
 
-class _View(NamedTuple):
-    """This record caches the part of the tree that was visited, as seen from one contact, for all rotations.
-
-    boxes, leaves: the blocks of boxes and of triangles. below: the block below each box. home: the box above each block. tally:
-    blocks kept, leaves kept, the place of the next triangle that is tried first, and blocks visited in all.
-
-    known (rotations + 1, LANES): triangles that cut intervals of each rotation last, of this sample or the one before, the last
-    row those of any; place (rotations,) of the next of a rotation. Obstacles beyond `reach` of the contact cannot be hit.
-    """
-
-    boxes: Any
-    leaves: Any
-    below: Any
-    home: Any
-    tally: Any
-    known: Any
-    place: Any
-    queue: Any
-    ahead: Any
-    margin: Any
-    inside: Any
-    which: Any
-    left: Any
-    reach: float
+#: It caches the part of the tree that was visited, as seen from one contact, for all rotations.
+#: boxes, leaves: the blocks of boxes and of triangles. below: the block below each box. home: the box above each block. tally:
+#: blocks kept, leaves kept, the place of the next triangle that is tried first, and blocks visited in all.
+#: known (rotations + 1, LANES): triangles that cut intervals of each rotation last, of this sample or the one before, the last
+#: row those of any; place (rotations,) of the next of a rotation. Obstacles beyond `reach` of the contact cannot be hit.
+_View = namedtuple("_View", "boxes leaves below home tally known place queue ahead margin inside which left reach")
 
 
 @kernel

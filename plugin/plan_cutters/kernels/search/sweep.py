@@ -7,6 +7,7 @@ nearly where its own do, and an arc costs a hundredth of a walk of the tree. A t
 last met at any rotation, and only then to the tree. What nothing forbids is a posture.
 """
 
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,23 +32,12 @@ _NEVER, _TRIED, _PROVED = 0, 1, 2
 WITHOUT_END = 1 << 60
 
 
-class Memory(NamedTuple):
-    """This record is the obstacle cache: it holds the points that earlier sweeps have met.
-
-    point (rotations x modes, k, 3), count: points that forbade tilts of each rotation and mode, and how many of each. pool
-    (3, m): the last points that the tree gave; seen (3, m): the same from the contact, along direction_max, e2 and the normal;
-    depth (m,), which (m,): how deep each is in the tool, and in which piece. given (1,): how many points the tree gave in all.
-    bent: whether the sweeps are among the tilts that curvature forbids.
-    """
-
-    point: Any
-    count: Any
-    pool: Any
-    seen: Any
-    depth: Any
-    which: Any
-    given: Any
-    bent: bool
+#: It is the obstacle cache: it holds the points that earlier sweeps have met.
+#: point (rotations x modes, k, 3), count: points that forbade tilts of each rotation and mode, and how many of each. pool (3, m):
+#: the last points that the tree gave; seen (3, m): the same from the contact, along direction_max, e2 and the normal; depth (m,),
+#: which (m,): how deep each is in the tool, and in which piece. given (1,): how many points the tree gave in all. bent: whether
+#: the sweeps are among the tilts that curvature forbids.
+Memory = namedtuple("Memory", "point count pool seen depth which given bent")
 
 
 class Side(NamedTuple):
@@ -217,8 +207,8 @@ def sweep(contacts, row, ranges, side, start, turns, obstacle_cache, workspace):
     tally[:], workspace.proved[0] = 0.0, _NEVER
     pooled, last = -1, workspace.scratch.looked[0] + side.most
     for step in range(turns):
-        side = (step + 1) // 2 if step % 2 else -(step // 2)
-        rotation = (start[0] + side) % rotations
+        off = (step + 1) // 2 if step % 2 else -(step // 2)
+        rotation = (start[0] + off) % rotations
         workspace.scratch.looked[0] += ROTATION * modes
         for mode in range(modes):
             tilt, pooled = _rotation(
