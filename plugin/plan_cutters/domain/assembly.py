@@ -216,14 +216,9 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
     touching = np.array([(each.offset, each.radius + grown_by, each.low, each.high, each.height) for each in modes(cutter)])
     inner, highest = _inner(cutter, bands)
     return Assembly(
-        _placed(table, touching[:, 4]),
-        touching,
-        2.0 * cutter.radius,
-        inner,
-        min(highest, float(table[:, TOP].max(initial=0.0))),
-        _slack(cutter, flutes, bands, kind),
-        flanks(cutter),
-    )
+        _placed(table, touching[:, 4]), touching, 2.0 * cutter.radius, inner, min(highest, float(table[:, TOP].max(initial=0.0))),
+        _slack(cutter, flutes, bands, kind), flanks(cutter),
+    )  # fmt: skip
 
 
 def placed(tool: Assembly, table: Floats) -> Assembly:

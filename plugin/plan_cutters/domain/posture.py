@@ -135,50 +135,28 @@ Direction = tuple[float, float, float]
 
 
 class HostAxis(Protocol):
-    """An axis as build123d has it."""
+    """An axis as build123d has it, whose direction has X, Y and Z."""
 
     @property
-    def direction(self) -> "BuildVector": ...
-
-
-class BuildVector(Protocol):
-    """A vector as build123d has it."""
-
-    @property
-    def X(self) -> float: ...
-    @property
-    def Y(self) -> float: ...
-    @property
-    def Z(self) -> float: ...
-
-
-class CadVector(Protocol):
-    """A vector as CadQuery has it."""
-
-    @property
-    def x(self) -> float: ...
-    @property
-    def y(self) -> float: ...
-    @property
-    def z(self) -> float: ...
+    def direction(self) -> Any: ...
 
 
 class BuildPlane(Protocol):
-    """A plane as build123d has it."""
+    """A plane as build123d has it, with directions that have X, Y and Z."""
 
     @property
-    def z_dir(self) -> BuildVector: ...
+    def z_dir(self) -> Any: ...
     @property
-    def x_dir(self) -> BuildVector: ...
+    def x_dir(self) -> Any: ...
 
 
 class CadPlane(Protocol):
-    """A plane as CadQuery has it."""
+    """A plane as CadQuery has it, with directions that have x, y and z."""
 
     @property
-    def zDir(self) -> CadVector: ...
+    def zDir(self) -> Any: ...
     @property
-    def xDir(self) -> CadVector: ...
+    def xDir(self) -> Any: ...
 
 
 HostPlane = BuildPlane | CadPlane

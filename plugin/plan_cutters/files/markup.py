@@ -66,13 +66,9 @@ def policy(script: str, style: str, images: str) -> str:
 def template(path: Path) -> jinja2.Template:
     """A template of a page: what is put in is escaped, and cleaned as by `plain`; an unknown name is an error."""
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(path.parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        finalize=plain,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    ).get_template(path.name)
+        loader=jinja2.FileSystemLoader(path.parent), autoescape=True, undefined=jinja2.StrictUndefined, finalize=plain,
+        trim_blocks=True, lstrip_blocks=True,
+    ).get_template(path.name)  # fmt: skip
 
 
 def _hash(text: str) -> str:

@@ -32,7 +32,6 @@ class Tree(NamedTuple):
 #: curvature; curvature (n, 2): kappa_max, kappa_min, 1/mm, concave positive.
 Contacts = namedtuple("Contacts", "point normal direction_max curvature")
 
-
 #: Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
 #: `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards the
 #: first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two. aim (a, 3): tool axes
@@ -83,12 +82,10 @@ class Cylinder(NamedTuple):
 #: Contact p, normal n, tilt direction f, and t = n x f; each (3,).
 Frame = namedtuple("Frame", "p n f t")
 
-
 #: A workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3). looked (1,)
 #: int64: boxes looked at since it was made, and what else takes as long. balls (k, 5), stored (2,) int64: balls in bodies, see
 #: `material.keep_ball`; of which solids, and how many were stored.
 Scratch = namedtuple("Scratch", "stack masks corner drawn polygon spare pieces looked balls stored")
-
 
 #: A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`.
 VerdictArrays = namedtuple("VerdictArrays", "verdict axis tilt_direction tilt rotation reason")

@@ -256,17 +256,9 @@ class Listed:
     def entry(self, **more: Any) -> Entry:
         """As a record."""
         return Entry(
-            self.place,
-            self.number,
-            self.name,
-            self.kind,
-            self.unit,
-            notes=tuple(dict.fromkeys(self.notes)),
-            given=tuple(self.values.items()),
-            feed=self.feed,
-            preset=self.preset,
-            **more,
-        )
+            self.place, self.number, self.name, self.kind, self.unit, notes=tuple(dict.fromkeys(self.notes)),
+            given=tuple(self.values.items()), feed=self.feed, preset=self.preset, **more,
+        )  # fmt: skip
 
 
 @dataclass(slots=True)

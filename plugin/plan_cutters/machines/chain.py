@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
 from plan_cutters.domain.checks import finite, shown
-from plan_cutters.domain.machine import Axis, Carried, Kind, Machine
+from plan_cutters.domain.machine import Axis, Carried, Kind, Machine, X, Y, Z
 from plan_cutters.errors import MachineError, PlanError
 from plan_cutters.files import content
 
@@ -88,14 +88,7 @@ ANGLES = {
     "grad": math.pi / 200.0, "gon": math.pi / 200.0, "revolution": 2.0 * math.pi,
 }  # fmt: skip
 #: Directions by the names of ISO 841.
-ISO = {
-    "X": (1.0, 0.0, 0.0),
-    "Y": (0.0, 1.0, 0.0),
-    "Z": (0.0, 0.0, 1.0),
-    "A": (1.0, 0.0, 0.0),
-    "B": (0.0, 1.0, 0.0),
-    "C": (0.0, 0.0, 1.0),
-}
+ISO = {"X": X, "Y": Y, "Z": Z, "A": X, "B": Y, "C": Z}
 #: Limits of one axis that are both turned back to front are the same up to this, rad or mm.
 _EVEN = 1e-9
 

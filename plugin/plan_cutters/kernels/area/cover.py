@@ -501,15 +501,9 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
     """
     count = sweeping.tool.piece.shape[1]
     workspace = Workspace(
-        np.empty(3),
-        np.empty(3),
-        np.empty((BODIES, BODY)),
-        np.empty((BODIES, count, COLUMNS)),
-        np.empty((count, COLUMNS)),
-        np.empty(9),
-        zone.seen(),
-        hit.scratch(),
-    )
+        np.empty(3), np.empty(3), np.empty((BODIES, BODY)), np.empty((BODIES, count, COLUMNS)), np.empty((count, COLUMNS)),
+        np.empty(9), zone.seen(), hit.scratch(),
+    )  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:
         status[row], blocking = _cell_status(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)

@@ -95,7 +95,6 @@ def _apart(box, node, along, offset, most):
 #: The triangles of one face among others: their tree, the face numbers (n,) in tree order, and the number of the one.
 OneFace = namedtuple("OneFace", "tree faces number")
 
-
 #: A workspace: side (3,), ends (2, 2), limit (2,), stack (64,) int64.
 _Workspace = namedtuple("_Workspace", "side ends limit stack")
 

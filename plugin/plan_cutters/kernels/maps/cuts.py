@@ -289,19 +289,12 @@ def _closely(met, start, end, narrowest, workspace):
         return left, left, False
     right = _first_in_the_way(met, left, end, -1.0, narrowest, workspace)
     right = left if np.isnan(right) else right
+    if (met.turning.eight >> met.k) & 1:
+        return left, right, True
     middle = 0.5 * (left + right)
-    return (
-        left,
-        right,
-        bool(
-            (met.turning.eight >> met.k) & 1
-            or (
-                _in_the_way(met, min(left + unsure, middle), workspace)
-                and _in_the_way(met, middle, workspace)
-                and _in_the_way(met, max(right - unsure, middle), workspace)
-            )
-        ),
-    )
+    near, far = min(left + unsure, middle), max(right - unsure, middle)
+    shown = _in_the_way(met, near, workspace) and _in_the_way(met, middle, workspace)
+    return left, right, shown and _in_the_way(met, far, workspace)
 
 
 @kernel

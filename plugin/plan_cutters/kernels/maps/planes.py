@@ -353,11 +353,8 @@ def turn_boxes(view, block, cosine, sine, box):
         for k in range(3):
             f, t, z = view[block, 3 + k, lane], view[block, 6 + k, lane], view[block, 9 + k, lane]
             square += f * f + t * t + z * z
-            box[ALONG_F + k, lane], box[ALONG_T + k, lane], box[ALONG_N + k, lane] = (
-                cosine * f + sine * t,
-                cosine * t - sine * f,
-                z,
-            )
+            box[ALONG_F + k, lane], box[ALONG_T + k, lane] = cosine * f + sine * t, cosine * t - sine * f
+            box[ALONG_N + k, lane] = z
             wide += abs(cosine * t - sine * f)
         away, half = np.sqrt(box[AT, lane] * box[AT, lane] + box[AT + 2, lane] * box[AT + 2, lane]), np.sqrt(square)
         box[EXTENT, lane], box[NEAREST, lane], box[FARTHEST, lane] = wide, max(0.0, away - half), away + half
