@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from plan_cutters.domain.figures import text_of
 from plan_cutters.errors import FixtureError
 
 #: Self-centring vises for five axes by jaw width, jaw height and largest opening, mm, from the smallest up: round numbers between
@@ -83,7 +84,7 @@ class Vise:
     @property
     def word(self) -> str:
         """As on a command line."""
-        return f"{VISE}:{_joined(self.numbers[:3])}:{':'.join(map(_shown, self.numbers[3:]))}"
+        return _word(VISE, self.numbers[:3], self.numbers[3:])
 
     @property
     def ledge(self) -> float:
@@ -135,7 +136,7 @@ class Chuck:
     @property
     def word(self) -> str:
         """As on a command line."""
-        return f"{CHUCK}:{_joined(self.numbers[:2])}:{':'.join(map(_shown, self.numbers[2:]))}"
+        return _word(CHUCK, self.numbers[:2], self.numbers[2:])
 
     @property
     def half_angle(self) -> float:
@@ -312,9 +313,5 @@ def _turned(points: Sequence[Point], turn: float) -> tuple[Point, ...]:
     return tuple((cosine * x - sine * y, sine * x + cosine * y) for x, y in points)
 
 
-def _joined(numbers: Sequence[float]) -> str:
-    return "x".join(map(_shown, numbers))
-
-
-def _shown(number: float) -> str:
-    return f"{number:.10g}"
+def _word(kind: str, sizes: Sequence[float], rest: Sequence[float]) -> str:
+    return f"{kind}:{'x'.join(map(text_of, sizes))}:{':'.join(map(text_of, rest))}"

@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
@@ -258,22 +257,18 @@ class Fixture:
                 f"{' and '.join(map(str, gripping[:2]))}: one vise or chuck is placed on a part; leave the others out, "
                 "or give all numbers of each, as plans write them"
             )
-        return tuple(replace(each, name=name) for each, name in zip(fixtures, _distinct_names(fixtures), strict=True))
+        names: list[str] = []
+        for each in fixtures:
+            # The later ones of the same name have a number.
+            name, count = each.name, 2
+            while name in names:
+                name, count = f"{each.name} {count}", count + 1
+            names.append(name)
+        return tuple(replace(each, name=name) for each, name in zip(fixtures, names, strict=True))
 
     def placed(self, points: Floats) -> Floats:
         """Points (..., 3) of the source in part coordinates, mm."""
         return np.ascontiguousarray(points @ self.rotation.T + self.shift)
-
-
-def _distinct_names(fixtures: Sequence[Fixture]) -> list[str]:
-    """Their names, the later ones of the same with a number."""
-    names: list[str] = []
-    for each in fixtures:
-        name, count = each.name, 2
-        while name in names:
-            name, count = f"{each.name} {count}", count + 1
-        names.append(name)
-    return names
 
 
 def _numbers(text: str, what: str, form: str) -> tuple[float, ...]:

@@ -35,27 +35,20 @@ _RADIUS, _VECTOR, _AREA, MOMENTS = 3, 4, 7, 8
 
 
 class Solids(NamedTuple):
-    """Obstacles as the searches take them.
-
-    tree. weight (n,) int8: how often a triangle
-    counts in the winding number, negative where its corners run the other way round. moment (nodes, 8): of the triangles
-    below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
-    nothing encloses anything. whole: the cells hold all that encloses; end (2, 3): corners of a box that does. grow: what
-    keeps so far off every triangle, mm, goes past every skin; nan where skins are not closed, or nothing encloses anything. key:
-    of no others, in one process. more_weight, more_moment: weight and moment of the second tree.
-    """
+    """Obstacles as the searches take them."""
 
     tree: Tree
-    weight: Any
-    moment: Any
-    cell: Any
-    origin: Any
-    size: float
-    whole: bool
-    end: Any
+    weight: Any  #: (n,) int8: how often a triangle counts in the winding number, negative where its corners run the other way.
+    moment: Any  #: (nodes, 8): of the triangles below a node.
+    cell: Any  #: (i, j, k) uint8, 1 where a cell is surely outside; none where nothing encloses anything.
+    origin: Any  #: (3,): of the cells, mm.
+    size: float  #: Of a cell, mm.
+    whole: bool  #: The cells hold all that encloses.
+    end: Any  #: (2, 3): corners of a box that does.
+    #: What keeps so far off every triangle, mm, goes past every skin; nan where skins are not closed, or nothing encloses.
     grow: float
-    key: int
-    more_weight: Any = np.zeros(0, np.int8)
+    key: int  #: Of no others, in one process.
+    more_weight: Any = np.zeros(0, np.int8)  #: Of the second tree.
     more_moment: Any = np.zeros((1, MOMENTS))
 
 

@@ -40,43 +40,38 @@ Rotary = namedtuple("Rotary", "circle direction limit tool swing aim")
 
 
 class Ranges(NamedTuple):
-    """Which postures there are: cosines and sines (k,) of the rotations, tilts from and to, rad, and the axis limits: the
-    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none, and rotary axes. strict: only those that curvature at the
-    contact allows, as if there were no tolerance."""
+    """Which postures there are."""
 
-    rotation_cos: Any
+    rotation_cos: Any  #: (k,): of the rotations.
     rotation_sin: Any
-    tilt_low: float
+    tilt_low: float  #: rad.
     tilt_high: float
-    setup: Any
-    limit_cos: float
+    setup: Any  #: (3,): the unit axis about which the tool axis is limited.
+    limit_cos: float  #: Cosine of that limit, -2 for none.
     rotary: Any
-    strict: bool = False
+    strict: bool = False  #: Only those that curvature at the contact allows, as if there were no tolerance.
 
 
 class Tool(NamedTuple):
-    """A tool, each piece made smaller or larger by what does not matter, or does: as in `domain.assembly`.
+    """A tool, each piece made smaller or larger by what does not matter, or does: as in `domain.assembly`; lengths in mm."""
 
-    piece (m, k, COLUMNS) and mode (m, 5) of each of the m ways in which it touches; `reach`, the distance from the contact within
-    which an obstacle of the flutes counts as rear gouging; `inner` and `end`, heights over the tip of two points of its axis; mm.
-    """
-
-    piece: Any
-    mode: Any
-    reach: float
+    piece: Any  #: (m, k, COLUMNS): of each of the m ways in which it touches.
+    mode: Any  #: (m, 5)
+    reach: float  #: The distance from the contact within which an obstacle of the flutes counts as rear gouging.
+    #: `inner`, `end`: heights over the tip of two points of its axis.
     inner: float
     end: float
 
 
 class Cylinder(NamedTuple):
-    """A flat end that was made smaller by a depth all round: its own radius, the one left, and the heights between which it is
-    solid, mm; and the same as a row of pieces (1, COLUMNS)."""
+    """A flat end that was made smaller by a depth all round, mm."""
 
-    radius: float
-    shrunk: float
+    radius: float  #: Its own.
+    shrunk: float  #: The one left.
+    #: `low`, `high`: between which heights it is solid.
     low: float
     high: float
-    piece: Any
+    piece: Any  #: The same as a row of pieces (1, COLUMNS).
 
 
 #: Contact p, normal n, tilt direction f, and t = n x f; each (3,).

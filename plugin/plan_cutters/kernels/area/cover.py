@@ -214,57 +214,42 @@ Patches = namedtuple("Patches", "point normal tensor axis flat side patch home s
 
 
 class Sweeping(NamedTuple):
-    """A tool as this asks for it.
+    """A tool as this asks for it."""
 
-    tool : Tool, the outer one; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each mode a mask of the
-    pieces that lie in the volume that its nose sweeps when it goes on along the axis, widening by `widening` (m,), rad; flutes, a
-    mask of the pieces that cut; depth, chord: the depth up to which a triangle does not matter, and the chord error, mm.
-    """
-
-    tool: Any
-    dummy: Any
-    nose: Any
-    widening: Any
-    flutes: int
-    depth: float
-    chord: float
+    tool: Any  #: The outer one.
+    dummy: Any  #: (k, COLUMNS), as `search.dummy_clear` takes it.
+    nose: Any  #: (m,) int64: of each mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis.
+    widening: Any  #: (m,): by which angle that widens, rad.
+    flutes: int  #: A mask of the pieces that cut.
+    depth: float  #: Up to which a triangle does not matter, mm.
+    chord: float  #: The chord error, mm.
 
 
 class Stance(NamedTuple):
-    """This record holds how one rule takes a contact's cutter.
-
-    upright: the tilt direction is not known, or there is none; along: the axis lies along a plane. sine, cosine: of the tilt;
-    steepness: what the axis has across the normal, whatever the rule takes it for. mode: in which the cutter touches.
-    """
+    """This record holds how one rule takes a contact's cutter."""
 
     rule: int
-    upright: bool
-    along: bool
-    sine: float
+    upright: bool  #: The tilt direction is not known, or there is none.
+    along: bool  #: The axis lies along a plane.
+    sine: float  #: Of the tilt.
     cosine: float
-    steepness: float
-    mode: int
+    steepness: float  #: What the axis has across the normal, whatever the rule takes it for.
+    mode: int  #: In which the cutter touches.
 
 
 class Wander(NamedTuple):
-    """This record holds how a cutter moves and turns about its axis as the contact wanders in its patch.
+    """This record holds how a cutter moves and turns about its axis as the contact wanders in its patch."""
 
-    status: as of `cover` where bounds alone decide, -1 where they do not. turn: of the normal, rad; lift: of the surface off the
-    tangent plane, mm; k_ff, k_tt, k_ft: curvature along the tilt direction, across it and mixed, 1/mm; psi: the turn about the
-    axis in all, lateral: the part of it that does not follow from the curvature at the contact, rad; rest: that part of the
-    normal's change; sway: the turn about the axis by what the axis itself turns, rad.
-    """
-
-    status: int
-    turn: float
-    lift: float
-    k_ff: float
-    k_tt: float
-    k_ft: float
-    psi: float
-    lateral: float
-    rest: float
-    sway: float
+    status: int  #: As of `cover` where bounds alone decide, -1 where they do not.
+    turn: float  #: Of the normal, rad.
+    lift: float  #: Of the surface off the tangent plane, mm.
+    k_ff: float  #: Curvature along the tilt direction, 1/mm.
+    k_tt: float  #: Across it.
+    k_ft: float  #: Mixed.
+    psi: float  #: The turn about the axis in all, rad.
+    lateral: float  #: The part of it that does not follow from the curvature at the contact, rad.
+    rest: float  #: That part of the normal's change.
+    sway: float  #: The turn about the axis by what the axis itself turns, rad.
 
 
 @kernel

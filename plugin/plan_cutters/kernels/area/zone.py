@@ -18,17 +18,14 @@ _MOST_LINES = 40
 
 
 class Nose(NamedTuple):
-    """This record describes the part of a cutter that is compared with the surface around its contact.
+    """This record describes the part of a cutter that is compared with the surface around its contact."""
 
-    It holds the distance `offset` of its centre of curvature from the axis and its radius of curvature there, mm; the cosine
-    and sine of the angle by which it widens along the axis, where it goes on without end; the first and the last tilt at which
-    it touches, rad. With a negative offset, as of a barrel, it is a ball alone.
-    """
-
-    offset: float
-    radius: float
+    offset: float  #: Of its centre of curvature from the axis, mm; negative, as of a barrel: it is a ball alone.
+    radius: float  #: Of curvature there, mm.
+    #: `widen_cos`, `widen_sin`: of the angle by which it widens along the axis, where it goes on without end.
     widen_cos: float
     widen_sin: float
+    #: `low`, `high`: the first and the last tilt at which it touches, rad.
     low: float
     high: float
 

@@ -31,17 +31,13 @@ _PARTS = 16
 
 
 class Turning(NamedTuple):
-    """A tool that tilts about the centre of one mode, for posture maps.
+    """A tool that tilts about the centre of one mode, for posture maps."""
 
-    offset : distance of the centre from the axis, mm; piece (k, COLUMNS); bound (2 k, BOUNDS), two for each piece, of which one
-    may be missing; known (k, KNOWN); eight : the mask of the pieces for which the eight sides of `lanes` do.
-    """
-
-    offset: float
-    piece: Any
-    bound: Any
-    known: Any
-    eight: int
+    offset: float  #: Distance of the centre from the axis, mm.
+    piece: Any  #: (k, COLUMNS)
+    bound: Any  #: (2 k, BOUNDS), two for each piece, of which one may be missing.
+    known: Any  #: (k, KNOWN)
+    eight: int  #: The mask of the pieces for which the eight sides of `passes` do.
 
 
 @kernel

@@ -13,9 +13,9 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.flats_and_flanks import PLACED, across, find_place, flat_workspace, place_to_direction
-from plan_cutters.kernels.search.place import inside, mode_at
+from plan_cutters.kernels.search.place import is_free, mode_at
 from plan_cutters.kernels.tool.apart import BODY
-from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
+from plan_cutters.kernels.tool.hit import scratch, stand
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
 _UPRIGHT = 1e-12
@@ -42,7 +42,7 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
     mode = mode_at(tool, tilt)
     if mode >= 0 and low <= tilt <= high:
         stand(body, Frame(p, n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
-        free, hint = _is_free(body, mode, tool, solids, workspace, hint)
+        free, hint = is_free(body, mode, tool, solids, workspace, hint)
         if free:
             return LEANING, hint
     if tilt <= accuracy and low <= 0.0 and whole_turn:
@@ -63,19 +63,10 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
                 f[k] = p[k] + away * x[k]
                 direction[k] = 2.0 * axis[k]
             stand(body, Frame(f, x, axis, t), 0.0, 1.0, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
-            free, hint = _is_free(body, mode, tool, solids, workspace, hint)
+            free, hint = is_free(body, mode, tool, solids, workspace, hint)
             if free:
                 return ALONG, hint
     return BLOCKED, hint
-
-
-@kernel
-def _is_free(body, mode, tool, solids, workspace, hint):
-    """Return whether a tool that was put down is free, and the triangle that was in its way last."""
-    triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
-    if triangle >= 0:
-        return False, triangle
-    return not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace), hint
 
 
 @entry

@@ -98,6 +98,15 @@ def inside(body, tool, mode, solids, within, scratch):
 
 
 @kernel
+def is_free(body, mode, tool, solids, workspace, hint):
+    """Return whether a tool that was put down is free, and the triangle that was in its way last."""
+    triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
+    if triangle >= 0:
+        return False, triangle
+    return not inside(body, tool, mode, solids, material.MAYBE_INSIDE, workspace), hint
+
+
+@kernel
 def mode_at(tool, tilt):
     """The mode in which a tool touches at a tilt, -1 for none."""
     for mode in range(len(tool.mode)):
@@ -143,13 +152,12 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
 class Proof(NamedTuple):
     """This record holds how one look proves that all postures of a contact are blocked (lemma F3 of `docs/material_proof.md`).
 
-    At every tilt the tool holds a part of a ball about a point over the contact, deeper than what blocks. distance (k,): of
-    such points along the normal, mm, those that are tried; radius: of the balls, mm; solids: what certainly encloses.
+    At every tilt the tool holds a part of a ball about a point over the contact, deeper than what blocks.
     """
 
-    distance: Any
-    radius: float
-    solids: Any
+    distance: Any  #: (k,): of such points along the normal, mm, those that are tried.
+    radius: float  #: Of the balls, mm.
+    solids: Any  #: What certainly encloses.
 
 
 @kernel

@@ -95,22 +95,16 @@ def _write(results, row, contacts, ranges, rotation, tilt):
 
 
 class Mode(NamedTuple):
-    """This record holds how samples are searched.
+    """This record holds how samples are searched."""
 
-    at: the place of the first one. start: rotation and tilt tried first; turns: how many rotations. narrowest: intervals of tilt
-    narrower than this are passed over, rad. most: boxes after which a sweep is given up. decides: whether the inner tool says
-    what is inaccessible, and why. stops: whether the first sample without a posture is the last one. deep: a body so deep in the
-    tool forbids a posture, mm; 0: whether a contact lies in a body is told by postures alone.
-    """
-
-    at: int
-    start: tuple[int, float]
-    turns: int
-    narrowest: float
-    most: int
-    decides: bool
-    stops: bool
-    deep: float
+    at: int  #: The place of the first one.
+    start: tuple[int, float]  #: Rotation and tilt tried first.
+    turns: int  #: How many rotations.
+    narrowest: float  #: Intervals of tilt narrower than this are passed over, rad.
+    most: int  #: Boxes after which a sweep is given up.
+    decides: bool  #: Whether the inner tool says what is inaccessible, and why.
+    stops: bool  #: Whether the first sample without a posture is the last one.
+    deep: float  #: A body so deep in the tool forbids a posture, mm; 0: postures alone tell whether a contact lies in a body.
 
 
 @entry
@@ -256,13 +250,8 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
     for row in rows:
         stands[row] = False
         mode = _stand_as_given(row, point, normal, axis, tilt_direction, tool, body, f, t)
-        if mode < 0:
-            continue
-        triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
-        if triangle >= 0:
-            hint = triangle
-            continue
-        stands[row] = not place.inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
+        if mode >= 0:
+            stands[row], hint = place.is_free(body, mode, tool, solids, workspace, hint)
     return workspace.looked[0]
 
 

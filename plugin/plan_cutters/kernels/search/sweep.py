@@ -41,19 +41,14 @@ Memory = namedtuple("Memory", "point count pool seen depth which given bent")
 
 
 class Side(NamedTuple):
-    """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones.
-
-    It holds the tool; the obstacles; the winding number from which a posture lies within a body; the angular resolution, rad:
-    narrower intervals of tilts are passed over; the boxes looked at after which the rotations that are left are not looked at;
-    and how one look proves that there is no posture (`place.Proof`).
-    """
+    """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones."""
 
     tool: Any
     solids: Any
-    within: float
-    narrowest: float
-    most: int
-    proof: Any
+    within: float  #: Winding number from which a posture lies within a body.
+    narrowest: float  #: The angular resolution, rad: narrower intervals of tilts are passed over.
+    most: int  #: Boxes looked at after which the rotations that are left are not looked at.
+    proof: Any  #: How one look proves that there is no posture (`place.Proof`).
 
 
 @maker
