@@ -1,6 +1,6 @@
 """Clearance: how far a cutter keeps from the part and the fixtures at the postures found, where it does not cut.
 
-The distance is that between all of the tool above its working height (`domain.clearance`) and the true surface of everything
+The distance is that between all of the tool above its working height (`domain.assembly`) and the true surface of everything
 around it. A tool grown by a clearance and the chord error meets no triangle: then no point of the true surface is nearer than the
 clearance. So what is told is proved, and never more than the true distance.
 """
@@ -31,7 +31,7 @@ class Clearances(Record):
     ----------
     distance : (n,) float
         No more than the true clearance, mm, and within 2 % or 0.005 mm of it, unless the flutes' edges are nearest. At
-        `domain.clearance.MOST` it is that or more.
+        `domain.assembly.MOST` it is that or more.
     part : (n,) int8
         Of the tool what is nearest: FLUTES, NECK, SHANK or HOLDER; -1 where nothing is near.
     face : (n,) int32

@@ -185,12 +185,8 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, results):
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *, brief=False):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one, and boxes looked at.
 
-    `narrowest` (float): intervals of tilt narrower than this are passed over, rad.
-    `start` (int, float): rotation to begin with, and the tilt that is tried first at each.
-    `turns` (int): how many rotations to look at.
-    `solids`: all that may be in the way.
-    `results` (VerdictArrays), written: the posture.
-    `brief` (bool): give up what takes long: there is none then.
+    `narrowest`, `start` and `turns` as of a `Mode`; `solids`: all that may be in the way; `results` (VerdictArrays), written. A
+    `brief` search gives up what takes long: there is none then.
     """
     mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
     proof = Proof(_NOWHERE, 0.0, solids)

@@ -65,14 +65,8 @@ def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
 @kernel
 def stays(body, piece, k):
     """Whether turning leaves piece k where it is: a whole ball about the line of turning."""
-    return (
-        piece[k, KIND] == ARC
-        and piece[k, RADIUS] == 0.0
-        and body[OFFSET] == 0.0
-        and piece[k, SLOPE] == 0.0
-        and piece[k, BOTTOM] == -piece[k, ROUND]
-        and piece[k, TOP] == piece[k, ROUND]
-    )
+    about = piece[k, KIND] == ARC and piece[k, RADIUS] == 0.0 and piece[k, SLOPE] == 0.0 and body[OFFSET] == 0.0
+    return about and piece[k, BOTTOM] == -piece[k, ROUND] and piece[k, TOP] == piece[k, ROUND]
 
 
 @kernel
