@@ -341,7 +341,7 @@ def boxes_clear(box, end, turning, k, clear):
 
 @kernel
 def turn_boxes(view, block, cosine, sine, box):
-    """Turn a block of boxes, as `lanes._see` gives them, into the frame of a rotation."""
+    """Turn a block of boxes, as `tree._see` gives them, into the frame of a rotation."""
     for lane in range(LANES):
         x, y, square = view[block, 0, lane], view[block, 1, lane], 0.0
         box[AT, lane], box[AT + 1, lane], box[AT + 2, lane] = (cosine * x + sine * y, cosine * y - sine * x, view[block, 2, lane])
@@ -427,7 +427,7 @@ def distances(seen):
 
 @kernel
 def turn_triangles(leaf, cosine, sine, seen):
-    """Turn the triangles of a leaf, as `lanes._see_leaf` gives them, into the frame of a rotation."""
+    """Turn the triangles of a leaf, as `tree._see_leaf` gives them, into the frame of a rotation."""
     for k in range(0, 9, 3):
         for lane in range(LANES):
             x, y = leaf[k, lane], leaf[k + 1, lane]
