@@ -33,12 +33,11 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
-from cad_io.kernel.components import as_one, unwrapped
+from cad_io.kernel.shapes import as_one, unwrapped
 from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
-from cad_io.read.face_comparison import open_border
-from cad_io.read.faults import Model, type_of
-from cad_io.read.references import names as referred_names
+from cad_io.read.faults import Model, open_border, type_of
 from cad_io.read.step_text import adopted, readable
+from cad_io.read.step_text import names as referred_names
 from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import UNITS, UnitReading, in_mm
 from plan_cutters_base import user_files as files

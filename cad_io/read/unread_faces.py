@@ -32,8 +32,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import LostFace
-from cad_io.read.face_comparison import edge_count, misfit, open_border
-from cad_io.read.faults import Fault, Model, by_number, type_of
+from cad_io.read.faults import Fault, Model, by_number, edge_count, misfit, open_border, type_of
 
 #: Parameters that carry no geometry.
 _WORDS = frozenset(

@@ -18,7 +18,7 @@ from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
 from plan_cutters_base.copies import Ended, each
 

@@ -10,10 +10,9 @@ import numpy as np
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 
 from cad_io.arrays import Floats
-from cad_io.face.clip import inside
-from cad_io.split.border import Border, CannotSplit, Side
+from cad_io.face.trim import inside
+from cad_io.split.border import Border, CannotSplit, Side, chain, crossings, nearest
 from cad_io.split.contour import Spline
-from cad_io.split.planar import chain, crossings, nearest
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

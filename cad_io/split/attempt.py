@@ -1,22 +1,149 @@
-"""A part with all its faces cut as they are drawn, put together again and checked."""
+"""Faces with boundaries of their labels drawn on them, a part with all of them cut so and put together again, and its checks."""
 
 import io
 from collections import defaultdict
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from OCP.BinTools import BinTools
+from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.TopAbs import TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS
 
-from cad_io.kernel import edges_of, shape_map
-from cad_io.kernel.components import as_one, compound
+from cad_io.arrays import FaceLabels
+from cad_io.face.uv_region import uv_areas
+from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
+from cad_io.kernel.shapes import as_one, compound
+from cad_io.split.arrangement import Arrangement
+from cad_io.split.border import Border, CannotSplit
 from cad_io.split.build import Placed, pieces, rewired
-from cad_io.split.check import valid, wrong_pieces, wrong_whole
-from cad_io.split.drawing import Drawing, in_words
-from cad_io.split.net import Net
+from cad_io.split.contour import Line, curves, label_grid
+from cad_io.split.net import Net, valid
+from cad_io.split.regions import Judged, joined, judged, regions_of, slivers
 from cad_io.surface import Surface
+
+#: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
+FITS = (0.1, 0.05, 0.02)
+
+
+class Drawing:
+    """Where one face is to be split.
+
+    Attributes
+    ----------
+    number : int
+    face : TopoDS_Face
+    surface : Surface
+        The face's own.
+    grid, known
+        As of `label_grid`.
+    lines : list of Line
+        Along the boundaries of the labels; to be set before `plan`.
+    found : Arrangement
+    parts : list of Judged
+        One for each piece.
+    joined : int
+        Slivers that went to the label around them.
+    missed : int
+        Nodes that have no piece of their label.
+    fault : str
+        Why the curves tried last are no good.
+    """
+
+    def __init__(self, face: Any, surface: Surface, labels: FaceLabels) -> None:
+        self.number, self.face, self.surface = labels.face, face, surface
+        self.grid, self.known, self._specks = label_grid(face, labels)
+        self.lines: list[Line] = []
+        self.parts: list[Judged] = []
+        self.joined = self.missed = 0
+        self._border: Border | None = None
+        self.fault = ""
+        self._tried = 0
+
+    def plan(self, net: Net, worst: int) -> bool:
+        """Plan pieces with the next fit that works; False if there is none, then `fault` says why.
+
+        Parameters
+        ----------
+        net : Net
+            Of the part.
+        worst : int
+            As in `split`.
+        """
+        while self._tried < len(FITS):
+            self._tried += 1
+            try:
+                self._border = self._border or Border(self.face, self.surface, self.grid, net.edges, net.vertices)
+                self._draw(self._border, FITS[self._tried - 1], net.at_end, worst)
+                return True
+            except Exception as error:
+                self.fault = in_words(error)
+                if self._border is None:
+                    break  # no curve is to blame
+        return False
+
+    def renew(self) -> None:
+        """Have `plan` look at the border anew and try the last fit again."""
+        self._border, self._tried = None, max(self._tried - 1, 0)
+
+    def places(self) -> list[tuple[int, float]]:
+        """Where edges of the part are to be cut: number of the edge, parameter."""
+        ends = (self.found.crossings[c] for c in self.found.used())
+        return [(self.found.border.sides[c.side].key, c.s) for c in ends if c.end is None]
+
+    def _draw(self, border: Border, fit: float, at_end: Callable[[int, float], int | None], worst: int) -> None:
+        self.found = Arrangement(border, curves(self.grid, self.lines, fit), at_end)
+        regions = regions_of(self.found)
+        self.parts = judged(regions, border.scale, self.grid, self.known)
+        # Some lie next to the border, and their boundary runs outside.
+        missing = self._specks | ((self.known >= 0) & ~np.isin(self.known, [part.label for part in self.parts]))
+        self.missed = int(missing.sum())
+        group_kept, group, self.joined = slivers(self.found, self.parts, worst)
+        if self.joined:
+            self.found.keep(group_kept)
+            self.parts = joined(self.parts, group, regions_of(self.found))
+
+
+def in_words(error: Exception) -> str:
+    """Why a face cannot be split; errors that are no such reason are raised again."""
+    if isinstance(error, CannotSplit):
+        return str(error)
+    if is_kernel_error(error) or isinstance(error, ValueError | np.linalg.LinAlgError):
+        return f"splitting it fails: {type(error).__name__} {error}".strip()
+    raise error
+
+
+#: Relative error of a face's parameter area that is still the same area.
+_SAME_AREA = 1e-5
+
+
+def wrong_pieces(face: Any, pieces: list[Any]) -> str:
+    """Why pieces do not stand for a face, or nothing.
+
+    Areas are those of the region in the parameter plane, integrated exactly along its boundary: pieces that tile the
+    region there tile the face, and the kernel's own areas in mm2 are off by up to 9 % on some surfaces.
+    """
+    before, *areas = uv_areas([face, *pieces])
+    if not all(area * before > 0 for area in areas):
+        return "a piece of it has no area"
+    if not abs(sum(areas) - before) <= _SAME_AREA * abs(before):
+        return "its pieces do not have its area"
+    return ""
+
+
+def wrong_whole(before: Any, after: Any) -> str:
+    """Why a shape with other faces does not stand for the one before, or nothing."""
+    if _shells(before) != _shells(after):
+        return "splitting changes solids or shells"
+    return "splitting makes the shape invalid" if not valid(after) and valid(before) else ""
+
+
+def _shells(shape: Any) -> tuple[int, list[bool]]:
+    """Number of solids; closedness of all shells, sorted."""
+    closed = [bool(BRep_Tool.IsClosed_s(shell)) for shell in explore(shape, TopAbs_SHELL)]
+    return shape_map(shape, TopAbs_SOLID).Extent(), sorted(closed)
 
 
 def copied(shape: Any, faces: dict[int, Any]) -> tuple[Any, dict[int, Any]]:

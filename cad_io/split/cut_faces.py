@@ -19,11 +19,10 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cad_io.arrays import FaceLabels
 from cad_io.kernel import shape_map
-from cad_io.kernel.components import as_one, children, components
-from cad_io.split.attempt import Attempt, Trial, copied
+from cad_io.kernel.shapes import as_one, children, components
+from cad_io.split.attempt import Attempt, Drawing, Trial, copied, in_words
 from cad_io.split.contour import smoothed
-from cad_io.split.drawing import Drawing, in_words
-from cad_io.split.repair import repair
+from cad_io.split.net import repair
 from cad_io.surface import Surface
 from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 from plan_cutters_base.forks import end_within

@@ -9,12 +9,11 @@ import numpy as np
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
-from cad_io.face.clip import inside as holds
+from cad_io.face.trim import inside as holds
 from cad_io.face.uv_region import inside, interior_point
 from cad_io.split.arrangement import Arrangement
-from cad_io.split.border import CannotSplit
+from cad_io.split.border import CannotSplit, bearing, chain, enclosed, extent, left_of
 from cad_io.split.contour import LabelGrid
-from cad_io.split.planar import bearing, chain, enclosed, extent, left_of
 
 #: Share of the nodes off the boundary that may end up in a piece of another label.
 _ASTRAY = 0.01

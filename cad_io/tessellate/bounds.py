@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.surface import Bends, Surface
-from cad_io.surface.forms import lines_within
+from cad_io.surface.surface import lines_within
 from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)

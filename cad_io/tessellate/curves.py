@@ -13,10 +13,9 @@ from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse, GeomAbs_Line
 
 from cad_io.arrays import Floats
 from cad_io.kernel import along, may_refuse
-from cad_io.surface.bspline import DEGREE, Net, basis, span, wrapped
+from cad_io.surface.bspline import DEGREE, Net, basis, net_bends, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
-from cad_io.surface.forms import curve_lines, curve_net
-from cad_io.surface.net_bends import net_bends
+from cad_io.surface.surface import curve_lines, curve_net
 from cad_io.tessellate.bounds import evenly
 from plan_cutters_base.jit import decorators
 

@@ -18,10 +18,8 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, Record
 from cad_io.kernel import edges_of
-from cad_io.part.boxes import face_box
-from cad_io.part.cap import coned, polyline
-from cad_io.part.part import Part
-from cad_io.part.unjudged import NO_AREA
+from cad_io.part.bodies import coned, polyline
+from cad_io.part.part import NO_AREA, Part, face_box
 
 _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 #: Nodes each way to estimate the area of a face that is said to have none; the share of the part's squared diagonal up to

@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
+from cad_io.tessellate.mesh import meshed
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
 from plan_cutters_base.whole import whole
 

@@ -1,11 +1,17 @@
 """A split part as STEP: the input's products, every piece a face with its own name, colour and layers.
 
-The same input gives the same bytes. Two instances of one product differ in their verdicts, so each is a product.
-Solids, shells and sheets are put into products so that FreeCAD shows their colours, too.
+The same input gives the same bytes. The kernel keeps the groups of styles, one a product, in a map by address and writes them
+in the map's order (OCCT 7.9), which differs from run to run: here they follow the order of the products, and are numbered anew.
+Two instances of one product differ in their verdicts, so each is a product. Solids, shells and sheets are put into products so
+that FreeCAD shows their colours, too. Some surfaces of revolution that cross their axis come back from STEP as another part of
+it.
 """
 
+import json
+import os
 import pickle
 import re
+import tempfile
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,13 +21,16 @@ from typing import Any, NamedTuple
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepGProp import BRepGProp
 from OCP.BRepTools import BRepTools_Modifier
+from OCP.GeomAbs import GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
+from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.ShapeCustom import ShapeCustom, ShapeCustom_DirectModification
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
-from OCP.STEPControl import STEPControl_AsIs
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
@@ -33,12 +42,11 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
-from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
+from cad_io.kernel import edges_of, explore, faces, may_refuse, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
-from cad_io.kernel.bodies import placed
-from cad_io.kernel.components import children, compound, flat
+from cad_io.kernel.shapes import children, compound, flat, placed
+from cad_io.part import Part
 from cad_io.split.pieces import Piece, Split
-from cad_io.write.canonical import canonical
 from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 from plan_cutters_base.whole import whole
 
@@ -395,3 +403,133 @@ def _ascii(name: str) -> str:
     """Accents dropped, other foreign characters as `?`: names stay readable in any viewer."""
     bare = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
     return bare.encode("ascii", "replace").decode()
+
+
+_GROUP = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+_STRING = rb"'(?:[^']|'')*'"
+_ENTITY = re.compile(rb"#(\d+)\s*=\s*((?:" + _STRING + rb"|[^';])*);")
+_TOKEN = re.compile(rb"\s*(" + _STRING + rb"|#(\d+)|,|[^',#\s]+)")
+_WIDTH = 72
+
+
+def canonical(text: bytes) -> bytes:
+    """The text with its groups of styles in the order of what they style.
+
+    Entities before the first group do not refer to later ones, and their order is that of the shapes written.
+    """
+    first = re.search(rb"^#(\d+)\s*=\s*" + _GROUP, text, re.MULTILINE)
+    if first is None:
+        return text
+    begin, end = first.start(), text.rindex(b"ENDSEC;")
+    entities = {int(m[1]): m[2].strip() for m in _ENTITY.finditer(text, begin, end)}
+    below = {number: [r for r in _references(entity) if r in entities] for number, entity in entities.items()}
+    inner = {r for references in below.values() for r in references}
+    roots = [number for number in entities if number not in inner]
+    # Numbers of what was written before are the same in every run.
+    groups = sorted(
+        (number for number in roots if entities[number].startswith(_GROUP)),
+        key=lambda n: [r for e in _walk(n, below) for r in _references(entities[e]) if r not in entities],
+    )
+    following = iter(groups)
+    ordered = [next(following) if entities[n].startswith(_GROUP) else n for n in roots]
+    new: dict[int, int] = {}
+    for root in ordered:
+        for number in _walk(root, below, new):
+            new[number] = int(first[1]) + len(new)
+    lines = [_wrapped(number, entities[old], new) for old, number in new.items()]
+    return text[:begin] + b"".join(lines) + text[end:]
+
+
+def _references(entity: bytes) -> Iterator[int]:
+    return (int(m[2]) for m in _TOKEN.finditer(entity) if m[2])
+
+
+def _walk(root: int, below: dict[int, list[int]], known: dict[int, int] | None = None) -> Iterator[int]:
+    """An entity and all that it refers to, each once, in the kernel's order; what is `known` when its turn comes is left out."""
+    seen: set[int] = set()
+    stack = [root]
+    while stack:
+        number = stack.pop()
+        if number not in seen and number not in (known or {}):
+            seen.add(number)
+            yield number
+            stack += reversed(below[number])
+
+
+def _wrapped(number: int, entity: bytes, new: dict[int, int]) -> bytes:
+    """The entity on lines as long as the kernel's, with its references renumbered."""
+    lines, line = [], b"#%d = " % number
+    for match in _TOKEN.finditer(entity):
+        token = b"#%d" % new.get(int(match[2]), int(match[2])) if match[2] else match[1]
+        if len(line) + len(token) > _WIDTH and token != b",":
+            lines.append(line)
+            line = b"  "
+        line += token
+    return b"\n".join([*lines, line]) + b";\n"
+
+
+#: Processor seconds that it may take, and more for each face.
+_BACK, _BACK_A_FACE = 20.0, 0.2
+#: Areas that differ by a smaller share are one.
+_SAME = 0.01
+
+
+def changed_by_step(part: Part) -> Mapping[int, float]:
+    """Faces whose area is another one once they were written as STEP and read again, with that area, mm2; it is looked for once.
+
+    Only surfaces of revolution and tori are looked at: planes, quadrics and splines come back as they are. A face that does not
+    come back at all has the area 0.
+    """
+    if part.changed_by_step is None:
+        part.changed_by_step = _changed(part)
+    return part.changed_by_step
+
+
+def _changed(part: Part) -> dict[int, float]:
+    numbers = [
+        f.number for f in part.faces if f.area > 0.0 and f.surface in ("revolution", "torus") and _doubtful(part, f.number)
+    ]
+    if not numbers:
+        return {}
+    try:
+        areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _BACK + _BACK_A_FACE * len(numbers)))
+    except (TimeLimit, ChildDied):
+        return {}
+    return {n: there for n, (here, there) in zip(numbers, areas, strict=True) if abs(there - here) > _SAME * here}
+
+
+def _doubtful(part: Part, number: int) -> bool:
+    """Whether the whole surface may cross its axis: a torus does where its tube is wider than the circle about which it lies."""
+    adaptor = part.adaptor(number)
+    if adaptor.GetType() == GeomAbs_Torus:
+        torus = adaptor.Torus()
+        return bool(torus.MinorRadius() >= torus.MajorRadius())
+    return bool(adaptor.GetType() == GeomAbs_SurfaceOfRevolution)
+
+
+def _areas(part: Part, numbers: list[int]) -> list[tuple[float, float]]:
+    """Areas of faces by the kernel, as they are and as they come back."""
+    silence()
+    folder, pairs = tempfile.mkdtemp(), list[tuple[float, float]]()
+    file = os.path.join(folder, "face.step")
+    try:
+        for number in numbers:
+            here, there = _area(part.face(number)), 0.0
+            with may_refuse():
+                writer, reader = STEPControl_Writer(), STEPControl_Reader()
+                writer.Transfer(part.face(number), STEPControl_AsIs)
+                if writer.Write(file) == IFSelect_RetDone and reader.ReadFile(file) == IFSelect_RetDone:
+                    reader.TransferRoots()
+                    there = _area(reader.OneShape())
+            pairs.append((here, there))
+    finally:
+        if os.path.exists(file):
+            os.remove(file)
+        os.rmdir(folder)
+    return pairs
+
+
+def _area(shape: object) -> float:
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties)
+    return float(properties.Mass())

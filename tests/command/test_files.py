@@ -21,7 +21,7 @@ from cad_io.split import attempt
 from cad_io.split.border import CannotSplit
 from cad_io.split.pieces import MIXED, split
 from cad_io.write import write_gltf
-from cad_io.write.canonical import canonical
+from cad_io.write.step import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
 from plan_cutters_base.copies import TimeLimit, limited
@@ -48,7 +48,7 @@ from OCP.gp import gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from cad_io.arrays import Style
 from cad_io.kernel.assembly import Node
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
 from cad_io.split import split
 from cad_io.write import write_gltf

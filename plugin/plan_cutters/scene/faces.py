@@ -126,7 +126,7 @@ def repeated_groups(
     faces : frozenset of int
         Faces of none of these bodies.
     """
-    from cad_io.part.repeats import repeats
+    from cad_io.part.patterns import repeats
 
     out, groups = set(repeated), []
     for each in repeats(part):

@@ -25,9 +25,9 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io import read_part
 from cad_io.kernel import faces
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
-from cad_io.split import attempt, cut_faces, drawing
+from cad_io.split import attempt, cut_faces
 from cad_io.split.border import CannotSplit
 from cad_io.split.cut_faces import TOO_LONG
 from cad_io.split.pieces import MIXED, UNKNOWN, split
@@ -330,7 +330,7 @@ def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
 
     def twice(make):
         tried.append(1)
-        if len(tried) < len(drawing.FITS):
+        if len(tried) < len(attempt.FITS):
             raise CannotSplit("forced")
         return make()
 
@@ -342,7 +342,7 @@ def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
 
 def test_pieces_that_do_not_follow_the_labels_are_refused(monkeypatch):
     part = Part(patch())
-    monkeypatch.setattr(drawing, "curves", lambda *_: [])
+    monkeypatch.setattr(attempt, "curves", lambda *_: [])
     found = split(part, [labels(part, 1, lambda x, y: x > 0.5)])
     assert "piece of another label" in found.whole[1]
 

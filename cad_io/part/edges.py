@@ -1,12 +1,16 @@
-"""Which faces are blends: fillets and rounds that lead smoothly from one face to another?
+"""Edges between two faces: smooth ones of blends (fillets and rounds that lead from one face to another), and sharp inside edges.
 
 A blend is a torus, a sphere, a cone or a cylinder in shape, whatever the file calls it; a cone or cylinder turns less than
 half a turn. It joins at least two other faces smoothly, each along an edge across which it bends: a wall between two
 fillets bends along its edges, not across them, and is no blend. Faces that carry on one and the same surface count as one, so
 that a hole of four quarters is a hole.
+
+A sharp inside edge is one at an angle below 180 deg through the air, without a fillet. The border of a sheet, a seam, an edge
+across which the surface goes on smoothly and an outside edge are none. Edges, normals and curvatures are the kernel's.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +20,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cad_io.arrays import FaceInfo, Floats
+from cad_io.arrays import FaceInfo, Floats, Orientation, Record, cross
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import along, may_refuse
@@ -39,7 +43,7 @@ _ALONG, _LINES = (np.arange(7) + 0.5) / 7, 9
 _FLAT = 1e-3
 
 
-class _Side(NamedTuple):
+class _BlendSide(NamedTuple):
     """A face along its edges, k edges with p points each: unit normals (k, p, 3), curvatures (k, p, 2), how it bends across
     the edge (k, p), all with the surface's own normal; `turned` (n, 3): normals away from its axis, all over it.
     """
@@ -119,7 +123,7 @@ def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     turned: dict[int, Floats] = {}
     for i in np.unique(owner).tolist():
         mine, which = np.nonzero(owner == i)
-        blend = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
+        blend = _blend_side(faces[i], size, [edges[k][0] for k in mine.tolist()])
         if blend is not None:
             normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = blend
     smooth, bends, alike = _agreements(agree, normal, kappa, across)
@@ -145,7 +149,7 @@ def _of_one(one: NDArray[np.int32], i: int, turned: Mapping[int, Floats]) -> Flo
     return np.concatenate([turned[j] for j in np.flatnonzero(one == one[i]).tolist() if j in turned])
 
 
-def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
+def _blend_side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _BlendSide | None:
     """One face along some of its edges; None where it cannot be evaluated."""
     if face.trim is None or face.surface is None:
         return None
@@ -168,7 +172,7 @@ def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
         # Where the surface rises round the point, its own normal points at its axis.
         away = -np.sign(geometry.curvature[n:].sum(axis=1))[:, None] * geometry.normal[n:]
     shaped = (len(edges), points)
-    return _Side(
+    return _BlendSide(
         geometry.normal[:n].reshape(*shaped, 3),
         geometry.curvature[:n].reshape(*shaped, 2),
         across.reshape(shaped),
@@ -197,3 +201,132 @@ def _turn(normal: Floats) -> float:
     flat = normal @ axes[:2].T
     angle = np.sort(np.arctan2(flat[:, 1], flat[:, 0]))
     return float(2 * np.pi - np.diff(angle, append=angle[0] + 2 * np.pi).max())
+
+
+#: Points along an edge, as shares of its parameter: none at its ends, where a face may have no normal.
+_SHARES = np.concatenate([[1e-6], np.arange(1, 64) / 64, [1 - 1e-6]])
+#: Parameters beyond this are infinite to the kernel.
+_INFINITE = 1e50
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class InsideEdge(Record):
+    """A sharp inside edge between two faces, at k points along it.
+
+    Attributes
+    ----------
+    faces : (int, int)
+        Numbers of the two faces.
+    point : (k, 3) float
+        mm.
+    normal : (2, k, 3) float
+        Unit normals of the two faces, out of the material.
+    inward : (2, k, 3) float
+        Unit tangents of the two faces, square to the edge, from it into the face.
+    curvature : (2, k) float
+        Normal curvature of the two faces in these directions, 1/mm, positive where the material rises (concave).
+    sharp : (k,) bool
+        Points at which the edge is sharp and inside; at the others it is smooth or outside.
+    """
+
+    faces: tuple[int, int]
+    point: Floats
+    normal: Floats
+    inward: Floats
+    curvature: Floats
+    sharp: np.ndarray
+
+    @property
+    def angle(self) -> Floats:
+        """Angles (k,) between the two faces through the air, rad."""
+        return np.asarray(np.arccos(np.clip((self.inward[0] * self.inward[1]).sum(axis=1), -1.0, 1.0)))
+
+    @property
+    def length(self) -> float:
+        """Length of what is sharp, mm."""
+        steps = np.linalg.norm(np.diff(self.point, axis=0), axis=1)
+        return float(steps[self.sharp[:-1] & self.sharp[1:]].sum())
+
+
+def inside_edges(part: Any, orientation: Orientation, without: Collection[int] = ()) -> tuple[InsideEdge, ...]:
+    """Find the sharp inside edges of a part, in the order of the kernel's edges.
+
+    An edge that the kernel cannot evaluate on both of its faces is left out, as are faces that cannot be judged.
+
+    Parameters
+    ----------
+    part : Part
+    orientation : Orientation
+        The side of each face.
+    without : collection of int, optional
+        Face numbers that are left out, as if they were not there.
+    """
+    joined = part.sewn.faces
+    edges: list[InsideEdge] = []
+    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    usable = [info.unjudged is None for info in part.faces]
+    for edge, every in edge_uses(shapes):
+        users = [use for use in every if use[0] + 1 not in without]
+        if len(users) != 2 or users[0][0] == users[1][0] or not all(usable[place] for place, _ in users):
+            continue
+        sides = [_side(part, edge, shapes[place], place, way, float(orientation.sign[place])) for place, way in users]
+        if any(side is None for side in sides):
+            continue
+        (point, *one), (_, *other) = sides  # type: ignore[misc]
+        normal, inward, bend = (np.stack(pair) for pair in zip(one, other, strict=True))
+        with np.errstate(invalid="ignore"):
+            # Into the one face is out of the other's material where the edge is an inside one.
+            inside = (inward[0] * normal[1]).sum(axis=1) > np.sin(SMOOTH)
+            known = np.isfinite(point).all(axis=1) & np.isfinite(normal).all(axis=(0, 2)) & np.isfinite(bend).all(axis=0)
+            opened = (inward[0] * inward[1]).sum(axis=1) < np.cos(SMOOTH)
+        sharp = inside & opened
+        if (sharp & known).any():
+            numbers = (users[0][0] + 1, users[1][0] + 1)
+            edges.append(InsideEdge(numbers, point[known], normal[:, known], inward[:, known], bend[:, known], sharp[known]))
+    return tuple(edges)
+
+
+def folded_faces(part: Any, numbers: Collection[int]) -> dict[int, int]:
+    """Which of some faces fold back onto a neighbour, each with that: both go the same way from all of an edge between them.
+
+    A smooth surface goes on beyond an edge. One that turns back there bounds a body of no thickness: it is the other part of its
+    whole surface than was meant.
+    """
+    joined = part.sewn.faces
+    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    result: dict[int, int] = {}
+    for edge, users in edge_uses(shapes) if numbers else ():
+        places = [place for place, _ in users]
+        mine = next((n for n in numbers if n - 1 in places), None)
+        if mine is None or len(set(places)) != 2 or len(users) != 2:
+            continue
+        sides = [_side(part, edge, shapes[place], place, way, 1.0) for place, way in users]
+        if all(side is not None for side in sides):
+            (_, _, one, _), (_, _, other, _) = sides  # type: ignore[misc]
+            same = (one * other).sum(axis=1)
+            if np.isfinite(same).any() and np.nanmin(same) > np.cos(SMOOTH):
+                result.setdefault(mine, next(place + 1 for place in places if place != mine - 1))
+    return result
+
+
+def _side(
+    part: Any, edge: TopoDS_Edge, shape: object, place: int, way: int, sign: float
+) -> tuple[Floats, Floats, Floats, Floats] | None:
+    """A face along one of its edges: points, normals, directions into the face and curvatures there; None where it has none."""
+    with may_refuse():
+        curve = BRepAdaptor_Curve2d(edge, shape)
+        low, high = curve.FirstParameter(), curve.LastParameter()
+        if max(-low, high) >= _INFINITE:
+            return None
+        line = along(curve, low + (high - low) * _SHARES)
+        d = part.surface(place + 1).second(line[:, 0, 0].copy(), line[:, 0, 1].copy())
+        with np.errstate(all="ignore"):
+            geometry = curvature(d, sign, float(np.linalg.norm(part.size)))
+            tangent = d[:, 1] * line[:, 1, :1] + d[:, 2] * line[:, 1, 1:]
+            # The face is on the left of its border, seen with the surface's own normal towards the eye.
+            inward = way * sign * cross(geometry.normal, tangent)
+            inward /= np.linalg.norm(inward, axis=1)[:, None]
+            cosine = (inward * geometry.direction_max).sum(axis=1)
+            high_, low_ = geometry.curvature.T
+            return d[:, 0], geometry.normal, inward, low_ + (high_ - low_) * cosine**2
+    return None
