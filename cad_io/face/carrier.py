@@ -25,33 +25,35 @@ from cad_io.surface.surface import lines_within
 _EQUAL = 1e-6
 
 
-_FORMS = {"cylinder": "Cylinder", "cone": "Cone", "sphere": "Sphere", "torus": "Torus"}
+#: Kinds of surfaces about a centre or an axis, as the kernel calls them.
+CLOSED = {"cylinder": "Cylinder", "cone": "Cone", "sphere": "Sphere", "torus": "Torus"}
+
+
+def closed_form(kind: str, adaptor: Any) -> tuple[Floats, Floats, tuple[float, ...]]:
+    """A point of the axis, the unit axis and the radii of a surface of one of `CLOSED`; of a cone the apex and its half angle."""
+    form: Any = getattr(adaptor, CLOSED[kind])()
+    if kind == "sphere":
+        return _array(form.Location()), np.array((0.0, 0.0, 1.0)), (form.Radius(),)
+    place, direction = _array(form.Axis().Location()), _array(form.Axis().Direction())
+    if kind == "cylinder":
+        return place, direction, (form.Radius(),)
+    if kind == "cone":
+        return _array(form.Apex()), direction, (abs(form.SemiAngle()),)
+    return place, direction, (form.MajorRadius(), form.MinorRadius())
 
 
 def stored_carrier(kind: str, adaptor: Any) -> Carrier | None:
-    """The carrier of a surface that the kernel stores in closed form; None of others.
-
-    Parameters
-    ----------
-    kind : str
-        As of `FaceInfo.surface`.
-    adaptor : BRepAdaptor_Surface
-    """
+    """The carrier of a surface that the kernel stores in closed form, by its kind in `FaceInfo.surface`; None of others."""
     if kind == "plane":
         position = adaptor.Plane().Position()
         return plane(_array(position.Location()), _array(position.Direction()))
-    if kind not in _FORMS:
+    if kind not in CLOSED:
         return None
-    form: Any = getattr(adaptor, _FORMS[kind])()
+    place, direction, radii = closed_form(kind, adaptor)
     if kind == "sphere":
-        return sphere(_array(form.Location()), form.Radius())
-    axis = form.Axis()
-    place, direction = _array(axis.Location()), _array(axis.Direction())
-    if kind == "cylinder":
-        return cylinder(place, direction, form.Radius())
-    if kind == "cone":
-        return cone(_array(form.Apex()), direction, abs(form.SemiAngle()))
-    return torus(place, direction, form.MajorRadius(), form.MinorRadius())
+        return sphere(place, *radii)
+    made: Any = {"cylinder": cylinder, "cone": cone, "torus": torus}[kind]
+    return made(place, direction, *radii)
 
 
 def plane(place: Floats, normal: Floats) -> Carrier:
@@ -172,7 +174,9 @@ def recognise(surface: Surface, box: tuple[float, float, float, float]) -> tuple
 
 def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator[Fit]:
     """Shapes that points with their normals and principal curvatures may lie on."""
-    yield _plane(point)
+    middle = point.mean(axis=0)
+    across = np.linalg.svd(point - middle, full_matrices=False)[2][2]
+    yield Fit("plane", lambda p: np.abs((p - middle) @ across), plane(middle, across))
     large = float(np.abs(kappa).max())
     if large * size < 1e-3:
         return
@@ -180,7 +184,10 @@ def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator
     constant = spread <= _VARIATION * np.abs(kappa).max(axis=0)
     flat = np.abs(kappa).max(axis=0) <= 1e-2 * large
     if constant.all() and not flat.any() and abs(kappa.mean(axis=0) @ (1, -1)) <= _VARIATION * large:
-        yield _sphere(point, normal, kappa)
+        centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
+        far = np.linalg.norm(point - centre, axis=1)
+        radius = 0.5 * float(far.min() + far.max())
+        yield Fit("sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius), sphere(centre, radius))
     elif flat.any():
         yield from _ruled(point, normal)
     else:
@@ -210,19 +217,6 @@ def _everywhere(surface: Surface, box: tuple[float, float, float, float]) -> Ite
     for first in range(0, len(v), rows):
         s, t = (g.ravel() for g in np.meshgrid(u, v[first : first + rows]))
         yield surface.values(s, t)
-
-
-def _plane(point: Floats) -> Fit:
-    middle = point.mean(axis=0)
-    normal = np.linalg.svd(point - middle, full_matrices=False)[2][2]
-    return Fit("plane", lambda p: np.abs((p - middle) @ normal), plane(middle, normal))
-
-
-def _sphere(point: Floats, normal: Floats, kappa: Floats) -> Fit:
-    centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
-    far = np.linalg.norm(point - centre, axis=1)
-    radius = 0.5 * float(far.min() + far.max())
-    return Fit("sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius), sphere(centre, radius))
 
 
 def _circle(flat: Floats) -> tuple[Floats, float]:

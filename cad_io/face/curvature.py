@@ -28,23 +28,19 @@ class Curvature(NamedTuple):
 
 
 def curvature(derivatives: Floats, sign: float = 1.0, size: float = np.inf) -> Curvature:
-    """Curvature of a surface at n points.
+    """Curvature of a surface at n points, of its derivatives S, Su, Sv, Suu, Svv, Suv (n, 6, 3).
 
     Parameters
     ----------
-    derivatives : (n, 6, 3) float
-        S, Su, Sv, Suu, Svv, Suv.
     sign : float
         +1 where Su x Sv points out of the material, -1 where it points in.
     size : float
         Of the part, mm: curvatures far below one over it have no direction.
 
-    Notes
-    -----
-    Worked out in an orthonormal frame (a, b) of the tangent plane, a along Su, in which the second fundamental form is
-    a symmetric 2 x 2 matrix: its eigenvalues are the curvatures, and the difference of the larger one comes without
-    cancellation. With the normal out of the material, S'' . n > 0 means that the surface rises: concave is positive.
-    At umbilics the direction is a, the kernel's u tangent.
+    Worked out in an orthonormal frame (a, b) of the tangent plane, a along Su, in which the second fundamental form is a
+    symmetric 2 x 2 matrix: its eigenvalues are the curvatures, and the difference of the larger one comes without cancellation.
+    With the normal out of the material, S'' . n > 0 means that the surface rises: concave is positive. At umbilics the direction
+    is a, the kernel's u tangent.
     """
     from cad_io.surface.differential import differential
 

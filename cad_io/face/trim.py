@@ -66,12 +66,6 @@ class Trim(Record):
         p, q = self.segments[:, 0], self.segments[:, 1]
         return abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
 
-    @property
-    def box_area(self) -> float:
-        """Area of `box`."""
-        u0, u1, v0, v1 = self.box
-        return (u1 - u0) * (v1 - v0)
-
     def inside_grid(self, u: Floats, v: Floats, *, border: bool = True) -> Bools:
         """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
 
@@ -132,14 +126,7 @@ class Trim(Record):
 
 
 def trim_of(face: TopoDS_Face, surface: Surface) -> Trim | None:
-    """Border of a face, None if it has no edge with a finite parameter curve.
-
-    Parameters
-    ----------
-    face : TopoDS_Face
-    surface : Surface
-        Of that face, not restricted to it.
-    """
+    """Border of a face on its whole surface, None if it has no edge with a finite parameter curve."""
     forward, edges = bounding(face)
     scale, size = _scale(forward, surface)
     if scale is None:
@@ -265,11 +252,10 @@ _AT_ONCE = 1 << 22  # points times segments compared at once
 
 
 class Clipped(NamedTuple):
-    """This record describes the parts of n tiles that lie in a trim, in parameters.
+    """The parts of n tiles that lie in a trim, in parameters; where the area is zero, the rest has no meaning.
 
-    area : (n,) float; middle : (n, 2) float, centre of gravity, or a point on the border where that lies outside;
-    low, high : (n, 2) float, a box around it; whole : (n,) bool, the tile lies in the trim altogether. Where the area is
-    zero, the rest has no meaning.
+    middle (n, 2): centre of gravity, or a point on the border where that lies outside. low, high (n, 2): a box around it.
+    whole (n,): the tile lies in the trim altogether.
     """
 
     area: Floats
@@ -284,15 +270,9 @@ class Clipped(NamedTuple):
 
 
 def clipped(trim: Trim, u: Floats, v: Floats, tile: Indices) -> Clipped:
-    """Clip tiles of the parameter plane to a trim.
+    """Clip tiles (n, 2) of the parameter plane to a trim, which increasing grid lines u (nu + 1,) and v (nv + 1,) enclose.
 
-    Parameters
-    ----------
-    trim : Trim
-    u, v : (nu + 1,), (nv + 1,) float
-        Increasing grid lines, which enclose the trim.
-    tile : (n, 2) int
-        Tile (i, j) lies between the lines i and i + 1 of u, and j and j + 1 of v.
+    Tile (i, j) lies between the lines i and i + 1 of u, and j and j + 1 of v.
     """
     low = np.stack([u[tile[:, 0]], v[tile[:, 1]]], axis=1)
     high = np.stack([u[tile[:, 0] + 1], v[tile[:, 1] + 1]], axis=1)

@@ -81,7 +81,6 @@ def _integral(curve: Any) -> float:
 
 
 def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
-    """Places and slopes (n, 2) of a curve at its parameters (n,)."""
     if curve.GetType() == GeomAbs_BSplineCurve and len(t) > _FEW:
         spline = curve.BSpline()
         if not (spline.IsRational() or spline.IsPeriodic()):
@@ -96,7 +95,7 @@ def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
     return points[:, 0], points[:, 1]
 
 
-def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
+def nodes_inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Which nodes of the grid u (nu,) x v (nv,), both increasing, lie in an outline: (nu, nv), by even-odd rows."""
     # Borders like to run along grid lines, where rounding decides what a row crosses: rows are taken a little off.
     v = v + _OFF * (v[-1] - v[0])
@@ -122,8 +121,7 @@ def interior_point(segments: Floats) -> tuple[float, float]:
 def boundary(face: Any) -> list[tuple[Any, Floats, float]]:
     """Boundary curves in (u, v), the ends (k + 1,) of their smooth intervals, +1 or -1 for their direction."""
     forward, edges = bounding(face)
-    curves = [(BRepAdaptor_Curve2d(edge, forward), float(way)) for edge, way in edges]
-    return [(curve, _ends(curve), way) for curve, way in curves]
+    return [(curve := BRepAdaptor_Curve2d(edge, forward), _ends(curve), float(way)) for edge, way in edges]
 
 
 def _ends(curve: Any) -> Floats:

@@ -49,21 +49,10 @@ class may_refuse:
 def translated(
     doing: str, *, error: type[CadIoError] = CadIoError, file: str | None = None, face: str | None = None
 ) -> Iterator[None]:
-    """Turn any kernel exception inside the block into `error`.
+    """Turn any kernel exception inside the block into `error`, a class of CadIoError; errors that are not the kernel's pass
+    unchanged.
 
-    Parameters
-    ----------
-    doing : str
-        What was being done, as in "reading the file".
-    error : type
-        The CadIoError subclass to raise.
-    file, face : str, optional
-        Where it happened.
-
-    Raises
-    ------
-    CadIoError
-        Of the class asked for; errors that are not the kernel's pass unchanged.
+    `doing` says what was being done, as in "reading the file"; `file` and `face` where it happened.
     """
     try:
         yield
@@ -117,17 +106,14 @@ def bounding(face: TopoDS_Face) -> tuple[TopoDS_Face, list[tuple[TopoDS_Edge, in
 
 def values(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
     """Surface points, (n, 3) mm, at parameters u, v of shape (n,); NaN where the kernel refuses."""
-    value, places = adaptor.Value, list(zip(u.tolist(), v.tolist(), strict=True))
-    rows: list[tuple[float, float, float]] = []
+    places = list(zip(u.tolist(), v.tolist(), strict=True))
     with may_refuse():
-        rows = [value(a, b).Coord() for a, b in places]
-    return np.array(rows or [_value_or_nan(adaptor, a, b) for a, b in places], dtype=float).reshape(-1, 3)
-
-
-def _value_or_nan(adaptor: BRepAdaptor_Surface, u: float, v: float) -> tuple[float, float, float]:
-    with may_refuse():
-        return adaptor.Value(u, v).Coord()
-    return np.nan, np.nan, np.nan
+        return np.array([adaptor.Value(a, b).Coord() for a, b in places], dtype=float).reshape(-1, 3)
+    points = np.full((len(places), 3), np.nan)
+    for i, (a, b) in enumerate(places):
+        with may_refuse():
+            points[i] = adaptor.Value(a, b).Coord()
+    return points
 
 
 def first_derivatives(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
@@ -141,20 +127,14 @@ def second_derivatives(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Fl
 
 
 def _derivatives(evaluate: Any, u: Floats, v: Floats, count: int) -> Floats:
-    point = gp_Pnt()
-    vectors = [gp_Vec() for _ in range(count)]
-    outs = (point, *vectors)
+    outs = (gp_Pnt(), *(gp_Vec() for _ in range(count)))
     flat: list[float] = []
     for a, b in zip(u.tolist(), v.tolist(), strict=True):
-        try:
+        row = [np.nan] * (3 * (count + 1))
+        with may_refuse():
             evaluate(a, b, *outs)
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
-            flat.extend([np.nan] * (3 * (count + 1)))
-            continue
-        for out in outs:
-            flat.extend(out.Coord())
+            row = [x for out in outs for x in out.Coord()]
+        flat.extend(row)
     return np.array(flat, dtype=float).reshape(-1, count + 1, 3)
 
 

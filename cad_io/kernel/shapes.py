@@ -1,6 +1,9 @@
-"""Shapes divided, put together, made and bounded: compounds, components, bodies, natural bounds; and points in solids."""
+"""Shapes divided, put together, made and bounded; points in solids; and the tree of a file's products, as which the annotated
+model is built up again.
+"""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -108,26 +111,21 @@ class Side(NamedTuple):
 
 
 def revolved(start: tuple[float, float], sides: Iterable[Side]) -> Any:
-    """The solid that a closed profile makes when it is turned about the z axis.
+    """The solid that a closed profile makes when it is turned about the z axis, of sides from `start` on that end there again.
 
-    Parameters
-    ----------
-    start : (float, float)
-    sides : iterable of Side
-        The last one ends at `start`.
-
-    Raises
-    ------
-    CadIoError
-        The kernel makes no solid of it.
+    Raises CadIoError where the kernel makes no solid of it.
     """
+
+    def point(at: tuple[float, float]) -> gp_Pnt:
+        return gp_Pnt(at[0], 0.0, at[1])
+
     with translated("turning a profile"):
         wire, at = BRepBuilderAPI_MakeWire(), start
         for side in sides:
             if side.middle is None:
-                edge = BRepBuilderAPI_MakeEdge(_point(at), _point(side.end)).Edge()
+                edge = BRepBuilderAPI_MakeEdge(point(at), point(side.end)).Edge()
             else:
-                arc = GC_MakeArcOfCircle(_point(at), _point(side.middle), _point(side.end)).Value()
+                arc = GC_MakeArcOfCircle(point(at), point(side.middle), point(side.end)).Value()
                 edge = BRepBuilderAPI_MakeEdge(arc).Edge()
             wire.Add(edge)
             at = side.end
@@ -142,13 +140,7 @@ def turned(shape: Any, origin: Sequence[float], direction: Sequence[float]) -> A
 
 
 def prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Any:
-    """The solid over a polygon of x and y, from a height along the z axis to another.
-
-    Raises
-    ------
-    CadIoError
-        The kernel makes no solid of it.
-    """
+    """The solid over a polygon of x and y, from a height along the z axis to another; CadIoError where the kernel makes none."""
     with translated("sweeping a profile"):
         wire = BRepBuilderAPI_MakePolygon()
         for x, y in outline:
@@ -176,10 +168,6 @@ def placed(shape: Any, place: Floats) -> Any:
     move = gp_Trsf()
     move.SetValues(*(float(value) for value in place.ravel()))
     return shape.Moved(TopLoc_Location(move))
-
-
-def _point(at: tuple[float, float]) -> gp_Pnt:
-    return gp_Pnt(at[0], 0.0, at[1])
 
 
 #: Parameters of the kernel's endless surfaces are 2e100.
@@ -226,12 +214,10 @@ def _bound(face: TopoDS_Face) -> None:
 
 
 def within(solids: Iterable[TopoDS_Shape], points: Floats) -> NDArray[np.bool_]:
-    """Which points (n, 3) lie in one of some solids, mm, off its surface by more than the kernel's tolerance.
+    """Which points (n, 3), mm, lie in one of some solids, by the kernel's own exact surfaces, off them by more than its
+    tolerance.
 
-    Raises
-    ------
-    CadIoError
-        The kernel cannot tell.
+    Raises CadIoError where the kernel cannot tell.
     """
     inside = np.zeros(len(points), bool)
     for solid in solids:
@@ -242,3 +228,60 @@ def within(solids: Iterable[TopoDS_Shape], points: Floats) -> NDArray[np.bool_]:
                     classifier.Perform(gp_Pnt(x, y, z), Precision.Confusion_s())
                     inside[k] = classifier.State() == TopAbs_IN
     return inside
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """An instance of a product: an assembly of other instances, or a leaf with faces."""
+
+    #: Of the product; empty if it has none.
+    name: str
+    #: Of this use of it; empty for a root.
+    instance: str
+    #: In the assembly around it.
+    place: TopLoc_Location
+    #: Of an assembly.
+    children: tuple["Node", ...] = ()
+    #: Face numbers of a leaf, no number in two leaves.
+    faces: tuple[int, ...] = ()
+
+    def leaves(
+        self, path: tuple[str, ...] = (), location: TopLoc_Location | None = None
+    ) -> Iterator[tuple["Node", str, TopLoc_Location]]:
+        """Every leaf with its path of names (`wheel/rim`) and its location in the part."""
+        path = (*path, self.instance or self.name)
+        place = location.Multiplied(self.place) if location else self.place
+        if not self.children:
+            yield self, "/".join(filter(None, path)), place
+        for child in self.children:
+            yield from child.leaves(path, place)
+
+    def numbers(self) -> Iterator[int]:
+        """Face numbers of all leaves."""
+        yield from self.faces
+        for child in self.children:
+            yield from child.numbers()
+
+
+def component_of(tree: Sequence[Node]) -> dict[int, str]:
+    """Face number -> path of names down to the leaf that the face belongs to."""
+    return {number: path for root in tree for leaf, path, _ in root.leaves() for number in leaf.faces}
+
+
+def faces_of(tree: Sequence[Node], name: str) -> set[int]:
+    """Face numbers of every instance called so, with all that is in it.
+
+    An exact path counts alone; where there is none, a trailing part of a path (`wheel/rim`) or a product's name.
+    """
+    nodes = [(node, path) for root in tree for node, path in _paths(root, "")]
+    result = [node for node, path in nodes if path == name] or [
+        node for node, path in nodes if path.endswith(f"/{name}") or node.name == name
+    ]
+    return {number for node in result for number in node.numbers()}
+
+
+def _paths(node: Node, above: str) -> Iterator[tuple[Node, str]]:
+    path = "/".join(filter(None, (above, node.instance or node.name)))
+    yield node, path
+    for child in node.children:
+        yield from _paths(child, path)

@@ -14,21 +14,20 @@ from collections import defaultdict, deque
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GCPnts import GCPnts_TangentialDeflection
-from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from OCP.TopTools import TopTools_IndexedMapOfShape
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Orientation
-from cad_io.kernel import edges_of, explore, may_refuse, shape_map
+from cad_io.graphs import connected
+from cad_io.kernel import edges_of, may_refuse
 from cad_io.part.part import Part
 from cad_io.part.patterns import doubled
 from cad_io.part.sew import edge_uses, join
@@ -51,13 +50,7 @@ def flux_of(cap: Floats, origin: Floats) -> float:
 def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floats:
     """Triangles (t, 3, 3) that close the openings of faces: each a cone over its border, from the border's middle.
 
-    Parameters
-    ----------
-    shapes : sequence of TopoDS_Face
-    sign : (k,) float
-        +1 for a face that is seen from outside with `dS/du x dS/dv` towards the eye, else -1.
-    diagonal : float
-        Of the part, mm.
+    sign (k,): +1 for a face that is seen from outside with `dS/du x dS/dv` towards the eye, else -1. diagonal: of the part, mm.
     """
     nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
     border = [(edge, net) for edge, net in nets if net]
@@ -74,23 +67,14 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
 
 
 def coned(lines: Sequence[Floats], ways: Sequence[int], near: float) -> Floats:
-    """Triangles (t, 3, 3) that close openings.
+    """Triangles (t, 3, 3) that close openings, of which ends of pieces so near, mm, belong to one.
 
-    Parameters
-    ----------
-    lines : sequence of (k, 3) float
-        Pieces of the openings' borders, each run along as the skin does that they border.
-    ways : sequence of int
-        How often.
-    near : float
-        Ends of pieces so near belong to one opening, mm.
+    The pieces of the openings' borders, lines (k, 3), are each run along as the skin does that they border, as often as `ways`
+    says.
     """
     ends = np.concatenate([line[[0, -1]] for line in lines])
     pairs = cKDTree(ends).query_pairs(near, output_type="ndarray")
-    own = np.arange(0, len(ends), 2)
-    rows, columns = np.concatenate([pairs[:, 0], own]), np.concatenate([pairs[:, 1], own + 1])
-    graph = coo_array((np.ones(len(rows), np.int8), (rows, columns)), shape=(len(ends), len(ends)))
-    opening = connected_components(graph, directed=False)[1][::2]
+    opening = connected(len(ends), np.concatenate([pairs, np.arange(len(ends)).reshape(-1, 2)]))[::2]
     made = []
     for which in range(int(opening.max()) + 1):
         mine = np.flatnonzero(opening == which).tolist()
@@ -120,30 +104,18 @@ NEARLY_CLOSED = 0.05
 
 
 def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), flip: bool = False) -> Orientation:
-    """Find the side of every face of a part.
+    """Find the side of every face of a part; `confident` is False where any face's side is a guess.
 
-    Parameters
-    ----------
-    part : Part
-    towards : tuple of float
-        Direction from which open shells and loose faces are worked on; any length but zero.
-    flip : bool
-        Turn open shells and loose faces the other way.
-
-    Returns
-    -------
-    Orientation
-        `confident` is False where any face's side is a guess.
+    towards: direction from which open shells and loose faces are worked on, of any length but zero. flip: turn these the other
+    way.
     """
     count = len(part.faces)
     sign = np.zeros(count)
     notes: list[str] = []
     guessed: list[int] = []
-    numbers = shape_map(part.shape, TopAbs_FACE)
     again = doubled(part)
     for solid in part.solid_shapes():
-        members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
-        members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
+        members = [(n - 1, f) for n, f in part.members(solid) if n and sign[n - 1] == 0]
         if not _orient_solid(part, [each for each in members if each[0] + 1 not in again], sign, notes):
             guessed += [n + 1 for n, _ in members]
         for i, face in members:
@@ -229,15 +201,17 @@ def _orient_rest(part: Part, rest: Sequence[int], sign: Floats, notes: list[str]
     return sure
 
 
-class Joined:
+class Joined(NamedTuple):
     """Faces joined by edges.
 
     `relative` (k,): +1 or -1 so that all point to one side by `dS/du x dS/dv`. `touching`: they are not closed, but open
     only at edges at which more than two faces meet, those of a body that touches this one.
     """
 
-    def __init__(self, members: list[int], relative: Floats | None, closed: bool, touching: bool = False) -> None:
-        self.members, self.relative, self.closed, self.touching = members, relative, closed, touching
+    members: list[int]
+    relative: Floats | None
+    closed: bool
+    touching: bool
 
 
 def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
@@ -326,10 +300,8 @@ class Body:
     cap: Floats
 
 
-def _bodies_of_solid(part: Part, numbers: Any, solid: Any, without: Collection[int]) -> Iterator[Body]:
-    """Bodies of one solid; `numbers` is the map of the part's faces."""
-    members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
-    members = [(n, f) for n, f in members if n and n not in without]
+def _bodies_of_solid(part: Part, solid: Any, without: Collection[int]) -> Iterator[Body]:
+    members = [(n, f) for n, f in part.members(solid) if n and n not in without]
     flags = np.array([-1 if f.Orientation() == TopAbs_REVERSED else 1 for _, f in members], int)
     shapes = [f for _, f in members]
     groups = joined_faces(shapes)
@@ -348,7 +320,11 @@ def _bodies_of_solid(part: Part, numbers: Any, solid: Any, without: Collection[i
 def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
     """Bodies of the faces that belong to no solid."""
     loose = {n: face for n, face in part.sewn.faces.items() if n not in without}
-    order = _each_once(loose)
+    # Without those that have just the edges of an earlier one: bodies that lie in one place.
+    edges, first = TopTools_IndexedMapOfShape(), dict[frozenset[int], int]()
+    for number in sorted(loose):
+        first.setdefault(frozenset(edges.Add(edge) for edge in edges_of(loose[number])), number)
+    order = sorted(first.values())
     for group in joined_faces([loose[n] for n in order]):
         if group.relative is not None:
             numbers = [order[i] for i in group.members]
@@ -359,27 +335,12 @@ def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
 def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
     """Every skin of a part that encloses something, each void and each shell of a solid apart.
 
-    A face between two solids belongs to both. Faces whose shell encloses nothing (sheets) are in none.
-
-    Parameters
-    ----------
-    part : Part
-    without : collection of int
-        Face numbers to leave out: a skin that has lost some of its faces is open.
+    A face between two solids belongs to both. Faces whose shell encloses nothing (sheets) are in none. Without some faces, by
+    their numbers, a skin that has lost them is open.
     """
-    numbers = shape_map(part.shape, TopAbs_FACE)
-    solid = [body for each in part.solid_shapes() for body in _bodies_of_solid(part, numbers, each, without)]
+    solid = [body for each in part.solid_shapes() for body in _bodies_of_solid(part, each, without)]
     result = {(body.faces, body.sign): body for body in (*solid, *_bodies_of_loose(part, without))}
     return tuple(result.values())
-
-
-def _each_once(loose: dict[int, TopoDS_Face]) -> list[int]:
-    """Numbers of faces, ascending, without those that have just the edges of an earlier one: bodies that lie in one place."""
-    edges = TopTools_IndexedMapOfShape()
-    first: dict[frozenset[int], int] = {}
-    for number in sorted(loose):
-        first.setdefault(frozenset(edges.Add(edge) for edge in edges_of(loose[number])), number)
-    return sorted(first.values())
 
 
 def _body(

@@ -10,7 +10,7 @@ with. A distance is never told too small, so that what is not understood stays a
 the work is bounded by the number of pieces and of ends that lie next to each other.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, pairwise
 from typing import NamedTuple
 
@@ -19,11 +19,10 @@ from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.TopoDS import TopoDS_Edge
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
+from cad_io.graphs import connected
 from cad_io.kernel import along, interval_ends, may_refuse
 
 Indices = NDArray[np.intp]
@@ -43,20 +42,10 @@ _INFINITE = 1e50
 
 
 class Curves:
-    """Curves of edges, by place in a list.
+    """Curves of edges, by place in a list, in pieces that may be so far, mm, from the kernel's curves.
 
-    Parameters
-    ----------
-    edges : sequence of TopoDS_Edge
-    chord : float
-        How far pieces may be from the kernel's curves, mm.
-
-    Attributes
-    ----------
-    drawn : (n,) bool
-        The others have no curve, or none that could be followed: ask nothing about them.
-    low, high : (n,) float
-        Ranges of the parameters.
+    drawn (n,): the others have no curve, or none that could be followed: ask nothing about them. low, high (n,): ranges of the
+    parameters.
     """
 
     def __init__(self, edges: Sequence[TopoDS_Edge], chord: float) -> None:
@@ -68,10 +57,7 @@ class Curves:
         self._first = np.concatenate([[0], np.cumsum([len(d.t) for d in each])])
         self._t, self._p, self._d = (np.concatenate([d[k] for d in each]) for k in range(3))
         self.low, self.high = self._t[self._first[:-1]], self._t[self._first[1:] - 1]
-        self._measure()
-
-    def _measure(self) -> None:
-        """Set the table of lengths: parameters of the chords' ends and the length up to each."""
+        # The table of lengths: parameters of the chords' ends and the length up to each.
         counts = np.diff(self._first) - 1
         owner = np.repeat(np.arange(len(counts)), counts)
         start = np.delete(np.arange(len(self._t)), self._first[1:] - 1)
@@ -274,21 +260,10 @@ class Group(NamedTuple):
 
 
 def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
-    """Groups after joining what lies within a tolerance.
+    """Groups after joining what lies within a tolerance, mm.
 
-    Parameters
-    ----------
-    curves : Curves
-    faces : list of tuple of int
-        By edge: the faces that use it. An edge that one face uses twice is a seam, and stays as it is.
-    groups : list of Group
-        As they are: the pieces of an edge follow each other from its start to its end.
-    tolerance : float
-        mm.
-
-    Raises
-    ------
-    TooMany
+    faces: by edge, the faces that use it. An edge that one face uses twice is a seam, and stays as it is. groups: as they are;
+    the pieces of an edge follow each other from its start to its end. Raises TooMany.
     """
     still: list[Group] = []
     moving: list[Group] = []
@@ -406,16 +381,6 @@ def _runs(piece: Indices, place: Floats, tolerance: float) -> list[slice]:
     return [slice(a, b) for a, b in pairwise(ends)]
 
 
-def _apart(curves: Curves, faces: list[tuple[int, ...]], table: _Table, ends: Iterable[tuple[int, int]], tolerance: float,
-           pieces: list[int]) -> NDArray[np.bool_]:  # fmt: skip
-    """Which pairs of edges are no two sides of one narrow face; `ends` are their edges, `pieces` the rows of the first ones."""
-    own = [bool(set(faces[a]) & set(faces[b])) for a, b in ends]
-    tubes = _Tubes(curves, faces) if any(own) else None
-    return np.array(
-        [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, pieces, strict=True)], bool
-    )
-
-
 def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
     """Groups that lie on each other become one, the nearest first."""
     table = _Table.of(groups)
@@ -423,8 +388,11 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     i, j, way = _candidates(curves, table, alone, tolerance)
     distance = _distances(curves, table, i, j, way)
     near = np.flatnonzero(distance <= tolerance)
-    ends = zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)
-    near = near[_apart(curves, faces, table, ends, tolerance, i[near].tolist())]
+    # No two sides of one narrow face.
+    own = [set(faces[a]) & set(faces[b]) for a, b in zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)]
+    tubes = _Tubes(curves, faces) if any(own) else None
+    apart = [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, i[near].tolist(), strict=True)]
+    near = near[np.array(apart, bool)]
     order = near[np.argsort(distance[near], kind="stable")]
     allowed: dict[tuple[int, int], set[int]] = {}
     for k in order.tolist():
@@ -534,9 +502,7 @@ def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group]
     tree = cKDTree(ends.reshape(-1, 3))
     if tree.count_neighbors(tree, tolerance) > 2 * MOST_NEIGHBOURS:
         raise TooMany
-    pairs = tree.query_pairs(tolerance, output_type="ndarray") // 2
-    chains = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(small), len(small)))
-    label = connected_components(chains, directed=False)[1]
+    label = connected(len(small), tree.query_pairs(tolerance, output_type="ndarray") // 2)
     result = []
     for which in range(int(label.max()) + 1):
         mine = label == which

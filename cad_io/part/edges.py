@@ -9,23 +9,21 @@ A sharp inside edge is one at an angle below 180 deg through the air, without a 
 across which the surface goes on smoothly and an outside edge are none. Edges, normals and curvatures are the kernel's.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from OCP.TopoDS import TopoDS_Edge
 
-from cad_io.arrays import FaceInfo, Floats, Orientation, Record, cross
+from cad_io.arrays import Floats, Orientation, Record, cross
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
+from cad_io.graphs import connected
 from cad_io.kernel import along, may_refuse
 from cad_io.part.sew import edge_uses
-from cad_io.surface import Surface
 
 #: Normals on both sides of a smooth edge agree within this, rad, at so large a share of the points looked at.
 SMOOTH, _MOSTLY = np.deg2rad(3.0), 0.75
@@ -54,27 +52,13 @@ class _BlendSide(NamedTuple):
     turned: Floats
 
 
-class Bare(NamedTuple):
-    """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface; None
-    where it is not to be requested."""
-
-    info: FaceInfo
-    shape: TopoDS_Face
-    trim: Trim | None
-    surface: Surface | None
-
-
 def _agreements(
     agree: Floats, normal: Floats, kappa: Floats, across: Floats
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether two faces go on smoothly over their edge (k,), each bends most across it (k, 2), and both bend alike (k,).
 
-    Parameters
-    ----------
-    agree : (k,)
-        1 where the two faces' normals are on the same side, -1 where they are not.
-    normal, kappa, across : (k, 2, points, 3), (k, 2, points, 2), (k, 2, points)
-        Normals, principal curvatures and the curvature across the edge, nan where the kernel cannot evaluate them.
+    agree (k,): 1 where the two faces' normals are on the same side, -1 where they are not. normal (k, 2, points, 3), kappa (k, 2,
+    points, 2), across (k, 2, points): normals, principal curvatures and the curvature across the edge, nan where there are none.
     """
     with np.errstate(invalid="ignore"):
         dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
@@ -88,30 +72,20 @@ def _agreements(
     return smooth, bends, alike
 
 
-def _edges_between(shape: Sequence[Any], rounded: list[bool]) -> list[Any]:
-    """Edges of two different faces, one of them at least of a round shape, and their users."""
-    return [
+def blends(part: Any) -> frozenset[int]:
+    """Numbers of the faces of a part that are blends.
+
+    An edge, or a face, that the kernel cannot evaluate joins nothing smoothly.
+    """
+    infos, shape = part.faces, [part.joined(info.number) for info in part.faces]
+    trims = [part.trim(info.number) for info in infos]
+    rounded = [info.shape in _ROUND and info.unjudged is None for info in infos]
+    # Those of two different faces, one of them at least of a round shape.
+    edges = [
         (edge, users)
         for edge, users in edge_uses(shape)
         if len(users) == 2 and users[0][0] != users[1][0] and (rounded[users[0][0]] or rounded[users[1][0]])
     ]
-
-
-def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
-    """Numbers of the faces of a part that are blends.
-
-    An edge, or a face, that the kernel cannot evaluate joins nothing smoothly.
-
-    Parameters
-    ----------
-    faces : sequence of Bare
-        All faces of the part.
-    size : float
-        Of the part, mm.
-    """
-    infos, shape = [face.info for face in faces], [face.shape for face in faces]
-    rounded = [info.shape in _ROUND and info.unjudged is None for info in infos]
-    edges = _edges_between(shape, rounded)
     if not edges:
         return frozenset()
     owner = np.array([[i for i, _ in users] for _, users in edges])
@@ -123,47 +97,42 @@ def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     turned: dict[int, Floats] = {}
     for i in np.unique(owner).tolist():
         mine, which = np.nonzero(owner == i)
-        blend = _blend_side(faces[i], size, [edges[k][0] for k in mine.tolist()])
+        blend = _blend_side(part, i + 1, trims[i], [edges[k][0] for k in mine.tolist()])
         if blend is not None:
             normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = blend
     smooth, bends, alike = _agreements(agree, normal, kappa, across)
     kind = np.array([info.shape for info in infos])
     rounds = np.array(rounded)[owner].all(axis=1)
     on = smooth & alike & rounds & (kind[owner[:, 0]] == kind[owner[:, 1]])
-    one = _groups(len(infos), owner[on])
+    one = connected(len(infos), owner[on])
     joined: dict[int, set[int]] = {}
     for k, s in zip(*np.nonzero(smooth[:, None] & bends & (one[owner[:, :1]] != one[owner[:, 1:]])), strict=True):
         joined.setdefault(int(one[owner[k, s]]), set()).add(int(one[owner[k, 1 - s]]))
     several = {i for i in turned if rounded[i] and len(joined.get(int(one[i]), ())) > 1}
-    return frozenset(infos[i].number for i in several if kind[i] not in _RULED or _turn(_of_one(one, i, turned)) < HALF)
+
+    def of_one(i: int) -> Floats:
+        """Normals (n, 3) of all faces that carry on the same surface as face `i`."""
+        return np.concatenate([turned[j] for j in np.flatnonzero(one == one[i]).tolist() if j in turned])
+
+    return frozenset(infos[i].number for i in several if kind[i] not in _RULED or _turn(of_one(i)) < HALF)
 
 
-def _groups(count: int, pairs: NDArray[np.intp]) -> NDArray[np.int32]:
-    """Numbers (count,) of what pairs (m, 2) connect."""
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    return np.asarray(connected_components(links, directed=False)[1])
-
-
-def _of_one(one: NDArray[np.int32], i: int, turned: Mapping[int, Floats]) -> Floats:
-    """Normals (n, 3) of all faces that carry on the same surface as face `i`."""
-    return np.concatenate([turned[j] for j in np.flatnonzero(one == one[i]).tolist() if j in turned])
-
-
-def _blend_side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _BlendSide | None:
+def _blend_side(part: Any, number: int, trim: Trim | None, edges: list[TopoDS_Edge]) -> _BlendSide | None:
     """One face along some of its edges; None where it cannot be evaluated."""
-    if face.trim is None or face.surface is None:
+    if trim is None:
         return None
-    points, (u0, u1, v0, v1) = len(_ALONG), face.trim.box
-    line = np.concatenate([_parameters(edge, face.shape) for edge in edges])
+    points, (u0, u1, v0, v1) = len(_ALONG), trim.box
+    lines, none = [_parameters(edge, part.joined(number), _ALONG) for edge in edges], np.full((points, 2, 2), np.nan)
+    line = np.concatenate([none if each is None else each for each in lines])
     share = np.linspace(0.0, 1.0, _LINES)
     u, v = (g.ravel() for g in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
     uv, n, d = line[:, 0], len(line), None
     with may_refuse():
-        d = face.surface.second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
+        d = part.surface(number).second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
     if d is None:
         return None
     with np.errstate(all="ignore"):
-        geometry = curvature(d, 1.0, size)
+        geometry = curvature(d, 1.0, float(np.linalg.norm(part.size)))
         tangent = d[:n, 1] * line[:, 1, :1] + d[:n, 2] * line[:, 1, 1:]
         inward = np.cross(geometry.normal[:n], tangent)
         cosine = (inward * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(inward, axis=1)
@@ -180,14 +149,15 @@ def _blend_side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _BlendSide
     )
 
 
-def _parameters(edge: TopoDS_Edge, face: TopoDS_Face) -> Floats:
-    """Places (u, v) along an edge of a face, and the directions in which it goes there: (p, 2, 2), nan where it has none."""
+def _parameters(edge: TopoDS_Edge, face: Any, shares: Floats) -> Floats | None:
+    """Places (u, v) at shares of an edge of a face, and its directions there: (p, 2, 2); None where it has none."""
     with may_refuse():
         curve = BRepAdaptor_Curve2d(edge, face)
         low, high = curve.FirstParameter(), curve.LastParameter()
+        # Parameters beyond this are infinite to the kernel.
         if max(-low, high) < 1e50:
-            return along(curve, low + (high - low) * _ALONG)
-    return np.full((len(_ALONG), 2, 2), np.nan)
+            return along(curve, low + (high - low) * shares)
+    return None
 
 
 def _turn(normal: Floats) -> float:
@@ -205,35 +175,23 @@ def _turn(normal: Floats) -> float:
 
 #: Points along an edge, as shares of its parameter: none at its ends, where a face may have no normal.
 _SHARES = np.concatenate([[1e-6], np.arange(1, 64) / 64, [1 - 1e-6]])
-#: Parameters beyond this are infinite to the kernel.
-_INFINITE = 1e50
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class InsideEdge(Record):
-    """A sharp inside edge between two faces, at k points along it.
+    """A sharp inside edge between two faces, at k points along it."""
 
-    Attributes
-    ----------
-    faces : (int, int)
-        Numbers of the two faces.
-    point : (k, 3) float
-        mm.
-    normal : (2, k, 3) float
-        Unit normals of the two faces, out of the material.
-    inward : (2, k, 3) float
-        Unit tangents of the two faces, square to the edge, from it into the face.
-    curvature : (2, k) float
-        Normal curvature of the two faces in these directions, 1/mm, positive where the material rises (concave).
-    sharp : (k,) bool
-        Points at which the edge is sharp and inside; at the others it is smooth or outside.
-    """
-
+    #: (int, int); Numbers of the two faces.
     faces: tuple[int, int]
+    #: (k, 3); mm.
     point: Floats
+    #: (2, k, 3); Unit normals of the two faces, out of the material.
     normal: Floats
+    #: (2, k, 3); Unit tangents of the two faces, square to the edge, from it into the face.
     inward: Floats
+    #: (2, k); Normal curvature of the two faces in these directions, 1/mm, positive where the material rises (concave).
     curvature: Floats
+    #: (k,); Points at which the edge is sharp and inside; at the others it is smooth or outside.
     sharp: np.ndarray
 
     @property
@@ -251,19 +209,11 @@ class InsideEdge(Record):
 def inside_edges(part: Any, orientation: Orientation, without: Collection[int] = ()) -> tuple[InsideEdge, ...]:
     """Find the sharp inside edges of a part, in the order of the kernel's edges.
 
-    An edge that the kernel cannot evaluate on both of its faces is left out, as are faces that cannot be judged.
-
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-        The side of each face.
-    without : collection of int, optional
-        Face numbers that are left out, as if they were not there.
+    An edge that the kernel cannot evaluate on both of its faces is left out, as are faces that cannot be judged, and those with
+    numbers in `without`, as if they were not there.
     """
-    joined = part.sewn.faces
     edges: list[InsideEdge] = []
-    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    shapes = [part.joined(info.number) for info in part.faces]
     usable = [info.unjudged is None for info in part.faces]
     for edge, every in edge_uses(shapes):
         users = [use for use in every if use[0] + 1 not in without]
@@ -292,8 +242,7 @@ def folded_faces(part: Any, numbers: Collection[int]) -> dict[int, int]:
     A smooth surface goes on beyond an edge. One that turns back there bounds a body of no thickness: it is the other part of its
     whole surface than was meant.
     """
-    joined = part.sewn.faces
-    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    shapes = [part.joined(info.number) for info in part.faces]
     result: dict[int, int] = {}
     for edge, users in edge_uses(shapes) if numbers else ():
         places = [place for place, _ in users]
@@ -310,15 +259,13 @@ def folded_faces(part: Any, numbers: Collection[int]) -> dict[int, int]:
 
 
 def _side(
-    part: Any, edge: TopoDS_Edge, shape: object, place: int, way: int, sign: float
+    part: Any, edge: TopoDS_Edge, shape: Any, place: int, way: int, sign: float
 ) -> tuple[Floats, Floats, Floats, Floats] | None:
     """A face along one of its edges: points, normals, directions into the face and curvatures there; None where it has none."""
+    line = _parameters(edge, shape, _SHARES)
+    if line is None:
+        return None
     with may_refuse():
-        curve = BRepAdaptor_Curve2d(edge, shape)
-        low, high = curve.FirstParameter(), curve.LastParameter()
-        if max(-low, high) >= _INFINITE:
-            return None
-        line = along(curve, low + (high - low) * _SHARES)
         d = part.surface(place + 1).second(line[:, 0, 0].copy(), line[:, 0, 1].copy())
         with np.errstate(all="ignore"):
             geometry = curvature(d, sign, float(np.linalg.norm(part.size)))

@@ -10,8 +10,7 @@ from OCP.gp import gp_Pnt
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex
 
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.shapes import children, compound
+from cad_io.kernel.shapes import Node, children, compound
 
 #: What `Part` is made of, by the names of its parameters.
 PartContent = dict[str, Any]

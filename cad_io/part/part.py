@@ -16,9 +16,10 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
 from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_OtherSurface, GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
-from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.errors import ReadError
@@ -26,9 +27,8 @@ from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.trim import Trim, trim_of
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.shapes import ENDLESS, endless
-from cad_io.part.edges import Bare, blends
+from cad_io.kernel.shapes import ENDLESS, Node, endless
+from cad_io.part.edges import blends
 from cad_io.part.packing import PartContent, packed, unpacked
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface
@@ -51,17 +51,7 @@ _POINTS, _HALVINGS, _NONE = 129, 50, 1e-6
 
 
 def why_unjudged(face: TopoDS_Face, surface: Surface, trim: Trim | None, measured: Measure | None, least: float) -> str | None:
-    """Why a face cannot be judged; None if it can.
-
-    Parameters
-    ----------
-    face : TopoDS_Face
-    surface : Surface
-    trim, measured : Trim, Measure, optional
-        None where its border cannot be read.
-    least : float
-        Areas up to this are none, mm2.
-    """
+    """Why a face cannot be judged; None if it can. Without a trim it has no border; areas up to `least`, mm2, are none."""
     if surface.adaptor.GetType() == GeomAbs_OtherSurface:
         if BRep_Tool.Triangulation_s(face, TopLoc_Location()) is not None:
             return "holds only triangles, no surface: export exact geometry (B-rep)"
@@ -72,7 +62,8 @@ def why_unjudged(face: TopoDS_Face, surface: Surface, trim: Trim | None, measure
         return "its edges have no finite curve on the surface"
     if not np.isfinite(measured.area):
         return "its surface cannot be evaluated everywhere"
-    if trim.closed and trim.uv_area > (1 + _ROUNDED) * trim.box_area:
+    u0, u1, v0, v1 = trim.box
+    if trim.closed and trim.uv_area > (1 + _ROUNDED) * ((u1 - u0) * (v1 - v0)):
         return ROUND_TWICE
     if measured.area < -least:
         return WRONG_WAY
@@ -194,7 +185,6 @@ class Part:
 
     Attributes
     ----------
-    shape, file, sha256, unit, layers, tree, picked : as given
     references : tuple of (str, str or None)
         Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
     unit_readings : tuple of UnitReading
@@ -217,7 +207,6 @@ class Part:
         Faces that stand in no solid, joined where they touch.
     blends : frozenset of int
         Numbers of the faces that are fillets and rounds.
-    warnings : tuple of str
 
     Raises
     ------
@@ -288,11 +277,12 @@ class Part:
         )
 
     @classmethod
-    def of(cls, content: PartContent) -> "Part":
-        """Make a part from what a reader has found, by the names of the parameters, with its `references`."""
+    def of(cls, content: PartContent, excluded: Mapping[int, str] | None = None) -> "Part":
+        """Make a part from what a reader has found, by the names of the parameters and attributes, with faces set aside."""
         part = cls(**{name: value for name, value in content.items() if name not in ("references", "unit_readings", "encoding")})
         part.references, part.unit_readings = content.get("references", ()), content.get("unit_readings", ())
         part.encoding = content.get("encoding", "")
+        part.aside = excluded or {}
         return part
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -367,9 +357,7 @@ class Part:
 
     def without(self, excluded: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
-        part = Part.of(self._found())
-        part.aside = {**self.aside, **excluded}
-        return part
+        return Part.of(self._found(), {**self.aside, **excluded})
 
     def facts(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> dict[str, Any]:
         """Return what measuring tells, for `recall` in another process that reads the same part; arguments as of `measured`."""
@@ -391,8 +379,18 @@ class Part:
 
     @property
     def warnings(self) -> tuple[str, ...]:
+        warnings = [*self._said, *filter(None, [self.unit_doubt])]
+        if self.looseness > LOOSEST * max(self.size):
+            warnings.append(
+                f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
+                "may be missing: export it again with a smaller uncertainty"
+            )
         stopped = self.sewn.stopped if "sewn" in self.__dict__ else None
-        return (*self._said, *filter(None, [self.unit_doubt]), *self._loose_warnings(), *_sewing_warnings(stopped))
+        if stopped is not None:
+            warnings.append(
+                f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
+            )
+        return tuple(warnings)
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -463,42 +461,37 @@ class Part:
         with translated("joining faces", file=self.file):
             return sew(self.shape, self._faces, float(np.linalg.norm(self.size)))
 
+    def joined(self, number: int) -> TopoDS_Face:
+        """A face with the edges that it shares with faces that it touches, in a solid or sewn."""
+        return self.sewn.faces.get(number) or self.face(number)
+
     @cached_property
     def blends(self) -> frozenset[int]:
         """Numbers of the faces that are fillets and rounds: see `cad_io.part.edges`."""
         with translated("looking for blends", file=self.file):
-            joined, trim, surface = self.sewn.faces, self.trim, self.surface
-            faces = [
-                Bare(
-                    f,
-                    joined.get(f.number) or self.face(f.number),
-                    trim(f.number),
-                    None if f.number in self.aside else surface(f.number),
-                )
-                for f in self.faces
-            ]
-            return blends(faces, float(np.linalg.norm(self.size)))
+            return blends(self)
 
     @cached_property
     def neighbours(self) -> tuple[tuple[int, ...], ...]:
         """Numbers of the faces across each face's edges; entry i is of face number i + 1."""
-        return neighbours([self.sewn.faces.get(i + 1, face) for i, face in enumerate(self._faces)])
+        return neighbours([self.joined(n) for n in range(1, len(self._faces) + 1)])
 
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""
         return explore(self.shape, TopAbs_SOLID)
 
+    def members(self, shape: TopoDS_Shape) -> list[tuple[int, TopoDS_Face]]:
+        """Faces of a solid or a shell of the part, as they stand there, each with its number; 0 for none of the part's."""
+        return [(self._numbers.FindIndex(face), TopoDS.Face_s(face)) for face in explore(shape, TopAbs_FACE)]
+
+    @cached_property
+    def _numbers(self) -> TopTools_IndexedMapOfShape:
+        return shape_map(self.shape, TopAbs_FACE)
+
     @property
     def unit_doubt(self) -> str:
         """Why the length unit is doubtful, as `warnings` has it; empty where it is not."""
         return unit_doubt(self.size, self.unit_readings)
-
-    def _loose_warnings(self) -> Iterator[str]:
-        if self.looseness > LOOSEST * max(self.size):
-            yield (
-                f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
-                "may be missing: export it again with a smaller uncertainty"
-            )
 
     def _checked(self, number: int) -> int:
         if not 1 <= number <= len(self._faces):
@@ -541,11 +534,4 @@ class Part:
 
 def _again(content: PartContent, excluded: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    part = Part.of(unpacked(content))
-    part.aside = excluded
-    return part
-
-
-def _sewing_warnings(stopped: str | None) -> Iterator[str]:
-    if stopped is not None:
-        yield f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
+    return Part.of(unpacked(content), excluded)

@@ -8,21 +8,19 @@ second moment: few axes and planes can be its own.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Record
-from cad_io.kernel import explore, shape_map
-from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
-from cad_io.part.motion import Motion
+from cad_io.graphs import connected
+from cad_io.kernel import explore
+from cad_io.part.equal_faces import FaceShape, Motion, axis_of, equal, face_shape
 from cad_io.part.part import NO_AREA, Part
 
 Kind = Literal["rotation", "mirror", "shift"]
@@ -39,52 +37,34 @@ _LEAST_COPIES = 3
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pattern(Record):
-    """Faces that are equal under motions.
+    """Faces that are equal under motions."""
 
-    Attributes
-    ----------
-    kind : str
-        `rotation`, `mirror` or `shift`.
-    order : int
-        How many copies there are: the whole turn over the angle of a rotation, 2 of a mirror.
-    whole : bool
-        Whether each motion carries each face of the part onto a face of it.
-    motions : tuple of Motion
-        Of the first copy to each other one, `order` - 1.
-    images : tuple of mapping
-        Of each motion: which face goes onto which, by their numbers; all faces of a whole part, else those of the first copy.
-    faces : tuple of tuple of int
-        By class of equal faces, the first copy's first; of a whole part without faces that go onto themselves.
-    """
-
+    #: `rotation`, `mirror` or `shift`.
     kind: Kind
+    #: How many copies there are: the whole turn over the angle of a rotation, 2 of a mirror.
     order: int
+    #: Whether each motion carries each face of the part onto a face of it.
     whole: bool
+    #: Of the first copy to each other one, `order` - 1.
     motions: tuple[Motion, ...]
+    #: Of each motion: which face goes onto which, by their numbers; all faces of a whole part, else those of the first copy.
     images: tuple[Mapping[int, int], ...]
+    #: By class of equal faces, the first copy's first; of a whole part without faces that go onto themselves.
     faces: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class _Faces:
-    """All faces of a part that can be compared.
-
-    Attributes
-    ----------
-    shape : list of FaceShape
-    kind : (n,) int64
-        Class of each: those of one class are alike as far as area, border and its moments say.
-    centre : (n, 3) float
-    size : float
-        Of the part, mm.
-    whole : bool
-        Whether these are all faces of the part.
-    """
+    """All faces of a part that can be compared."""
 
     shape: list[FaceShape]
+    #: (n,); Class of each: those of one class are alike as far as area, border and its moments say.
     kind: Which
+    #: (n, 3)
     centre: Floats
+    #: Of the part, mm.
     size: float
+    #: Whether these are all faces of the part.
     whole: bool
     compared: list[int]
 
@@ -135,11 +115,7 @@ def _faces_of(part: Part, at: Callable[[int], None], without: Collection[int]) -
     shapes = list[FaceShape]()
     for face in judged:
         at(face.number)
-        trim, measured = part.trim(face.number), part.measure(face.number)
-        if trim is None or measured is None:
-            continue
-        side = -1.0 if part.face(face.number).Orientation() == TopAbs_REVERSED else 1.0
-        shape = face_shape(face.number, face.surface, side, part.surface(face.number), trim, measured, size)
+        shape = face_shape(part, face.number, size)
         if shape is not None:
             shapes.append(shape)
     whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in there)
@@ -154,16 +130,10 @@ def _classes(shapes: Sequence[FaceShape], size: float) -> Which:
     kinds = {kind: k for k, kind in enumerate(sorted({each.kind for each in shapes}))}
     # In lengths, so that one distance tells; kinds are far apart.
     feature = np.array([
-        [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length, *_spread(each)] for each in shapes
+        [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length,
+         *np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(each.tensor))).tolist()] for each in shapes
     ])  # fmt: skip
-    pairs = cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")
-    n = len(shapes)
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
-
-
-def _spread(shape: FaceShape) -> list[float]:
-    return np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(shape.tensor))).tolist()
+    return connected(len(shapes), cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")).astype(np.int64)
 
 
 # Motions of the whole part.
@@ -206,10 +176,19 @@ def _axes(faces: _Faces, middle: Floats, own: Floats) -> Iterator[tuple[Floats, 
             spread, across = np.linalg.svd(faces.centre[rows] - faces.centre[rows].mean(axis=0))[1:]
             if spread[2] <= faces.near and spread[1] > faces.near:
                 directions.append((middle, across[2]))
-    directions += [(middle, each) for each in own]
+    yield from _each_once([*directions, *((middle, each) for each in own)])
+
+
+def _signed(direction: Floats) -> Floats:
+    """A direction, or its opposite: its longest component is positive."""
+    return np.asarray(direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0))
+
+
+def _each_once(axes: Iterable[tuple[Floats, Floats]]) -> Iterator[tuple[Floats, Floats]]:
+    """Axes without those that have the direction of an earlier one."""
     tried = np.zeros((0, 3))
-    for place, direction in directions:
-        direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+    for place, direction in axes:
+        direction = _signed(direction)
         if not (np.linalg.norm(tried - direction, axis=1) < 1e-5).any():
             tried = np.concatenate([tried, direction[None]])
             yield place, direction
@@ -296,15 +275,8 @@ def _normals(faces: _Faces, middle: Floats, own: Floats, axes: Sequence[tuple[Fl
         if np.linalg.norm(away) > faces.near:
             some.append(away / np.linalg.norm(away))
     some += [np.cross(direction, faces.centre[rows[0]] - middle) for _, direction in axes if len(rows)]
-    tried = np.zeros((0, 3))
-    for normal in some:
-        length = np.linalg.norm(normal)
-        if length <= 1e-9:
-            continue
-        normal = normal / length * (1.0 if normal[np.abs(normal).argmax()] > 0.0 else -1.0)
-        if not (np.linalg.norm(tried - normal, axis=1) < 1e-5).any():
-            tried = np.concatenate([tried, normal[None]])
-            yield normal
+    units = ((middle, each / length) for each in some if (length := np.linalg.norm(each)) > 1e-9)
+    yield from (normal for _, normal in _each_once(units))
 
 
 # Motions of some faces.
@@ -346,7 +318,7 @@ def _ring(faces: _Faces, rows: Which) -> Iterator[tuple[str, list[Motion], Which
     radius = np.linalg.norm(away, axis=1)
     if np.abs(away @ direction).max() > faces.near or np.ptp(radius) > faces.near or radius.min() <= faces.near:
         return
-    direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+    direction = _signed(direction)
     x = away[0] / radius[0]
     angle = np.remainder(np.arctan2(away @ np.cross(direction, x), away @ x), 2.0 * math.pi)
     order = np.argsort(np.where(angle > 2.0 * math.pi - 1e-6, 0.0, angle), kind="stable")
@@ -387,17 +359,11 @@ _MOST_PAIRS = 50
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """Solids, or faces, that lie in one place.
+    """Solids, or faces, that lie in one place."""
 
-    Attributes
-    ----------
-    faces : tuple of tuple of int
-        Face numbers of each, in the order of the part; of all the same face is at the same place.
-    bodies : tuple of int
-        Numbers of the solids in the part, from 1, and 0 of a shell; empty of loose faces and of faces that one solid has twice.
-    """
-
+    #: Face numbers of each, in the order of the part; of all the same face is at the same place.
     faces: tuple[tuple[int, ...], ...]
+    #: Numbers of the solids in the part, from 1, and 0 of a shell; empty of loose faces and of faces that one solid has twice.
     bodies: tuple[int, ...] = ()
 
 
@@ -418,13 +384,8 @@ def repeated_faces(part: Part, ignored: Collection[int] = ()) -> dict[int, int]:
     for each in repeats(part):
         whole = [faces for faces in each.faces if not set(faces) & set(ignored)]
         if whole:
-            result |= {
-                n: stays
-                for faces in each.faces
-                if faces != whole[0]
-                for n, stays in zip(faces, whole[0], strict=True)
-                if n != stays
-            }
+            others = [faces for faces in each.faces if faces != whole[0]]
+            result |= {n: stays for faces in others for n, stays in zip(faces, whole[0], strict=True) if n != stays}
     # Where a face that stands for another is left out itself, what stands for that.
     for number, stays in result.items():
         while stays in result:
@@ -442,18 +403,13 @@ def _each(part: Part) -> Iterator[Repeat]:
     compared = _Compared(part)
     if not compared.near:
         return
-    numbers = shape_map(part.shape, TopAbs_FACE)
-    solids = [
-        tuple(dict.fromkeys(n for face in explore(each, TopAbs_FACE) if (n := numbers.FindIndex(face))))
-        for each in part.solid_shapes()
-    ]
+    # A solid may stand there once more as its shell.
+    solids, shells = (
+        [tuple(dict.fromkeys(n for n, _ in part.members(each) if n)) for each in shapes]
+        for shapes in (part.solid_shapes(), explore(part.shape, TopAbs_SHELL, TopAbs_SOLID))
+    )
     for faces in solids:
         yield from _faces(compared, faces, sided=True)
-    # A solid may stand there once more as its shell.
-    shells = [
-        tuple(dict.fromkeys(numbers.FindIndex(face) for face in explore(each, TopAbs_FACE)))
-        for each in explore(part.shape, TopAbs_SHELL, TopAbs_SOLID)
-    ]
     groups: list[list[tuple[int, tuple[int, ...]]]] = []
     for number, faces in [*enumerate(solids, 1), *((0, each) for each in shells)]:
         for group in groups:
@@ -539,12 +495,5 @@ class _Compared:
 
     def _shape(self, number: int) -> FaceShape | None:
         if number not in self.shapes:
-            part, info = self.part, self.part.faces[number - 1]
-            trim, measured = part.trim(number), part.measure(number)
-            side = -1.0 if part.face(number).Orientation() == TopAbs_REVERSED else 1.0
-            self.shapes[number] = (
-                None
-                if trim is None or measured is None
-                else face_shape(number, info.surface, side, part.surface(number), trim, measured, self.size)
-            )
+            self.shapes[number] = face_shape(self.part, number, self.size)
         return self.shapes[number]

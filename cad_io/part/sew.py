@@ -30,6 +30,9 @@ from cad_io.kernel.shapes import children
 from cad_io.part.coincide import Curves, Group, Piece, TooMany, coinciding, points
 from cad_io.part.packing import packed_faces, unpacked_faces
 
+#: An edge with its uses: see `edge_uses`. A part of one: where it begins, the common edge, and whether it runs as that does.
+Use = tuple[TopoDS_Edge, list[tuple[int, int]]]
+EdgePart = tuple[float, TopoDS_Edge, int]
 #: Tolerances to try, as shares of the part's diagonal; in mm none below the kernel's precision nor above the most.
 RUNGS = (1e-6, 1e-5, 1e-4, 1e-3)
 LEAST, MOST = 1e-6, 0.1
@@ -58,17 +61,11 @@ class Sewn:
 
 
 def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> Sewn:
-    """Join the faces of a shape that stand in no solid.
-
-    Parameters
-    ----------
-    shape : TopoDS_Shape
-    faces : sequence of TopoDS_Face
-        Its faces, by number from 1.
-    diagonal : float
-        Of its box, mm.
-    """
-    numbers = _outside_solids(shape)
+    """Join the faces of a shape (by number from 1) that stand in no solid; `diagonal`: of its box, mm."""
+    known = shape_map(shape, TopAbs_FACE)
+    loose = {known.FindIndex(face) for face in explore(shape, TopAbs_FACE, TopAbs_SOLID)}
+    solid = {known.FindIndex(face) for whole in explore(shape, TopAbs_SOLID) for face in explore(whole, TopAbs_FACE)}
+    numbers = sorted(loose - solid)
     shell = join([faces[number - 1] for number in numbers], diagonal)
     open_edges, length = len(shell.left), float(sum(shell.left))
     return Sewn(dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped)
@@ -149,7 +146,7 @@ def _open_length(curves: Curves, faces: Sequence[tuple[int, ...]], groups: Seque
     return float((curves.length(edge, high) - curves.length(edge, low)).sum())
 
 
-def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tuple[int, int]]]]:
+def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[Use]:
     """Every edge that is not degenerated with its uses: place of the face in `shapes`, and +1 or -1 for the direction.
 
     Directions are those of the face seen with its surface's own normal. A seam is used twice by one face.
@@ -173,13 +170,6 @@ def neighbours(shapes: Sequence[TopoDS_Face]) -> tuple[tuple[int, ...], ...]:
     return tuple(tuple(sorted(j + 1 for j in each if j != i)) for i, each in enumerate(across))
 
 
-def _outside_solids(shape: TopoDS_Shape) -> list[int]:
-    numbers = shape_map(shape, TopAbs_FACE)
-    loose = {numbers.FindIndex(face) for face in explore(shape, TopAbs_FACE, TopAbs_SOLID)}
-    solid = {numbers.FindIndex(face) for whole in explore(shape, TopAbs_SOLID) for face in explore(whole, TopAbs_FACE)}
-    return sorted(loose - solid)
-
-
 def _ladder(diagonal: float) -> Iterator[float]:
     last = 0.0
     for share in RUNGS:
@@ -189,23 +179,16 @@ def _ladder(diagonal: float) -> Iterator[float]:
         last = tolerance
 
 
-def _open(uses: Sequence[tuple[TopoDS_Edge, list[tuple[int, int]]]]) -> list[float]:
+def _open(uses: Sequence[Use]) -> list[float]:
     """Length of each edge that belongs to one face alone, mm."""
-    return [_length(edge) for edge, users in uses if len(users) == 1]
+    lengths = [0.0] * sum(len(users) == 1 for _, users in uses)
+    for i, edge in enumerate(edge for edge, users in uses if len(users) == 1):
+        with may_refuse():
+            length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
+            # Of a damaged curve there is none: the face lives by the one in its parameter plane.
+            lengths[i] = length if math.isfinite(length) else 0.0
+    return lengths
 
-
-def _length(edge: TopoDS_Edge) -> float:
-    with may_refuse():
-        length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
-        if math.isfinite(length):
-            return length
-    # A damaged curve: the face lives by the one in its parameter plane.
-    return 0.0
-
-
-#: An edge with its uses: see `edge_uses`. A part of one: where it begins, the common edge, and whether it runs as that does.
-Use = tuple[TopoDS_Edge, list[tuple[int, int]]]
-EdgePart = tuple[float, TopoDS_Edge, int]
 
 #: A common edge has at least so many points in a parameter plane.
 _LEAST = 9
@@ -223,25 +206,17 @@ def on_common_edges(
 ) -> list[TopoDS_Face]:
     """Faces that use one edge for each group of pieces.
 
-    Parameters
-    ----------
-    shapes : sequence of TopoDS_Face
-    sources : sequence of (edge, uses)
-        Their edges, as `edge_uses` gives them.
-    curves : Curves
-        Of these edges.
-    groups : sequence of Group
-        All of them.
-    gone : sequence of Piece
-        What is left out of its face.
-    tolerance : float
-        How far the pieces of one group may be apart, mm.
+    sources: their edges, as `edge_uses` gives them, and `curves` of these. groups: all of them. gone: what is left out of its
+    face. tolerance: how far the pieces of one group may be apart, mm.
     """
     parts: dict[int, list[EdgePart]] = {}
-    changed_groups = [group for group in groups if len(group.pieces) > 1 or _cut(curves, group)]
+    changed_groups = [group for group in groups if len(group.pieces) > 1 or _is_cut(curves, *group.pieces[0])]
     fits = iter(_fits(curves, changed_groups))
     for group in changed_groups:
-        edge = _common(sources[group.pieces[0].edge][0], group.pieces[0], tolerance)
+        piece, builder = group.pieces[0], BRep_Builder()
+        edge = TopoDS.Edge_s(sources[piece.edge][0].EmptyCopied().Oriented(TopAbs_FORWARD))
+        builder.Range(edge, piece.low, piece.high)
+        builder.UpdateEdge(edge, max(tolerance, BRep_Tool.Tolerance_s(edge)))
         for number, (piece, way) in enumerate(zip(group.pieces, group.way, strict=True)):
             parts.setdefault(piece.edge, []).append((piece.low, edge, way))
             if number:
@@ -257,18 +232,9 @@ def on_common_edges(
     return [_rebuilt(shape, index, instead) if i in changed else shape for i, shape in enumerate(shapes)]
 
 
-def _cut(curves: Curves, group: Group) -> bool:
-    """Whether a group is a part of an edge."""
-    edge, low, high = group.pieces[0]
+def _is_cut(curves: Curves, edge: int, low: float, high: float) -> bool:
+    """Whether a piece is a part of an edge."""
     return bool(curves.drawn[edge] and (low > curves.low[edge] or high < curves.high[edge]))
-
-
-def _common(source: TopoDS_Edge, piece: Piece, tolerance: float) -> TopoDS_Edge:
-    """An edge along a piece of another."""
-    builder, edge = BRep_Builder(), TopoDS.Edge_s(source.EmptyCopied().Oriented(TopAbs_FORWARD))
-    builder.Range(edge, piece.low, piece.high)
-    builder.UpdateEdge(edge, max(tolerance, BRep_Tool.Tolerance_s(edge)))
-    return edge
 
 
 def _lie_on(edge: TopoDS_Edge, face: TopoDS_Face, fit: "_Fit", source: TopoDS_Edge) -> None:
@@ -336,16 +302,13 @@ class _Fit(NamedTuple):
         """The other edge's line in the parameter plane of a face, by the common parameter; None where it has none."""
         with may_refuse():
             p, d = np.moveaxis(along(BRepAdaptor_Curve2d(edge, face), self.there), 1, 0)
-            return _hermite(self.t, p, d * self.speed[:, None])
+            t, d = self.t, d * self.speed[:, None]
+            # The cubic spline with these points and derivatives (k, 2).
+            third = (np.diff(t) / 3)[:, None]
+            after, before = p[:-1] + third * d[:-1], p[1:] - third * d[1:]
+            poles = np.concatenate([p[:1], np.stack([after, before], axis=1).reshape(-1, 2), p[-1:]])
+            return cubic(np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]]), poles)
         return None
-
-
-def _hermite(t: Floats, p: Floats, d: Floats) -> Geom2d_BSplineCurve:
-    """The cubic spline with points and derivatives (k, 2) at parameters (k,)."""
-    third = (np.diff(t) / 3)[:, None]
-    after, before = p[:-1] + third * d[:-1], p[1:] - third * d[1:]
-    poles = np.concatenate([p[:1], np.stack([after, before], axis=1).reshape(-1, 2), p[-1:]])
-    return cubic(np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]]), poles)
 
 
 def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict[int, list[EdgePart]]) -> TopoDS_Face:

@@ -17,7 +17,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, 
 
 from cad_io.arrays import LostFace
 from cad_io.kernel import explore, shape_map
-from cad_io.kernel.assembly import Node
+from cad_io.kernel.shapes import Node
 from cad_io.units import UnitReading
 
 Colour = tuple[float, float, float]

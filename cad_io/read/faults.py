@@ -18,7 +18,7 @@ from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
+from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cad_io.arrays import Floats
 from cad_io.kernel import edges_of, explore, may_refuse, shape_map
@@ -53,12 +53,7 @@ class Fault:
 
 
 class Model:
-    """The entities of a loaded file.
-
-    Parameters
-    ----------
-    work : XSControl_WorkSession
-    """
+    """The entities of a loaded file."""
 
     def __init__(self, work: Any) -> None:
         self.work = work
@@ -175,36 +170,31 @@ def edge_count(face: TopoDS_Face) -> int:
 def misfit(face: TopoDS_Face, others: Sequence[TopoDS_Face] = ()) -> str:
     """Why a face's border and surface cannot both be right; empty where they fit.
 
-    Border curves are written by themselves: where all of them lie on the surface, both are as meant.
-
-    Parameters
-    ----------
-    face : TopoDS_Face
-    others : sequence of TopoDS_Face
-        Faces of the same file that had no trouble, to see how closely its borders lie on its surfaces.
+    Border curves are written by themselves: where all of them lie on the surface, both are as meant. `others`: faces of the same
+    file that had no trouble, to see how closely its borders lie on its surfaces.
     """
-    off, size = _gap(face)
+
+    def gap(face: TopoDS_Face) -> tuple[float, float]:
+        """Largest distance of a face's border curves and their ends from its surface, and their extent, mm."""
+        with may_refuse():
+            off, points = _measured(face)
+            return off, float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else np.inf
+        return np.inf, np.inf
+
+    off, size = gap(face)
     if not np.isfinite(size):
         return "it has no border that could confirm its surface"
     if off <= max(_NEAR, _NEAR_SHARE * size):
         return ""
-    usual = max((gap for gap, _ in map(_gap, others) if np.isfinite(gap)), default=0.0)
+    usual = max((away for away, _ in map(gap, others) if np.isfinite(away)), default=0.0)
     return "" if off <= min(usual, _LOOSEST) else f"its border leaves its surface by {off:.3g} mm"
-
-
-def _gap(face: TopoDS_Face) -> tuple[float, float]:
-    """Largest distance of a face's border curves and their ends from its surface, and their extent, mm."""
-    with may_refuse():
-        off, points = _measured(face)
-        return off, float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else np.inf
-    return np.inf, np.inf
 
 
 def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
     """Largest distance of border curves from the surface and of their ends from the vertices, mm; their points (n, 3)."""
     surface, off, seen = Surface(face), 0.0, [np.zeros((0, 3))]
     for edge in edges_of(face):
-        if BRep_Tool.Degenerated_s(edge) or not _has_curve(edge):
+        if BRep_Tool.Degenerated_s(edge) or BRep_Tool.Curve_s(edge, 0.0, 0.0) is None:
             continue
         curve, flat = BRepAdaptor_Curve(edge), BRepAdaptor_Curve2d(edge, face)
         first, last = curve.FirstParameter(), curve.LastParameter()
@@ -219,7 +209,3 @@ def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
         off = max(off, *beyond, float(distance.max() if np.isfinite(distance).all() else np.inf))
         seen.append(there)
     return off, np.concatenate(seen)
-
-
-def _has_curve(edge: TopoDS_Edge) -> bool:
-    return BRep_Tool.Curve_s(edge, 0.0, 0.0) is not None

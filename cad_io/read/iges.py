@@ -218,16 +218,6 @@ def fell_apart(model: Model) -> bool:
     return any(model.entities[fault.number].TypeNumber() in _WHOLES for fault in model.trouble(fails=False) if fault.number)
 
 
-def _felt(model: Model, faults: Sequence[Fault], split: bool) -> dict[int, list[Fault]]:
-    """Faults that faces felt, by the number of the entity; with `split` those that felt none, too."""
-    felt: dict[int, list[Fault]] = {n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split}
-    for fault in (*faults, *model.trouble(fails=True)):
-        for n in model.users(fault.number, _is_face):
-            if n and _is_face(model.entities[n]):
-                felt.setdefault(n, []).append(fault)
-    return felt
-
-
 def _face_numbers(model: Model, results: Collection[int], shapes: Sequence[TopoDS_Face]) -> dict[int, int]:
     """Face numbers of the entities that faces were made of, as far as that is known."""
     made = model.makers(dict(enumerate(shapes, 1)))
@@ -243,19 +233,16 @@ def _face_numbers(model: Model, results: Collection[int], shapes: Sequence[TopoD
 def unread_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool) -> list[LostFace]:
     """Faces without a shape, and those that had trouble and cannot show that they are whole.
 
-    Parameters
-    ----------
-    model : Model
-        Transferred.
-    faults : sequence of Fault
-        Found in it before.
-    shapes : sequence of TopoDS_Face
-        Faces of the part.
-    split : bool
-        Count the edges of every face, since solids fell apart.
+    The model is transferred, and `faults` were found in it before; `shapes` are faces of the part. split: count the edges of
+    every face, since solids fell apart.
     """
     results = model.results()
-    felt = _felt(model, faults, split)
+    # Faults that faces felt, by the number of the entity; where solids fell apart those that felt none, too.
+    felt: dict[int, list[Fault]] = {n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split}
+    for fault in (*faults, *model.trouble(fails=True)):
+        for n in model.users(fault.number, _is_face):
+            if n and _is_face(model.entities[n]):
+                felt.setdefault(n, []).append(fault)
     gone = [n for n, entity in model.entities.items() if _is_face(entity) and n not in results]
     unread = [_unread(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
     numbers = _face_numbers(model, results, shapes) if felt else {}
@@ -332,7 +319,11 @@ class Loaded:
             raise ReadError("is not valid IGES: export it again", file=file)
         # Numbers as they stand are in the unit that a person gives.
         self.unit = unit_of(self.sections[b"G"]) if unit is None else IgesUnit(unit, 1.0, ())
-        _set_unit(self.reader, self.unit.unit)
+        model = self.reader.WS().Model()
+        section = model.GlobalSection()
+        section.SetUnitFlag(next(flag for flag, name in FLAGS.items() if name == self.unit.unit))
+        section.SetUnitName(TCollection_HAsciiString(self.unit.unit.upper()))
+        model.SetGlobalSection(section)
         self.model = Model(self.reader.WS())
         self.faults = [fault for fault in self.model.faults() if not _OF_UNIT.match(fault.text)]
         self.risky = bool(self.faults)
@@ -385,11 +376,3 @@ class Loaded:
                 raise ReadError(
                     f"is missing lines ({here} of {int(count)} in section {section.decode()}): fetch it again", file=self.file
                 )
-
-
-def _set_unit(reader: IGESCAFControl_Reader, unit: str) -> None:
-    model = reader.WS().Model()
-    section = model.GlobalSection()
-    section.SetUnitFlag(next(flag for flag, name in FLAGS.items() if name == unit))
-    section.SetUnitName(TCollection_HAsciiString(unit.upper()))
-    model.SetGlobalSection(section)

@@ -17,12 +17,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
+from cad_io.graphs import connected
 from cad_io.units import in_mm
 from plan_cutters_base import user_files as files
 
@@ -54,13 +53,11 @@ def shells(vertex: Floats) -> Shells:
     near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
     if not len(near):
         return shells
-    graph = coo_array((np.ones(len(near), np.int8), (near[:, 0], near[:, 1])), shape=(len(points),) * 2)
-    _, joined = connected_components(graph, directed=False)
-    again = _shells(vertex, joined[corner.reshape(-1, 3)])
+    again = _shells(vertex, connected(len(points), near)[corner.reshape(-1, 3)])
     return again if again.open < shells.open else shells
 
 
-def _shells(vertex: Floats, corner: NDArray[np.int64]) -> Shells:
+def _shells(vertex: Floats, corner: NDArray[Any]) -> Shells:
     n = len(corner)
     ends = np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2)
     owner, real = np.repeat(np.arange(n), 3), ends[:, 0] != ends[:, 1]
@@ -70,9 +67,8 @@ def _shells(vertex: Floats, corner: NDArray[np.int64]) -> Shells:
     edge = edge.reshape(-1)
     edges = int(edge.max(initial=-1)) + 1
     # Triangles and edges in one graph: what is connected is a skin.
-    graph = coo_array((np.ones(len(owner), np.int8), (owner, n + edge)), shape=(n + edges, n + edges))
-    count, label = connected_components(graph, directed=False)
-    shell, of_edge = label[:n], label[n:]
+    label = connected(n + edges, np.column_stack([owner, n + edge]))
+    count, shell, of_edge = int(label.max(initial=-1)) + 1, label[:n], label[n:]
     closed = np.ones(count, bool)
     closed[of_edge[np.bincount(edge, way, edges) != 0]] = False
     # A triangle that is but a point has no edge and encloses nothing.
@@ -110,8 +106,7 @@ def _put_right(
     # Each triangle twice, as it is and turned over: in a skin with two sides the two are never connected.
     a = np.concatenate([one, one + n])
     b = np.concatenate([other + n * turned, other + n * ~turned])
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(2 * n, 2 * n))
-    _, label = connected_components(graph, directed=False)
+    label = connected(2 * n, np.column_stack([a, b]))
     mine = np.unique(np.concatenate([one, other]))
     mine = mine[label[mine] != label[mine + n]]
     sense[mine] = np.where(label[mine] < label[mine + n], 1, -1)
@@ -141,19 +136,10 @@ class Mesh(Record):
 
 
 def read_mesh(source: Any, unit: str | None = None) -> Mesh:
-    """Read a mesh.
+    """Read a mesh: an STL, OBJ, PLY or GLB file, told by its suffix, or an object with `triangles` (n, 3, 3), as trimesh has it.
 
-    Parameters
-    ----------
-    source : path or object
-        Path of an STL, OBJ, PLY or GLB file, told by its suffix; or an object with `triangles` (n, 3, 3), as trimesh has it.
-    unit : str, optional
-        One of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`. Default: metres for GLB, as its specification has it, else mm.
-
-    Raises
-    ------
-    ReadError
-        In one line: the fault and its remedy.
+    unit: one of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`; default metres for GLB, as its specification has it, else mm.
+    Raises ReadError with the fault and its remedy in one line.
     """
     notes: tuple[str, ...] = ()
     file = sha256 = None

@@ -20,8 +20,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, shape_map, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.shapes import as_one, compound, turned, unwrapped
+from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
 from cad_io.part import Part
 from cad_io.read.document import FaceMarks
 
@@ -116,11 +115,6 @@ def _shape(source: Any, held: Held) -> None:
     held.picked.append(Mark(shape, _label(source), _colour(source)))
 
 
-def _add(bodies: Sequence[Any], held: Held) -> None:
-    for body in bodies:
-        held.add(_item(body, held))
-
-
 def _missing(faces: Sequence[Any], bodies: Sequence[Any]) -> list[Any]:
     """The faces that none of the bodies holds."""
     here = TopTools_IndexedMapOfShape()
@@ -140,14 +134,16 @@ def _workplane(source: Any, held: Held) -> None:
             raise ReadError(
                 f"the stack of the {type(source).__name__} holds no solid and no face: plan after a solid, or after faces(...)"
             )
-        _add(bodies, held)
+        for body in bodies:
+            held.add(_item(body, held))
         return
     missing, before, node = list(faces), 0, source
     while missing and node is not None:
         bodies = [value for value in node.vals() if _has_shape(value) and _is_body(value)]
         rest = _missing(missing, bodies)
         if len(rest) < len(missing):
-            _add(bodies, held)
+            for body in bodies:
+                held.add(_item(body, held))
             if before:
                 held.warnings.append(
                     f"{len(missing) - len(rest)} of the picked faces belong to an earlier shape in the chain: the later "
@@ -192,7 +188,10 @@ def _item(source: Any, held: Held, shape: TopoDS_Shape | None = None) -> Item:
     children = getattr(source, "children", ())
     inner: tuple[Item, ...] = ()
     if children and isinstance(children, tuple | list):
-        stand = _relative(shape)
+        stand, each = list[TopoDS_Shape](), TopoDS_Iterator(shape, True, False)
+        while each.More():  # sub-shapes one level down, located as in the shape without its own location
+            stand.append(each.Value())
+            each.Next()
         if [_face_count(s) for s in stand] == [_face_count(_wrapped(child)) for child in children]:
             pairs = list(zip(children, stand, strict=True))
             moved = [c for c, s in pairs if not same_place(_wrapped(c).Location(), s.Location())]
@@ -272,15 +271,6 @@ def shapes_of(source: Any) -> list[TopoDS_Shape]:
     return [_wrapped(source)]
 
 
-def _relative(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    """Sub-shapes one level down, located as in the shape without its own location."""
-    children, each = [], TopoDS_Iterator(shape, True, False)
-    while each.More():
-        children.append(each.Value())
-        each.Next()
-    return children
-
-
 def _face_count(shape: TopoDS_Shape) -> int:
     return int(shape_map(shape, TopAbs_FACE).Extent())
 
@@ -289,15 +279,15 @@ def _label(source: Any) -> str:
     return _text(getattr(source, "label", ""))
 
 
+def _colour(source: Any) -> Colour | None:
+    return _rgb(getattr(source, "color", None))
+
+
 def _text(name: Any) -> str:
     """A host's name, if it is one; half a pair of surrogates, which no file can hold, becomes a question mark."""
     if not isinstance(name, str) or _MADE_UP.fullmatch(name.strip()):
         return ""
     return name.strip().encode("utf-8", "replace").decode()
-
-
-def _colour(source: Any) -> Colour | None:
-    return _rgb(getattr(source, "color", None))
 
 
 def _rgb(colour: Any) -> Colour | None:
@@ -312,16 +302,10 @@ def _rgb(colour: Any) -> Colour | None:
 def from_object(source: Any) -> dict[str, Any]:
     """Return the arguments that make a `Part` of an object, by the names of its parameters.
 
-    Parameters
-    ----------
-    source : object
-        A kernel shape; an object with `.wrapped` (CadQuery, build123d); a CadQuery Workplane or Assembly; a build123d
-        builder; a list or tuple of such. Faces that know the shape which they were taken from are picked on it.
+    The object is a kernel shape; one with `.wrapped` (CadQuery, build123d); a CadQuery Workplane or Assembly; a build123d
+    builder; a list or tuple of such. Faces that know the shape which they were taken from are picked on it.
 
-    Raises
-    ------
-    ReadError
-        It holds no shape, or a picked face whose shape is not known.
+    Raises ReadError where it holds no shape, or a picked face whose shape is not known.
     """
     held = Held()
     try:
@@ -348,18 +332,10 @@ def from_object(source: Any) -> dict[str, Any]:
 
 
 def face_numbers(part: Part, value: Any) -> tuple[int, ...]:
-    """Numbers of faces that are given as objects, ascending.
+    """Numbers of faces that are given as objects, ascending; the objects are as for `from_object`, of a shape that is no face all
+    its faces.
 
-    Parameters
-    ----------
-    part : Part
-    value : object
-        As for `from_object`; of a shape that is no face, all its faces.
-
-    Raises
-    ------
-    ReadError
-        It holds no face, or one that the part has not, or has in another place.
+    Raises ReadError where there is no face, or one that the part has not, or has in another place.
     """
     known = shape_map(part.shape, TopAbs_FACE)
     numbers = set()
@@ -369,25 +345,19 @@ def face_numbers(part: Part, value: Any) -> tuple[int, ...]:
         raise ReadError("the list of faces holds itself") from None
     for face in (face for shape in shapes for face in explore(shape, TopAbs_FACE)):
         # The kernel compares how a place was made, not where it is.
-        number = known.FindIndex(face) or next(_in_same_place(known, face), 0)
+        partners = [n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)]
+        there = (n for n in partners if same_place(known.FindKey(n).Location(), face.Location()))
+        number = known.FindIndex(face) or next(there, 0)
         if not number:
-            partner = next((n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)), None)
             raise ReadError(
-                "a given face is not a face of the part: pick it on the shape that is planned, after its last change"
-                if partner is None
-                else f"a given face is F{partner} of the part, but in another place: pick it on the part as it is placed"
+                f"a given face is F{partners[0]} of the part, but in another place: pick it on the part as it is placed"
+                if partners
+                else "a given face is not a face of the part: pick it on the shape that is planned, after its last change"
             )
         numbers.add(number)
     if not numbers:
         raise ReadError(f"no faces in a value of type {type(value).__name__}: give faces of the part")
     return tuple(sorted(numbers))
-
-
-def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Iterator[int]:
-    for number in range(1, known.Extent() + 1):
-        other = known.FindKey(number)
-        if other.IsPartner(face) and same_place(other.Location(), face.Location()):
-            yield number
 
 
 class _Walk(FaceMarks):
@@ -414,19 +384,10 @@ _FLAT, _ON = 1e-6, 1e-4
 
 
 def turned_part(source: Any, origin: Sequence[float], direction: Sequence[float]) -> Part:
-    """The part that an object stands for: solids and shells as they are; planar faces, wires and edges turned about an axis.
+    """The part that an object stands for: solids and shells as they are; planar faces, wires and edges turned about an axis, mm.
 
-    Parameters
-    ----------
-    source : object
-        A kernel shape, a CadQuery or build123d object, or a list of such.
-    origin, direction : (3,) float
-        The axis, mm.
-
-    Raises
-    ------
-    ReadError
-        It holds no shape, or a profile that lies in no plane through the axis, or is not joined.
+    The object is a kernel shape, a CadQuery or build123d object, or a list of such. Raises ReadError where it holds no shape, or
+    a profile that lies in no plane through the axis, or is not joined.
     """
     if isinstance(source, Part):
         return source
@@ -443,8 +404,8 @@ def turned_part(source: Any, origin: Sequence[float], direction: Sequence[float]
 def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequence[float]) -> Any:
     mine = faces(shape)
     flat = [adaptor.Plane() for face in mine if (adaptor := BRepAdaptor_Surface(face)).GetType() == GeomAbs_Plane]
-    profile = not mine or (len(flat) == len(mine) and all(_coplanar(flat[0], plane) for plane in flat))
-    if not profile:
+    coplanar = (flat[0].Axis().IsParallel(plane.Axis(), _FLAT) and flat[0].Distance(plane.Location()) <= _ON for plane in flat)
+    if mine and not (len(flat) == len(mine) and all(coplanar)):
         return shape
     for plane in flat[:1]:
         across = abs(plane.Axis().Direction().Dot(axis.Direction()))
@@ -454,7 +415,3 @@ def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequen
         return turned(shape, origin, direction)
     except CadIoError:
         raise ReadError("the profile cannot be turned about the axis: draw its one half, on one side of the axis") from None
-
-
-def _coplanar(one: Any, other: Any) -> bool:
-    return bool(one.Axis().IsParallel(other.Axis(), _FLAT)) and float(one.Distance(other.Location())) <= _ON

@@ -22,8 +22,7 @@ from OCP.TopoDS import TopoDS_Shape
 from cad_io.arrays import LostFace
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, silence, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.shapes import ENDLESS, bound_naturally, endless, unwrapped
+from cad_io.kernel.shapes import ENDLESS, Node, bound_naturally, endless, unwrapped
 from cad_io.part import Part
 from cad_io.part.packing import PartContent, comes_back, packed, unpacked
 from cad_io.read import iges, step
@@ -42,24 +41,21 @@ class Crashed(ReadError):
 
 
 def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -> PartContent:
-    """Result of `find()`, which may crash or hang.
+    """Result of `find()`, which may crash or hang, in a forked copy of this process; where the system cannot fork (Windows),
+    here.
 
-    Parameters
-    ----------
-    find : callable
-        Run in a forked copy of this process; where the system cannot fork (Windows), here and without a limit.
-    timeout : float
-        Seconds that it may take.
-    file : str, optional
-        Named in errors.
-
-    Raises
-    ------
-    ReadError
-        What `find` raised, or that it did not end in time; `Crashed` if it crashed.
+    Raises ReadError of what `find` raised, or where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
+    file.
     """
+
+    def answered() -> bytes:
+        try:
+            return pickle.dumps(packed(find()))
+        except CadIoError as error:
+            return pickle.dumps({"error": (error.cause, error.file, error.face)})
+
     try:
-        answer = pickle.loads(limited(lambda: _answer(find), timeout))
+        answer = pickle.loads(limited(answered, timeout))
     except TimeLimit:
         raise ReadError(
             f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
@@ -73,29 +69,15 @@ def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -
         return unpacked(answer)
 
 
-def _answer(find: Callable[[], PartContent]) -> bytes:
-    try:
-        return pickle.dumps(packed(find()))
-    except CadIoError as error:
-        return pickle.dumps({"error": (error.cause, error.file, error.face)})
-
-
 @dataclass
 class Referred:
-    """A record of this kind says what the files hold that a STEP file refers to, and those that these refer to.
+    """A record of this kind says what the files hold that a STEP file refers to, and those that these refer to."""
 
-    Attributes
-    ----------
-    faces : dict
-        Path -> how many faces the file itself has.
-    lost : list of LostFace
-        What is missing of them: whole files, and faces.
-    risky : bool
-        The kernel crashes or hangs at one of them, or may do so.
-    """
-
+    #: Path -> how many faces the file itself has.
     faces: dict[str, int] = field(default_factory=dict)
+    #: What is missing of them: whole files, and faces.
     lost: list[LostFace] = field(default_factory=list)
+    #: The kernel crashes or hangs at one of them, or may do so.
     risky: bool = False
 
     @property
@@ -111,22 +93,10 @@ class Referred:
 
 
 def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()) -> Referred:
-    """Look at what a STEP file refers to.
+    """Look at what a STEP file, of which the content is given, refers to; reading one of the files may take so many seconds.
 
-    Parameters
-    ----------
-    file : str
-    data : bytes
-        Its content.
-    timeout : float
-        Seconds that reading one of the files may take.
-    above : tuple of str
-        Files that refer to this one, without links.
-
-    Raises
-    ------
-    ReadError
-        A file refers to itself, or to one that may not be read.
+    above: files that refer to this one, without links. Raises ReadError where a file refers to itself, or to one that may not be
+    read.
     """
     result = Referred()
     above = (*above, os.path.realpath(file))
@@ -340,17 +310,7 @@ def _content(read: Read, others: Referred | None = None) -> PartContent:
     for n, face in enumerate(faces(read.shape), 1):
         if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:
             read.lost.append(LostFace("", read.names.get(n, ""), f"it {ENDLESS if endless(face) else 'has no edges'}", n))
-    return {
-        "shape": read.shape,
-        "names": read.names,
-        "colours": read.colours,
-        "layers": read.layers,
-        "tree": read.tree,
-        "warnings": tuple(read.warnings),
-        "lost": tuple(read.lost),
-        "unit_readings": read.unit_readings,
-        "encoding": read.encoding,
-    }
+    return vars(read) | {"warnings": tuple(read.warnings), "lost": tuple(read.lost)}
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

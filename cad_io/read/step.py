@@ -67,33 +67,13 @@ class NothingError(ReadError):
 class Loaded:
     """A STEP file whose entities are loaded, but not yet made into shapes.
 
-    Parameters
-    ----------
-    file : str
-    data : bytes
-        Its content, to count faces in.
-    unit : str, optional
-        Length unit to take instead of the file's, one of `units.UNITS`.
-    names : bool
-        Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
-    careful : bool
-        Leave out every face that uses something faulty.
-    adopt : bool
-        Read solids to which no product leads, as where the file is read for itself.
-    foreign : int
-        Faces that come from files which this one refers to: they are none of its own.
+    data: the content of the file, to count faces in. unit: length unit to take instead of the file's, one of `units.UNITS`.
+    names: ask the kernel for names, colours and layers, on which it crashes in some faulty files. careful: leave out every face
+    that uses something faulty. adopt: read solids to which no product leads, as where the file is read for itself. foreign: faces
+    that come from files which this one refers to, none of its own. `risky`: the transfer may crash or hang, to be run in a copy
+    of the process. `alone`: what it becomes follows from its own bytes, and not from what stands beside it.
 
-    Attributes
-    ----------
-    risky : bool
-        The transfer may crash or hang: to be run in a copy of the process.
-    alone : bool
-        What it becomes follows from its own bytes, and not from what stands beside it.
-
-    Raises
-    ------
-    ReadError
-        Cut off, not STEP, or known to hang the transfer.
+    Raises ReadError where it is cut off, not STEP, or known to hang the transfer.
     """
 
     def __init__(
@@ -138,17 +118,9 @@ class Loaded:
         self._refuse_unnoticed()
 
     def transfer(self, *, traced: bool = False) -> Read:
-        """Make the shape.
+        """Make the shape; `traced`: find out which face was which entity, too; a file with faults is traced in any case.
 
-        Parameters
-        ----------
-        traced : bool
-            Find out which face was which entity, too; a file with faults is traced in any case.
-
-        Raises
-        ------
-        ReadError
-            It holds no face that can be read.
+        Raises ReadError where it holds no face that can be read.
         """
         traced = traced or bool(self.faults)
         real = self._mark() if traced else {}

@@ -57,24 +57,10 @@ def _letters(match: re.Match[bytes]) -> bytes:
 
 
 def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple[str, bytes | None]]:
-    """Follow the references of a STEP file, and those of the files that they lead to.
+    """Follow the references of a STEP file, by its content, and those of the files that they lead to.
 
-    Parameters
-    ----------
-    data : bytes
-        Content of the file; one that is no STEP file refers to nothing.
-    read : callable
-        Content of a file by its path from the folder of the first one; None where there is none.
-
-    Yields
-    ------
-    (str, bytes or None)
-        That path, and the content; each path once.
-
-    Raises
-    ------
-    ReadError
-        There are too many.
+    `read` gives the content of a file by its path from the folder of the first one; None where there is none. Yields that path,
+    and the content; each path once. A file that is no STEP file refers to nothing. Raises ReadError where there are too many.
     """
     seen: set[str] = set()
     waiting = [("", data)]
@@ -96,12 +82,8 @@ def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple
 def in_folder_of(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
     """Read files by their paths from the folder of a file; None where there is none that can be read.
 
-    Raises
-    ------
-    plan_cutters_base.user_files.OutsideError
-        One may not be read.
-    ReadError
-        One is a pipe or a device, which the kernel would wait for.
+    Raises `plan_cutters_base.user_files.OutsideError` where one may not be read, ReadError where one is a pipe or a device, which
+    the kernel would wait for.
     """
     folder = os.path.dirname(os.fspath(file))
 

@@ -81,18 +81,10 @@ def touched(model: Model, faults: Iterable[Fault]) -> tuple[dict[int, list[Fault
 
 
 def repair(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
-    """Take out, before the transfer, what makes the kernel crash or throw away a whole solid.
+    """Take out, before the transfer, what makes the kernel crash or throw away a whole solid, and faces that use what has
+    `faults`.
 
-    Parameters
-    ----------
-    model : Model
-    faults : sequence of Fault
-        Faces that use what has these are taken out, too.
-
-    Returns
-    -------
-    dict
-        By number, what is taken from a face: a bound, or the face itself from its shells.
+    Returns by number what is taken from a face: a bound, or the face itself from its shells.
     """
     bad = dict.fromkeys(touched(model, faults)[0], _CRASHES)
     for number, entity in model.entities.items():
@@ -166,21 +158,9 @@ def missing_faces(model: Model) -> Iterator[tuple[int, int]]:
 class UnreadFaces:
     """Find the unread faces of a transferred file.
 
-    Parameters
-    ----------
-    model : Model
-    idents : mapping
-        The name of an entity in the file, `#12`, by its number.
-    faults : sequence of Fault
-        Of the model, before the transfer.
-    mended : mapping
-        The faces, or bounds of faces, that `mend` took out before the transfer: entity number -> text.
-    shapes : sequence of TopoDS_Face
-        Faces of the part.
-    numbers : mapping
-        Numbers in the part of each face entity that is there.
-    scale : float
-        Of the file's coordinates, mm.
+    idents: the name of an entity in the file, `#12`, by its number. faults: of the model, before the transfer. repaired: the
+    faces, or bounds of faces, that `repair` took out before the transfer, entity number -> text. shapes: faces of the part.
+    numbers: those in the part of each face entity that is there. scale: of the file's coordinates, mm.
     """
 
     def __init__(

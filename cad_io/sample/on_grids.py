@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
+from OCP.TopoDS import TopoDS_Edge
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
@@ -34,21 +34,13 @@ _POINTS = (3, 200)  # least and most points looked at along one edge
 def smooth_joints(part: Part, orientation: Orientation, point: Floats, face: Ints, gap: Mapping[int, float]) -> NDArray[np.intp]:
     """Pairs (m, 2) of samples of different faces, nearest to the same point of a smooth common edge.
 
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-    point : (n, 3) float
-        Samples, in the order of their faces.
-    face : (n,) int
-        Their face numbers.
-    gap : mapping
-        Largest distance between grid neighbours, mm, by face number; its keys are the sampled faces.
+    point (n, 3), face (n,): samples, in the order of their faces, and their face numbers. gap: largest distance between grid
+    neighbours, mm, by face number; its keys are the sampled faces.
     """
     edges = TopTools_IndexedMapOfShape()
     uses: dict[int, list[tuple[int, TopoDS_Edge]]] = defaultdict(list)
     for number in gap:
-        for edge in edges_of(_joined(part, number)):
+        for edge in edges_of(part.joined(number)):
             uses[edges.Add(edge)].append((number, edge))
     trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
     finite = np.flatnonzero(np.isfinite(point).all(axis=1))
@@ -58,7 +50,10 @@ def smooth_joints(part: Part, orientation: Orientation, point: Floats, face: Int
         if len(users) != 2 or users[0][0] == users[1][0] or BRep_Tool.Degenerated_s(users[0][1]):
             continue
         reach = REACH * max(gap[number] for number, _ in users)
-        curves = [_curve(part, number, edge) for number, edge in users]
+        curves = [
+            _Curve(part.surface(number), BRepAdaptor_Curve2d(edge, part.joined(number)), *BRep_Tool.Range_s(edge))
+            for number, edge in users
+        ]
         share = _shares(curves[0], reach)
         if share is None:
             continue
@@ -94,16 +89,6 @@ class _Curve(NamedTuple):
         t = self.low + (self.high - self.low) * share
         uv = points_on(self.curve, t)
         return self.surface.first(uv[:, 0], uv[:, 1])
-
-
-def _joined(part: Part, number: int) -> TopoDS_Face:
-    """A face with the edges that it shares with faces it touches, in a solid or sewn; the surface is the part's own."""
-    return part.sewn.faces.get(number) or part.face(number)
-
-
-def _curve(part: Part, number: int, edge: TopoDS_Edge) -> _Curve:
-    low, high = BRep_Tool.Range_s(edge)
-    return _Curve(part.surface(number), BRepAdaptor_Curve2d(edge, _joined(part, number)), low, high)
 
 
 def _shares(curve: _Curve, reach: float) -> Floats | None:
@@ -170,7 +155,6 @@ def sample(
 
     Parameters
     ----------
-    part : Part
     orientation : Orientation
         Which side of each face is out of the material.
     grid : int, optional
@@ -247,7 +231,8 @@ def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: fl
     samples = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
     if samples is None:
         return _in_triangles(part, number, step)
-    if trim.rectangular and _covered(samples):
+    # Nodes stand all over the face and along its border: it is no farther from them than they are from each other.
+    if trim.rectangular and samples.grid is not None and (samples.grid.index >= 0).all():
         return samples
     samples = _covering(part, number, trim, samples, step)
     if step is not None and samples.gap > step and len(samples.uv) < _FEW:
@@ -321,11 +306,6 @@ def _covering(part: Part, number: int, trim: Trim, samples: _FaceSamples, step: 
             break
         samples = _on_grid(part, number, trim, lines, inside)._replace(gap=samples.gap)
     return samples
-
-
-def _covered(samples: _FaceSamples) -> bool:
-    """Nodes stand all over the face and along its border: it is no farther from them than they are from each other."""
-    return samples.grid is not None and bool((samples.grid.index >= 0).all())
 
 
 def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[np.bool_]) -> _FaceSamples:
@@ -414,7 +394,11 @@ def _together(
         neighbours=neighbours.reshape(-1, 2),
         unjudged=np.where(bad, 0, -1).astype(np.int32),
         reasons=REASONS if bad.any() else (),
-        grids=tuple(_moved(f.grid, int(s)) for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None),
+        grids=tuple(
+            replace(f.grid, index=np.where(f.grid.index < 0, -1, f.grid.index + s).astype(np.int32))
+            for f, s in zip(taken, start[:-1], strict=True)
+            if f.grid is not None
+        ),
         max_gap=max(whole, default=0.0),
         empty=empty,
         face_gaps=tuple((f.number, gap) for f, gap in zip(taken, whole, strict=True)),
@@ -423,10 +407,6 @@ def _together(
 
 def _density(derivatives: Floats) -> Floats:
     return np.linalg.norm(cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
-
-
-def _moved(grid: FaceGrid, by: int) -> FaceGrid:
-    return replace(grid, index=np.where(grid.index < 0, -1, grid.index + by).astype(np.int32))
 
 
 def _stack(rows: Sequence[Floats], width: int) -> Floats:

@@ -162,21 +162,9 @@ class Side:
 class Border:
     """A face's border: what is cut by the curves drawn on it.
 
-    Attributes
-    ----------
-    face : TopoDS_Face
-        FORWARD.
-    scale : (2,) float
-        mm per unit of u and v.
-    size : float
-        A cell of the label grid, mm, the smaller way.
-    sides : list of Side
-    segments : (n, 2, 2) float
-        The border as one even-odd region.
-    side_of, parameters : (n,) int, (n, 2) float
-        The side of each segment, and its parameters there.
-    nodes : int
-        How many nodes there are.
+    face: FORWARD. scale (2,): mm per unit of u and v. size: a cell of the label grid, mm, the smaller way. segments (n, 2, 2):
+    the border as one even-odd region; side_of (n,), parameters (n, 2): the side of each segment, and its parameters there. nodes:
+    how many there are.
     """
 
     def __init__(self, face: Any, surface: Surface, grid: LabelGrid, edges: Any, vertices: Any) -> None:

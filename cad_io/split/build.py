@@ -12,11 +12,10 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Vertex, TopoDS_Wire
 from cad_io.arrays import Floats
 from cad_io.kernel import cubic, edges_of
 from cad_io.kernel.shapes import children
-from cad_io.split.arrangement import Arrangement
+from cad_io.split.arrangement import Arrangement, Half, Region
 from cad_io.split.border import CannotSplit
 from cad_io.split.contour import Spline
 from cad_io.split.net import DEVIATION, Net
-from cad_io.split.regions import Half, Region
 from cad_io.surface import Surface
 
 _MOST_POINTS = 5000
@@ -47,25 +46,11 @@ def trimmed(spline: Spline, a: float, b: float) -> Spline:
 
 
 def followed(surface: Surface, spline: Spline) -> Followed:
-    """Find the cubic curve in space of the same parameter as a parameter curve.
+    """Find the cubic curve in space of the same parameter as a parameter curve of a surface; ValueError where DEVIATION cannot be
+    reached.
 
-    The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is
-    interpolated and sites are added where the error, measured between the sites, is above DEVIATION.
-
-    Parameters
-    ----------
-    surface : Surface
-    spline : Spline
-        In surface parameters.
-
-    Returns
-    -------
-    Followed
-
-    Raises
-    ------
-    ValueError
-        The deviation cannot be reached.
+    The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is interpolated and
+    sites are added where the error, measured between the sites, is above DEVIATION.
     """
     from scipy.interpolate import BSpline, make_interp_spline
 
@@ -96,17 +81,7 @@ def followed(surface: Surface, spline: Spline) -> Followed:
 def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
     """Edge along a curve on a face's surface, in part coordinates; its tolerance is the measured deviation.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-    curve : Followed
-        On the face's surface.
-    start, stop : TopoDS_Vertex
-        Its ends; their tolerance grows where they are farther off.
-
-    Returns
-    -------
-    TopoDS_Edge
+    The tolerance of the vertices at its ends grows where they are farther off.
     """
     builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
     basis = BRep_Tool.Surface_s(face, location)
@@ -123,26 +98,9 @@ def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
 
 
 def pieces(net: Net, face: Any, surface: Surface, arrangement: Arrangement, regions: list[Region]) -> list[Any]:
-    """Faces of the regions of a face, in its FORWARD orientation.
+    """Faces of the regions of a face of a net whose edges are cut, in its FORWARD orientation; `surface` is the face's own.
 
-    Parameters
-    ----------
-    net : Net
-        Its edges are cut.
-    face : TopoDS_Face
-        Of that net.
-    surface : Surface
-        The face's own.
-    arrangement : Arrangement
-        Of the face.
-    regions : list of Region
-
-    Raises
-    ------
-    CannotSplit
-        The border of a piece does not close in space.
-    ValueError
-        A curve cannot be followed in space.
+    Raises CannotSplit where the border of a piece does not close in space, ValueError where a curve cannot be followed in space.
     """
     builder, plain = BRep_Builder(), TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     drawing = _edges(net, plain, surface, arrangement)
@@ -189,12 +147,8 @@ def rewired(net: Net, face: Any) -> Any:
 class Placed:
     """A shape put together again, with other faces in place of some.
 
-    Attributes
-    ----------
-    shapes : list of TopoDS_Shape
-        What it became: one shape, or the pieces of a loose face.
-    faces : dict
-        Number of a face -> TopoDS_Face list, as they stand there.
+    shapes: what it became, one shape or the pieces of a loose face. faces: number of a face -> TopoDS_Face list, as they stand
+    there.
     """
 
     def __init__(self, shape: Any, numbers: dict[int, int], known: Any, changed: dict[int, list[Any]]) -> None:

@@ -19,7 +19,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from scipy.ndimage import distance_transform_edt, maximum_filter
 
 from cad_io.arrays import FaceLabels, Floats, Ints, Record
-from cad_io.face.uv_region import inside, outline
+from cad_io.face.uv_region import nodes_inside, outline
 from cad_io.kernel import edges_of
 
 #: Share of its allowed stretch that a crossing keeps from either end, so that curves of two levels stay apart.
@@ -103,18 +103,9 @@ def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
 
 
 def smoothed(grids: Sequence[LabelGrid]) -> list[list[Line]]:
-    """Lines along all label boundaries of each grid, cut at the seams of closed directions.
+    """Lines along all label boundaries of each grid, cut at the seams of closed directions; none for a field of one label.
 
     All grids together, because that costs little more than one: each line is what it would be alone.
-
-    Parameters
-    ----------
-    grids : sequence of LabelGrid
-
-    Returns
-    -------
-    list of list of Line
-        Of each grid; none for a field of one label.
     """
     chains = [
         [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)] for grid in grids
@@ -127,20 +118,10 @@ def smoothed(grids: Sequence[LabelGrid]) -> list[list[Line]]:
 
 
 def curves(grid: LabelGrid, lines: Sequence[Line], fit: float) -> list[Spline]:
-    """Curves along lines of a grid.
+    """Curves along lines of a grid, in surface parameters, inside the rectangle of the grid lines.
 
-    Parameters
-    ----------
-    grid : LabelGrid
-    lines : sequence of Line
-    fit : float
-        Root mean square distance between curve and line that the fit may leave, cells.
-
-    Returns
-    -------
-    list of Spline
-        In surface parameters, inside the rectangle of the grid lines. A curve ends on that rectangle, on a seam or
-        REACH cells off the face; else it is closed.
+    A curve ends on that rectangle, on a seam or REACH cells off the face; else it is closed. fit: root mean square distance
+    between curve and line that the fit may leave, cells.
     """
     shape = np.array(grid.field.shape, float)
     axes = (grid.u, grid.v)
@@ -331,27 +312,10 @@ _OVER = 0.25
 
 
 def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[np.bool_]]:
-    """Contourable grid of a face.
+    """Contourable grid of a face, of labels with at least one node known; ValueError where the face has no border.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-    labels : FaceLabels
-        At least one node known.
-
-    Returns
-    -------
-    grid : LabelGrid
-        Its field holds ranks of the labels that occur, so that absent labels make no boundary.
-    known : (nu, nv) int32
-        The labels at the grid's nodes, -1 where unknown.
-    dropped : (nu, nv) bool
-        Known nodes that were islands of one node and went to their surroundings.
-
-    Raises
-    ------
-    ValueError
-        The face has no border.
+    Returns the grid, whose field holds ranks of the labels that occur, so that absent labels make no boundary; the labels (nu,
+    nv) at its nodes, -1 where unknown; and which (nu, nv) known nodes were islands of one node and went to their surroundings.
     """
     segments = outline(face)
     if not len(segments):
@@ -361,7 +325,14 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[
     u0, u1, v0, v1 = surface.Bounds()
     u_period = surface.UPeriod() if surface.IsUPeriodic() else u1 - u0 if surface.IsUClosed() else 0.0
     v_period = surface.VPeriod() if surface.IsVPeriodic() else v1 - v0 if surface.IsVClosed() else 0.0
-    poles = _poles(face)
+    # Sides of the parameter plane that are a point in space: (0 for u or 1 for v, the side's parameter).
+    poles = []
+    for edge in edges_of(face):
+        if BRep_Tool.Degenerated_s(edge):
+            curve = BRepAdaptor_Curve2d(edge, face)
+            start, stop = (curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter()))
+            axis = int(abs(start[1] - stop[1]) < abs(start[0] - stop[0]))
+            poles.append((axis, float(start[axis])))
     over = 0.0 if poles else _OVER
 
     label, lines, closed = labels.label, [], []
@@ -395,22 +366,10 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[
         row[i] = np.bincount(row[i]).argmax()
     despeckled = without_specks(field, closed[0], closed[1])
     modes = ["wrap" if c else "nearest" for c in closed]
-    on_face = (label >= 0) | inside(segments, *(line[:n] for line, n in zip(lines, label.shape, strict=True)))
+    on_face = (label >= 0) | nodes_inside(segments, *(line[:n] for line, n in zip(lines, label.shape, strict=True)))
     near = maximum_filter(on_face.astype(np.uint8), size=2 * REACH + 1, mode=modes) > 0
     dropped = (despeckled != field) & (label >= 0)
     return LabelGrid(lines[0], lines[1], despeckled, near, closed[0], closed[1]), label, dropped
-
-
-def _poles(face: Any) -> list[tuple[int, float]]:
-    """Sides of the parameter plane that are a point in space: (0 for u or 1 for v, the side's parameter)."""
-    out = []
-    for edge in edges_of(face):
-        if BRep_Tool.Degenerated_s(edge):
-            curve = BRepAdaptor_Curve2d(edge, face)
-            start, stop = (curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter()))
-            axis = int(abs(start[1] - stop[1]) < abs(start[0] - stop[0]))
-            out.append((axis, float(start[axis])))
-    return out
 
 
 def _from_seam(line: Floats, label: Ints, axis: int, start: float, period: float) -> tuple[Floats, Ints]:

@@ -55,18 +55,10 @@ class Edge(NamedTuple):
 
 
 class Net:
-    """Edges, vertices and faces of a shape.
+    """Edges, vertices and faces of a shape: maps of the kernel, which count from 1.
 
-    Attributes
-    ----------
-    edges, vertices, faces : TopTools_IndexedMapOfShape
-        Numbers of them are counted from 1.
-    cuts : dict
-        Number of an edge -> Cut.
-    off : dict
-        How far parts of edges are off, as measured here or with a copy.
-    loose : dict
-        Number of an edge that was cut -> how far it is off a face at the same parameter, mm, where that is too far.
+    cuts: number of an edge -> Cut. off: how far parts of edges are off, as measured here or with a copy. loose: number of an edge
+    that was cut -> how far it is off a face at the same parameter, mm, where that is too far.
     """
 
     def __init__(self, shape: Any, surface_of: Callable[[int], Surface], off: Off | None = None) -> None:
@@ -212,14 +204,8 @@ def valid(shape: Any) -> bool:
 
 
 def repair(net: Net, key: int) -> None:
-    """Draw the parameter curves of an edge anew where they do not follow it. The edge is changed in place; seams are left.
-
-    Parameters
-    ----------
-    net : Net
-        Of a copy of the part.
-    key : int
-        Number of the edge.
+    """Draw the parameter curves of an edge, by its number, anew where they do not follow it, in place; seams are left. `net` is
+    of a copy.
     """
     users = net.users(key)
     edge = net.edge(key)

@@ -13,14 +13,15 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 
 from cad_io.arrays import FaceLabels, Floats, Ints
-from cad_io.face.uv_region import inside, outline
+from cad_io.face.uv_region import nodes_inside, outline
 from cad_io.split.cut_faces import cut_faces
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
@@ -63,26 +64,12 @@ class Split:
 def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = 5) -> Split:
     """Split faces along the boundaries of their labels.
 
-    Parameters
-    ----------
-    part : Part
-    labels : sequence of FaceLabels
-        At most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces
-        not mentioned, or of one label, stay whole.
-    worst : int
-        Labels up to this one are worse the higher they are: slivers (three nodes at most, less area than a cell) join the
-        label around them where that one is worse. By default no label is worse: only slivers without any node join.
-    seconds : float
-        Of processor time, after which the work on one face is taken for endless; more for fine grids.
+    labels: at most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces not
+    mentioned, or of one label, stay whole. worst: labels up to this one are worse the higher they are: slivers (three nodes at
+    most, less area than a cell) join the label around them where that one is worse. By default no label is worse: only slivers
+    without any node join. seconds: of processor time, after which the work on one face is taken for endless; more for fine grids.
 
-    Returns
-    -------
-    Split
-
-    Raises
-    ------
-    ValueError
-        A face has two label fields, or a field does not fit its grid.
+    Raises ValueError where a face has two label fields, or a field does not fit its grid.
     """
     fields = {f.face: f for f in labels}
     if len(fields) < len(labels):
@@ -113,10 +100,6 @@ def _shares(label: Ints) -> dict[int, float]:
     return {int(k): float(n / count.sum()) for k, n in zip(value, count, strict=True)}
 
 
-class _Numbered(NamedTuple):
-    number: int
-
-
 @dataclass(slots=True)
 class _Stage:
     """The pieces so far, as `split` takes a part: the number of a face is the place of a piece, from 1."""
@@ -126,8 +109,8 @@ class _Stage:
     pieces: list[tuple[Piece, tuple[int, ...]]]
 
     @property
-    def faces(self) -> list[_Numbered]:
-        return [_Numbered(i) for i in range(1, len(self.pieces) + 1)]
+    def faces(self) -> list[Any]:
+        return [SimpleNamespace(number=i) for i in range(1, len(self.pieces) + 1)]
 
     def face(self, number: int) -> Any:
         return self.pieces[number - 1][0].shape
@@ -158,22 +141,10 @@ def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, 
 
 
 def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 5) -> Split:
-    """Split faces along the boundaries of labels that have no order.
+    """Split faces along the boundaries of labels that have no order; labels and seconds, in each turn, are as for `split`.
 
-    Islands of one node get pieces, too. Slivers without a node join what is around them.
-
-    Parameters
-    ----------
-    part : Part
-    labels : sequence of FaceLabels
-        At most one a face, as for `split`.
-    seconds : float
-        As for `split`, in each turn.
-
-    Returns
-    -------
-    Split
-        `dropped` counts the nodes that lie within a piece of another label.
+    Islands of one node get pieces, too. Slivers without a node join what is around them. `dropped` counts the nodes that lie
+    within a piece of another label.
     """
     fields = {each.face: each for each in labels}
     roomy = {number: with_margin(each) for number, each in fields.items()}
@@ -264,7 +235,7 @@ def _on(labels: FaceLabels, face: Any) -> NDArray[np.bool_]:
     on_face = np.zeros(labels.label.shape, bool)
     for du in turns[0]:
         for dv in turns[1]:
-            on_face |= inside(segments, labels.u + du, labels.v + dv)
+            on_face |= nodes_inside(segments, labels.u + du, labels.v + dv)
     return on_face
 
 

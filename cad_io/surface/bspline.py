@@ -105,7 +105,7 @@ class Net(NamedTuple):
 
 
 class _Workspace(NamedTuple):
-    """This is a workspace: basis functions along u and v and their tables, rows summed along v, the sums, and the origin."""
+    """Basis functions along u and v and their tables, rows summed along v, the sums, and the origin."""
 
     bu: Any
     bv: Any
@@ -123,14 +123,8 @@ def _summed(net, row, column, order, workspace):
 
     What is far from the origin would lose digits of its derivatives.
     """
-    bu, bv, across, span, origin, pole = (
-        workspace.bu,
-        workspace.bv,
-        workspace.across,
-        workspace.found,
-        workspace.origin,
-        net.pole,
-    )
+    bu, bv, across, result = workspace.bu, workspace.bv, workspace.across, workspace.found
+    origin, pole = workspace.origin, net.pole
     top, first, wide = row - net.degree_u, column - net.degree_v, 4 if net.rational else 3
     for c in range(3):
         origin[c] = pole[top, first, c] / pole[top, first, 3]
@@ -152,7 +146,7 @@ def _summed(net, row, column, order, workspace):
             total = 0.0
             for a in range(net.degree_u + 1):
                 total += bu[du, a] * across[dv, a, c]
-            span[k, c] = total
+            result[k, c] = total
 
 
 @kernel
@@ -193,14 +187,9 @@ def _point(u, v, net, order, workspace, out):
 
 @entry
 def evaluate(u, v, net, out):
-    """Write values and derivatives of a surface.
+    """Write values and derivatives of a surface at u, v (n,) into `out` (n, 1, 3 or 6, 3).
 
-    Parameters
-    ----------
-    u, v : (n,) float64
-    net : Net
-    out : (n, 1, 3, or 6, 3) float64, written
-        S; Su, Sv; Suu, Svv, Suv, as many as there is room for. nan where a parameter is none.
+    These are S; Su, Sv; Suu, Svv, Suv, as many as there is room for; nan where a parameter is none.
     """
     order = 0 if out.shape[1] == 1 else 1 if out.shape[1] == 3 else 2
     wide = DEGREE + 1
@@ -390,15 +379,10 @@ def _row(net, low, share, rows):
 
 @entry
 def of_net(net, u, v, bends):
-    """Write the bends of a B-spline surface over cells between lines, among which all its inner knots must be.
+    """Write the bends of a B-spline surface over cells between increasing lines u (a + 1,), v (b + 1,), among which its inner
+    knots are.
 
-    Parameters
-    ----------
-    net : Net
-    u, v : (a + 1,), (b + 1,) float64
-        Increasing.
-    bends : Bends, written
-        Infinite where a weight may be zero.
+    They are infinite where a weight may be zero.
     """
     p, q = net.degree_u, net.degree_v
     wide = max(p, q) + 1

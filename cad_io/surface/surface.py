@@ -297,16 +297,7 @@ _AGREE, _FAR = 1e-8, 1e3
 
 
 class Surface:
-    """Evaluator of a face's whole surface (not restricted to the face), in part coordinates.
-
-    Planes, quadrics and tori are evaluated in closed form, B-spline and Bezier surfaces, also extruded and turned curves of
-    these kinds, by compiled code, all others by the kernel.
-
-    Attributes
-    ----------
-    adaptor : BRepAdaptor_Surface
-        The kernel's own evaluator, the reference.
-    """
+    """Evaluator of a face's whole surface, not restricted to it, in part coordinates; `adaptor` is the kernel's own."""
 
     __slots__ = ("_evaluate", "_form", "adaptor")
 

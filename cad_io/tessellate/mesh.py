@@ -42,20 +42,26 @@ class Meshed(NamedTuple):
 
 
 def meshed(faces: Sequence[Any], deflection: float, angle: float) -> Iterator[Meshed | None]:
-    """Triangles of each face, in their order; None where the mesher fails, or does not end.
+    """Triangles of each face, in their order; None where the mesher, asked for a deflection (mm) and an angle (rad), fails or
+    does not end.
 
     Two faces that share an edge have the same nodes there but for a few edges (45 of 48,000 on a real part), for it is cut by its
-    own curve.
-
-    Parameters
-    ----------
-    faces : sequence of TopoDS_Face
-        They are left without a mesh.
-    deflection, angle : float
-        What is asked of the mesher: mm, rad.
+    own curve. The faces are left without a mesh.
     """
+
+    def taken(mesh: Any, location: TopLoc_Location) -> Meshed:
+        uv, triangle = uv_triangles(mesh)
+        # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.
+        return Meshed(uv, nodes_of(mesh, location), triangle)
+
+    def work(face: Any) -> tuple[Meshed | None, float]:
+        start = time.process_time()
+        with may_refuse():
+            return under_mesh(face, deflection, angle, taken)
+        return None, time.process_time() - start
+
     remaining = FACES
-    for done in each(lambda face: _meshed(face, deflection, angle), faces, seconds=FACE, hangs=HANGS):
+    for done in each(work, faces, seconds=FACE, hangs=HANGS):
         if remaining <= 0.0:
             yield None
         elif isinstance(done, Ended):
@@ -70,16 +76,10 @@ def meshed(faces: Sequence[Any], deflection: float, angle: float) -> Iterator[Me
 def under_mesh(
     face: Any, deflection: float, angle: float, take: Callable[[Any, TopLoc_Location], Taken]
 ) -> tuple[Taken | None, float]:
-    """Mesh a face here, without a limit: what `take` makes of its mesh, and the processor time that both took, s.
+    """Mesh a face here, without a limit: what `take` makes of its mesh and its place, and the processor time that both took, s.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-        It is left without a mesh.
-    deflection, angle : float
-        What is asked of the mesher: mm, rad.
-    take : callable
-        Of the mesh and its place. Not called where the mesher makes no triangle: then None is the answer.
+    The face is left without a mesh. Where the mesher, asked for a deflection (mm) and an angle (rad), makes no triangle, None is
+    the answer.
     """
     start = time.process_time()
     # Finer triangles that it carries would be kept.
@@ -95,27 +95,18 @@ def under_mesh(
     return taken, time.process_time() - start
 
 
+def nodes_of(mesh: Any, location: TopLoc_Location) -> Floats:
+    """Nodes (n, 3) of a mesh in its place, mm."""
+    place = location.Transformation()
+    return np.array([mesh.Node(i).Transformed(place).Coord() for i in range(1, mesh.NbNodes() + 1)])
+
+
 def uv_triangles(mesh: Any) -> tuple[Floats, NDArray[np.int64]]:
     """Nodes (n, 2) of a mesh in the parameter plane, and its triangles (m, 3), rows of them."""
     return (
         np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)]),
         np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1,
     )
-
-
-def _meshed(face: Any, deflection: float, angle: float) -> tuple[Meshed | None, float]:
-    start = time.process_time()
-    with may_refuse():
-        return under_mesh(face, deflection, angle, _mesh)
-    return None, time.process_time() - start
-
-
-def _mesh(mesh: Any, location: TopLoc_Location) -> Meshed:
-    place = location.Transformation()
-    uv, triangle = uv_triangles(mesh)
-    # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.
-    points = np.array([mesh.Node(i).Transformed(place).Coord() for i in range(1, mesh.NbNodes() + 1)])
-    return Meshed(uv, points, triangle)
 
 
 #: How far a border curve may pass a mesh's nodes, mm.
@@ -142,19 +133,7 @@ class UVMesh(NamedTuple):
 def kernel_start(part: Part, number: int, deflection: float, angle: float, seconds: float) -> tuple[UVMesh | None, float]:
     """Mesh a face by the kernel's mesher, which may never end: its triangles, None where it fails, and the seconds it took.
 
-    Parameters
-    ----------
-    part : Part
-    number : int
-    deflection, angle : float
-        What is asked of the kernel's mesher: mm, rad.
-    seconds : float
-        Of processor time that it may take.
-
-    Raises
-    ------
-    TimeLimit
-        It does not end.
+    Of a deflection (mm) and an angle (rad) it is asked for; `seconds`: of processor time that it may take, else TimeLimit.
     """
 
     face = part.face(number)

@@ -21,18 +21,9 @@ _CLEAR = 1e-9
 
 
 def delaunay(point: Floats, corner: Ints) -> Ints:
-    """The triangles after flips of their inner edges.
+    """The triangles after flips of their inner edges: they cover the same region and have the same outer edges.
 
-    Parameters
-    ----------
-    point : (n, 2) float
-    corner : (t, 3) int
-        Rows of `point`, counter-clockwise; an edge belongs to two of them at most.
-
-    Returns
-    -------
-    (t, 3) int
-        They cover the same region and have the same outer edges.
+    point (n, 2). corner (t, 3): rows of `point`, counter-clockwise; an edge belongs to two of them at most.
     """
     corners, twin = corner.astype(np.int64), _twins(corner)
     # Lawson's flips end, at the latest when each pair of points was an edge once; with rounding, a number ends them.
@@ -138,21 +129,9 @@ Indices = NDArray[np.int64]
 def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric: Floats) -> tuple[Floats, Ints] | None:
     """Triangles that fill the region that chords enclose, and no other place; None where chords enclose none, or cross.
 
-    Parameters
-    ----------
-    uv : (n, 2) float
-        Nodes, each place once.
-    chords : (k, 2) int
-        Rows of `uv`. What is run along twice bounds nothing.
-    lines : (nu,) and (nv,) float
-        Of the grid.
-    metric : (2,) float
-        Triangles are well shaped where u and v are multiplied by it.
-
-    Returns
-    -------
-    (n + m, 2) float, (t, 3) int
-        Nodes, those given first, and triangles, counter-clockwise.
+    uv (n, 2): nodes, each place once. chords (k, 2): rows of `uv`; what is run along twice bounds nothing. lines (nu,) and (nv,):
+    of the grid. metric (2,): triangles are well shaped where u and v are multiplied by it. Returns nodes (n + m, 2), those given
+    first, and triangles (t, 3), counter-clockwise.
     """
     # A power of two takes no digit.
     factor = np.exp2(np.round(np.log2(metric)))
@@ -168,7 +147,8 @@ def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric:
     corner = filled.ravel()[corner] + len(uv)
     points = np.concatenate([uv, node[used]])
     if whole.any():
-        region = shapely.difference(region, _cells_region(whole, u, v))
+        i, j = np.nonzero(whole)
+        region = shapely.difference(region, shapely.coverage_union_all(shapely.box(u[i], v[j], u[i + 1], v[j + 1])))
     outer = _corners(region, points * factor)
     if outer is None:
         return None
@@ -238,11 +218,6 @@ def _whole_cells(region: shapely.Geometry, u: Floats, v: Floats) -> Bools:
     low_v, high_v = np.broadcast_to(v[:-1] - dv, none.shape), np.broadcast_to(v[1:] + dv, none.shape)
     shapely.prepare(region)
     return np.asarray(shapely.contains_properly(region, shapely.box(low_u, low_v, high_u, high_v)))
-
-
-def _cells_region(whole: Bools, u: Floats, v: Floats) -> shapely.Geometry:
-    i, j = np.nonzero(whole)
-    return shapely.coverage_union_all(shapely.box(u[i], v[j], u[i + 1], v[j + 1]))
 
 
 def _corners(region: shapely.Geometry, points: Floats) -> Ints | None:

@@ -237,15 +237,8 @@ def starts(
 ) -> tuple[dict[int, UVMesh], dict[int, str]]:
     """Triangles of faces to begin with, whose distance from them is about `chord`, mm; and why a face has none.
 
-    Parameters
-    ----------
-    part : Part
-    numbers : sequence of int
-    chord : float
-    at : callable, optional
-        Told who is at work at which face.
-    again : bool
-        Where the kernel's mesher has been at a face, for whatever chord error, take what it made, also if that was nothing.
+    at: told who is at work at which face. again: where the kernel's mesher has been at a face, for whatever chord error, take
+    what it made, also if that was nothing.
     """
     meshes: dict[int, UVMesh | None] = {}
     why: dict[int, str] = {}

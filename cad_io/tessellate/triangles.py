@@ -206,16 +206,8 @@ def _gathered(
 ) -> tuple[Floats, NDArray[np.bool_], dict[int, float], dict[int, str]]:
     """Put the triangles of all faces into one array, and let go of `laid`.
 
-    Returns
-    -------
-    vertex : (ends[-1], 3, 3)
-        Those of a patch are the rows from its end to the next.
-    whole : (ends[-1],) bool
-        Which of them are finite.
-    off : dict
-        Face number -> chord error, mm, of faces that are covered.
-    missing : dict
-        Face number -> why not, of the others.
+    Returns vertex (ends[-1], 3, 3), those of a patch are the rows from its end to the next; which (ends[-1],) of them are finite;
+    face number -> chord error, mm, of faces that are covered; face number -> why not, of the others.
     """
     vertex = np.empty((ends[-1], 3, 3))
     whole = np.ones(len(vertex), bool)
@@ -247,30 +239,15 @@ def tessellate(
     jobs: int = 1,
     at: At = lambda who, face: None,
 ) -> Triangles:
-    """Triangles whose distance from the surface is at most `chord`.
+    """Triangles whose distance from the surface is at most `chord`, mm; any mesh that the part's shape carries is removed.
 
-    Parameters
-    ----------
-    part : Part
-        Any mesh that its shape carries is removed.
-    chord : float
-        mm, positive.
-    budget : int
-        Most triangles, but for those that it begins with. Where it binds, a few faces are laid for a larger chord error, and
-        `loose` says which, or all of them are, and `chord_error` says for which one.
-    faces : sequence of int, optional
-        Face numbers; default all.
-    jobs : int, optional
-        Faces at a time. Triangles do not depend on it.
-    at : callable, optional
-        Told who is at work, `kernel` or `own`, and at which face.
+    budget: most triangles, but for those that it begins with. Where it binds, a few faces are laid for a larger chord error, and
+    `loose` says which, or all of them are, and `chord_error` says for which one. faces: numbers, default all. jobs: faces at a
+    time; triangles do not depend on it. at: told who is at work, `kernel` or `own`, and at which face.
 
-    Returns
-    -------
-    Triangles
-        `chord_error` bounds the distance between a point of a triangle and the point of the surface, or of the face's
-        border, that has the same parameters. On the faces in `measured` it is the largest distance found there, with a
-        margin for what lies between the points measured.
+    `chord_error` bounds the distance between a point of a triangle and the point of the surface, or of the face's border, that
+    has the same parameters. On the faces in `measured` it is the largest distance found there, with a margin for what lies
+    between the points measured.
     """
     if not chord > 0:
         raise ValueError(f"the chord error must be positive, not {chord}")

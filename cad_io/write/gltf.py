@@ -60,39 +60,18 @@ def write_gltf(
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles.
+    """Write all pieces as triangles; triangles of a face left whole are split along the grid of its labels and stand in a node a
+    label.
 
-    Triangles of a face that was left whole are split along the grid of its labels and stand in a node a label.
+    path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
+    for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
+    facts (JSON values) about a face, by number, in the node `F<number>`, and about a piece, in its node, which has the style's
+    name. deflection: chord error of the triangles, mm; default FINE times the part's diagonal. merged: one node and mesh for
+    everything: `extras` of the node holds a list of the faces' facts, and each vertex its face number as `_FACE`. others: bodies
+    beside the part, a node each below those that they name.
 
-    Parameters
-    ----------
-    split : Split
-    path : path-like
-        Appears whole or not at all.
-    style : callable
-        Name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks for, and looks the same. Pieces of
-        one kind and colour share a material, which has the name of the kind.
-    extras : callable
-        Facts (JSON values) about a face, by number: `extras` of the node `F<number>`.
-    piece_extras : callable
-        Facts about a piece: `extras` of its node, which has the style's name.
-    deflection : float, optional
-        Chord error of the triangles, mm; default FINE times the part's diagonal.
-    merged : bool
-        One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
-        face number as `_FACE`.
-    others : sequence of Other
-        Bodies beside the part, a node each below those that they name.
-
-    Returns
-    -------
-    tuple of int
-        Numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh.
-
-    Raises
-    ------
-    WriteError
-        The file cannot be written, or there is no triangle to write.
+    Returns numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh. Raises
+    WriteError where the file cannot be written, or there is no triangle to write.
     """
     with whole(path, WriteError) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):

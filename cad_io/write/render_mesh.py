@@ -36,21 +36,9 @@ class LabelledMesh(NamedTuple):
 
 
 def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64], labels: FaceLabels) -> LabelledMesh:
-    """Triangles with the labels of a grid.
+    """The same surface in as many triangles or more, with the labels of a grid of which at least one node is known.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-    uv, point : (n, 2), (n, 3) float
-        Corners: surface parameters, and mm.
-    triangle : (m, 3) int
-    labels : FaceLabels
-        At least one node known.
-
-    Returns
-    -------
-    LabelledMesh
-        The same surface in as many triangles or more.
+    uv (n, 2), point (n, 3): surface parameters, and mm, of corners; triangle (m, 3).
     """
     surface = BRep_Tool.Surface_s(face)
     cell_u, turns_u, shut_u = _cells(uv[:, 0], labels.u, surface.UPeriod() if surface.IsUPeriodic() else 0.0)
@@ -303,24 +291,11 @@ def render_mesh(
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are
-    wanted: the time goes with what is drawn.
+    wanted: the time goes with what is drawn. sides (faces,): as `Orientation.sign`: normals point out of the material. most:
+    triangles to have at most, but for those to begin with: where there would be more, the chord error grows. deflection: the
+    chord error to begin with, mm; default FINE times the part's diagonal. without: numbers of faces that are not shown.
 
-    Parameters
-    ----------
-    part : Part
-    sides : (faces,) float
-        As `Orientation.sign`: normals point out of the material.
-    most : int
-        Triangles to have at most, but for those to begin with: where there would be more, the chord error grows.
-    deflection : float, optional
-        The chord error to begin with, mm; default FINE times the part's diagonal.
-    without : collection of int
-        Numbers of faces that are not shown.
-
-    Raises
-    ------
-    WriteError
-        The kernel fails, or makes no triangle at all.
+    Raises WriteError where the kernel fails, or makes no triangle at all.
     """
     with translated("meshing", error=WriteError, file=part.file):
         wanted = FINE * diagonal(part.shape) if deflection is None else deflection
@@ -363,14 +338,7 @@ def diagonal(shape: Any) -> float:
 def face_mesh(face: Any, surface: Surface, meshed: Meshed | None, labels: FaceLabels | None) -> dict[int, Mesh] | None:
     """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-    surface : Surface
-        That it lies on.
-    meshed : Meshed, optional
-        Its triangles, of the kernel.
-    labels : FaceLabels, optional
+    `meshed` are its triangles, of the kernel; `surface` is what it lies on.
     """
     if meshed is None:
         return None

@@ -7,6 +7,7 @@ that FreeCAD shows their colours, too. Some surfaces of revolution that cross th
 it.
 """
 
+import contextlib
 import json
 import os
 import pickle
@@ -14,7 +15,6 @@ import re
 import tempfile
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -43,8 +43,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, may_refuse, shape_map, silence, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.shapes import children, compound, flat, placed
+from cad_io.kernel.shapes import Node, children, compound, flat, placed
 from cad_io.part import Part
 from cad_io.split.pieces import Piece, Split
 from plan_cutters_base.copies import ChildDied, TimeLimit, limited
@@ -80,32 +79,13 @@ def write_step(
 ) -> None:
     """Write all pieces, coloured and named, in the products that they belong to.
 
-    Parameters
-    ----------
-    split : Split
-    path : path-like
-        Appears whole or not at all.
-    style : callable
-        Name and colour of a piece. Names become ASCII.
-    product : str
-        Name of products that have none.
-    tree : sequence of Node
-        Products of the part, which hold all its faces; default a single one.
-    layers : mapping, optional
-        Face number -> layers of the face.
-    schema : str
-        The kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`.
-    others : sequence of Other
-        Bodies beside the part, a product each.
+    path: appears whole or not at all. style: name and colour of a piece; names become ASCII. product: name of products that have
+    none. tree: products of the part, which hold all its faces; default a single one. layers: face number -> layers of the face.
+    schema: the kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`. others: bodies beside the part, a
+    product each.
 
-    Raises
-    ------
-    WriteError
-        The file cannot be written, or the kernel lost a face, name or colour on the way, or does not come to an end.
-
-    Notes
-    -----
-    A copy of the process writes, which is ended where it takes longer than so many faces explain.
+    A copy of the process writes, which is ended where it takes longer than so many faces explain. Raises WriteError where the
+    file cannot be written, or the kernel lost a face, name or colour on the way, or does not come to an end.
     """
     silence()
     file = str(path)
@@ -150,7 +130,13 @@ def _write(
         writer.SetLayerMode(True)
         if not writer.Transfer(document, STEPControl_AsIs):
             raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
-        _head(writer.ChangeWriter().Model(), product)
+        header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+        header.SetName(TCollection_HAsciiString(f"{_ascii(product)}.step"))
+        header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
+        header.SetAuthorValue(1, TCollection_HAsciiString(ORIGIN))
+        header.SetOrganizationValue(1, TCollection_HAsciiString(ORIGIN))
+        header.SetOriginatingSystem(TCollection_HAsciiString(ORIGIN))
+        header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
         if writer.Write(str(temporary)) != IFSelect_RetDone:
             raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
     text = temporary.read_bytes()
@@ -158,7 +144,7 @@ def _write(
     temporary.write_bytes(canonical(text))
 
 
-@contextmanager
+@contextlib.contextmanager
 def _settings(schema: str, file: str) -> Iterator[None]:
     """The kernel's settings are global: they are put back for the host's own exports."""
     STEPCAFControl_Controller.Init_s()  # before it, settings are ignored
@@ -376,16 +362,6 @@ def _name(label: Any, name: str) -> None:
     TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
 
 
-def _head(model: Any, product: str) -> None:
-    header = APIHeaderSection_MakeHeader(model)
-    header.SetName(TCollection_HAsciiString(f"{_ascii(product)}.step"))
-    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
-    header.SetAuthorValue(1, TCollection_HAsciiString(ORIGIN))
-    header.SetOrganizationValue(1, TCollection_HAsciiString(ORIGIN))
-    header.SetOriginatingSystem(TCollection_HAsciiString(ORIGIN))
-    header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
-
-
 def _recount(text: bytes, document: _Document, file: str) -> None:
     """Count faces, names and styles in the written text: the kernel is known to lose some in silence."""
     faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
@@ -480,22 +456,18 @@ def changed_by_step(part: Part) -> Mapping[int, float]:
     Only surfaces of revolution and tori are looked at: planes, quadrics and splines come back as they are. A face that does not
     come back at all has the area 0.
     """
-    if part.changed_by_step is None:
-        part.changed_by_step = _changed(part)
-    return part.changed_by_step
-
-
-def _changed(part: Part) -> dict[int, float]:
+    if part.changed_by_step is not None:
+        return part.changed_by_step
     numbers = [
         f.number for f in part.faces if f.area > 0.0 and f.surface in ("revolution", "torus") and _doubtful(part, f.number)
     ]
-    if not numbers:
-        return {}
-    try:
-        areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _BACK + _BACK_A_FACE * len(numbers)))
-    except (TimeLimit, ChildDied):
-        return {}
-    return {n: there for n, (here, there) in zip(numbers, areas, strict=True) if abs(there - here) > _SAME * here}
+    part.changed_by_step = {}
+    if numbers:
+        with contextlib.suppress(TimeLimit, ChildDied):
+            areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _BACK + _BACK_A_FACE * len(numbers)))
+            pairs = zip(numbers, areas, strict=True)
+            part.changed_by_step = {n: there for n, (here, there) in pairs if abs(there - here) > _SAME * here}
+    return part.changed_by_step
 
 
 def _doubtful(part: Part, number: int) -> bool:
@@ -510,9 +482,9 @@ def _doubtful(part: Part, number: int) -> bool:
 def _areas(part: Part, numbers: list[int]) -> list[tuple[float, float]]:
     """Areas of faces by the kernel, as they are and as they come back."""
     silence()
-    folder, pairs = tempfile.mkdtemp(), list[tuple[float, float]]()
-    file = os.path.join(folder, "face.step")
-    try:
+    pairs = list[tuple[float, float]]()
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "face.step")
         for number in numbers:
             here, there = _area(part.face(number)), 0.0
             with may_refuse():
@@ -522,10 +494,6 @@ def _areas(part: Part, numbers: list[int]) -> list[tuple[float, float]]:
                     reader.TransferRoots()
                     there = _area(reader.OneShape())
             pairs.append((here, there))
-    finally:
-        if os.path.exists(file):
-            os.remove(file)
-        os.rmdir(folder)
     return pairs
 
 

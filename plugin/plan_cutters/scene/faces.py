@@ -16,7 +16,7 @@ from plan_cutters.errors import OptionError
 
 if TYPE_CHECKING:
     from cad_io import Part
-    from cad_io.kernel.assembly import Node
+    from cad_io.kernel.shapes import Node
 
 #: The faces that a finisher would finish: what is judged where nobody says more.
 DEFAULT = "sculptured,blends"
@@ -317,7 +317,7 @@ def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
 
 
 def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
-    from cad_io.kernel.assembly import component_of, faces_of
+    from cad_io.kernel.shapes import component_of, faces_of
 
     known = sorted({path for path in component_of(tree).values() if path})
     numbers = faces_of(tree, name.strip("/")) if name.strip("/") else set()
