@@ -11,13 +11,7 @@ LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
 
 
 def in_mm(unit: str) -> float:
-    """Length of a unit, mm.
-
-    Raises
-    ------
-    ReadError
-        No unit is called so.
-    """
+    """Length of a unit, mm; ReadError where no unit is called so."""
     if not isinstance(unit, str):
         raise ReadError(f"a length unit is one of {', '.join(UNITS)}, not a {type(unit).__name__}")
     if unit not in UNITS:

@@ -28,14 +28,10 @@ class Curvature(NamedTuple):
 
 
 def curvature(derivatives: Floats, sign: float = 1.0, size: float = np.inf) -> Curvature:
-    """Curvature of a surface at n points, of its derivatives S, Su, Sv, Suu, Svv, Suv (n, 6, 3).
+    """Curvature of a surface of which the derivatives S, Su, Sv, Suu, Svv, Suv are given, (n, 6, 3).
 
-    Parameters
-    ----------
-    sign : float
-        +1 where Su x Sv points out of the material, -1 where it points in.
-    size : float
-        Of the part, mm: curvatures far below one over it have no direction.
+    sign: +1 where Su x Sv points out of the material, -1 where it points in. size: of the part, mm: curvatures far below one over
+    it have no direction.
 
     Worked out in an orthonormal frame (a, b) of the tangent plane, a along Su, in which the second fundamental form is a
     symmetric 2 x 2 matrix: its eigenvalues are the curvatures, and the difference of the larger one comes without cancellation.

@@ -1,13 +1,16 @@
-"""Shapes divided, put together, made and bounded; points in solids; and the tree of a file's products, as which the annotated
-model is built up again.
+"""Shapes divided, put together, made, bounded and written as bytes; points in solids; the tree of a file's products.
+
+The annotated model is built up as that tree again.
 """
 
+import io
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
@@ -24,10 +27,11 @@ from OCP.Precision import Precision
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape, TopoDS_Vertex
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
+from cad_io.graphs import connected
 from cad_io.kernel import edges_of, faces, may_refuse, shape_map, translated
 
 
@@ -36,24 +40,14 @@ def components(shape: Any) -> list[Any]:
     parts = flat(shape)
     edges = TopTools_IndexedMapOfShape()
     owner: dict[int, int] = {}
-    root = list(range(len(parts)))
-
-    def find(i: int) -> int:
-        while root[i] != i:
-            i = root[i]
-        return i
-
+    pairs = set()
     for i, part in enumerate(parts):
         mine = shape_map(part, TopAbs_EDGE)
-        for k in range(1, mine.Extent() + 1):
-            other = owner.setdefault(edges.Add(mine.FindKey(k)), i)
-            # The smaller number leads, which keeps the order.
-            low, high = sorted((find(i), find(other)))
-            root[high] = low
+        pairs |= {(i, owner.setdefault(edges.Add(mine.FindKey(k)), i)) for k in range(1, mine.Extent() + 1)}
     groups: dict[int, list[Any]] = {}
-    for i, part in enumerate(parts):
-        groups.setdefault(find(i), []).append(part)
-    return [group[0] if len(group) == 1 else compound(group) for group in groups.values()]
+    for part, group in zip(parts, connected(len(parts), np.array(sorted(pairs), int).reshape(-1, 2)).tolist(), strict=True):
+        groups.setdefault(group, []).append(part)
+    return [as_one(group) for group in groups.values()]
 
 
 def corner(side: float, gap: float) -> TopoDS_Compound:
@@ -81,6 +75,20 @@ def children(shape: Any) -> list[Any]:
         out.append(each.Value())
         each.Next()
     return out
+
+
+def as_bytes(shape: Any) -> bytes:
+    """A shape in the kernel's own form, in which sharing survives."""
+    stream = io.BytesIO()
+    BinTools.Write_s(shape, stream)
+    return stream.getvalue()
+
+
+def of_bytes(form: bytes) -> TopoDS_Shape:
+    """A new copy of the shape that was given to `as_bytes`."""
+    whole = TopoDS_Shape()
+    BinTools.Read_s(whole, io.BytesIO(form))
+    return whole
 
 
 def flat(shape: Any) -> list[Any]:
@@ -285,3 +293,44 @@ def _paths(node: Node, above: str) -> Iterator[tuple[Node, str]]:
     yield node, path
     for child in node.children:
         yield from _paths(child, path)
+
+
+#: What `Part` is made of, by the names of its parameters.
+PartContent = dict[str, Any]
+
+
+def packed(content: PartContent) -> PartContent:
+    """Without kernel objects: the shape as bytes, and behind it one vertex for the place of each node of the tree."""
+    vertex = TopoDS_Vertex()
+    BRep_Builder().MakeVertex(vertex, gp_Pnt(), 1e-7)
+    tree = content.get("tree", ())
+    form = as_bytes(compound([content["shape"], *(vertex.Located(place) for place in _places(tree))]))
+    return content | {"shape": form, "tree": [_bare(node) for node in tree]}
+
+
+def unpacked(packed: PartContent) -> PartContent:
+    """Return the arguments that were given to `packed`, with new copies of the shape and of the locations."""
+    shape, *vertices = children(of_bytes(packed["shape"]))
+    places = iter([vertex.Location() for vertex in vertices])
+    return packed | {"shape": shape, "tree": tuple(_placed(bare, places) for bare in packed["tree"])}
+
+
+def comes_back(packed_content: PartContent) -> bool:
+    """Whether what is unpacked is what was packed to the last bit: the kernel makes directions unit vectors again as it reads."""
+    return bool(packed(unpacked(packed_content))["shape"] == packed_content["shape"])
+
+
+def _places(tree: tuple[Node, ...]) -> Iterator[TopLoc_Location]:
+    for node in tree:
+        yield node.place
+        yield from _places(node.children)
+
+
+def _bare(node: Node) -> tuple[Any, ...]:
+    return node.name, node.instance, [_bare(child) for child in node.children], node.faces
+
+
+def _placed(bare: tuple[Any, ...], places: Iterator[TopLoc_Location]) -> Node:
+    name, instance, inner, numbers = bare
+    place = next(places)
+    return Node(name, instance, place, tuple(_placed(child, places) for child in inner), numbers)

@@ -274,9 +274,13 @@ def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group]
     # What fits as a whole is not cut. At each joint, one side at least is what one face has alone.
     moving = _joined(curves, faces, moving, tolerance)
     table, alone = _Table.of(moving), _alone(faces, moving)
-    parts = [
-        part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True) for part in _cut(group, cuts)
-    ]
+    parts = []
+    for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True):
+        if cuts:
+            ((edge, low, high),) = group.pieces
+            parts += [Group((Piece(edge, a, b),), (1,)) for a, b in pairwise([low, *cuts, high])]
+        else:
+            parts.append(group)
     if len(parts) > len(moving):
         moving = _joined(curves, faces, parts, tolerance)
     return [*still, *_whole(moving)]
@@ -308,15 +312,6 @@ class _Table(NamedTuple):
 
     def lengths(self, curves: Curves) -> Floats:
         return curves.length(self.edge, self.high) - curves.length(self.edge, self.low)
-
-
-def _cut(group: Group, cuts: list[float]) -> Iterator[Group]:
-    if not cuts:
-        yield group
-        return
-    ((edge, low, high),) = group.pieces
-    for a, b in zip([low, *cuts], [*cuts, high], strict=True):
-        yield Group((Piece(edge, a, b),), (1,))
 
 
 def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float) -> list[list[float]]:

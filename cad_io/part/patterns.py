@@ -69,10 +69,6 @@ class _Faces:
     compared: list[int]
 
     @property
-    def tolerance(self) -> float:
-        return EXACT * self.size
-
-    @property
     def near(self) -> float:
         return _NEAR * self.size
 
@@ -87,7 +83,7 @@ class _Faces:
         self.compared[0] += 1
         if self.compared[0] > _MOST_COMPARED:
             return False
-        return equal(self.shape[one], self.shape[other], motion, self.tolerance)
+        return equal(self.shape[one], self.shape[other], motion, EXACT * self.size)
 
 
 def patterns(part: Part, at: Callable[[int], None] = lambda face: None, without: Collection[int] = ()) -> tuple[Pattern, ...]:
@@ -119,21 +115,17 @@ def _faces_of(part: Part, at: Callable[[int], None], without: Collection[int]) -
         if shape is not None:
             shapes.append(shape)
     whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in there)
-    centre = np.array([each.centre for each in shapes]).reshape(-1, 3)
-    return _Faces(shapes, _classes(shapes, size), centre, size, whole, [0])
-
-
-def _classes(shapes: Sequence[FaceShape], size: float) -> Which:
-    """Class of each face, by its kind, area, border length and second moments."""
     if not shapes:
-        return np.zeros(0, np.int64)
+        return None
+    # Class of each face, by its kind, area, border length and second moments.
     kinds = {kind: k for k, kind in enumerate(sorted({each.kind for each in shapes}))}
     # In lengths, so that one distance tells; kinds are far apart.
     feature = np.array([
         [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length,
          *np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(each.tensor))).tolist()] for each in shapes
     ])  # fmt: skip
-    return connected(len(shapes), cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")).astype(np.int64)
+    kind = connected(len(shapes), cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")).astype(np.int64)
+    return _Faces(shapes, kind, np.array([each.centre for each in shapes]), size, whole, [0])
 
 
 # Motions of the whole part.

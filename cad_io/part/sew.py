@@ -12,23 +12,21 @@ Vertices are left out: nobody asks for them.
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.GCPnts import GCPnts_AbscissaPoint
-from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
 from cad_io.kernel import along, bounding, cubic, explore, may_refuse, shape_map
-from cad_io.kernel.shapes import children
+from cad_io.kernel.shapes import as_bytes, children, compound, of_bytes
 from cad_io.part.coincide import Curves, Group, Piece, TooMany, coinciding, points
-from cad_io.part.packing import packed_faces, unpacked_faces
 
 #: An edge with its uses: see `edge_uses`. A part of one: where it begins, the common edge, and whether it runs as that does.
 Use = tuple[TopoDS_Edge, list[tuple[int, int]]]
@@ -76,21 +74,16 @@ class SewnForm(NamedTuple):
 
     numbers: tuple[int, ...]
     faces: bytes
-    tolerance: float | None
-    tried: float | None
-    open_edges: int
-    open_length: float
-    stopped: str | None
+    rest: Sewn
 
     @classmethod
     def of(cls, sewn: Sewn) -> "SewnForm":
-        faces = packed_faces(list(sewn.faces.values())) if sewn.faces else b""
-        return cls(tuple(sewn.faces), faces, sewn.tolerance, sewn.tried, sewn.open_edges, sewn.open_length, sewn.stopped)
+        faces = as_bytes(compound(list(sewn.faces.values()))) if sewn.faces else b""
+        return cls(tuple(sewn.faces), faces, replace(sewn, faces={}))
 
     def sewn(self) -> Sewn:
-        faces = unpacked_faces(self.faces) if self.numbers else []
-        by_number = dict(zip(self.numbers, faces, strict=True))
-        return Sewn(by_number, self.tolerance, self.tried, self.open_edges, self.open_length, self.stopped)
+        faces = map(TopoDS.Face_s, children(of_bytes(self.faces))) if self.numbers else ()
+        return replace(self.rest, faces=dict(zip(self.numbers, faces, strict=True)))
 
 
 class Join(NamedTuple):
@@ -223,7 +216,7 @@ def on_common_edges(
                 source, uses = sources[piece.edge]
                 fit = next(fits)
                 for face, _ in uses:
-                    _lie_on(edge, shapes[face], fit, source)
+                    fit.lay(edge, shapes[face], source)
     for piece in gone:
         parts.setdefault(piece.edge, [])
     index = TopTools_IndexedMapOfShape()
@@ -235,19 +228,6 @@ def on_common_edges(
 def _is_cut(curves: Curves, edge: int, low: float, high: float) -> bool:
     """Whether a piece is a part of an edge."""
     return bool(curves.drawn[edge] and (low > curves.low[edge] or high < curves.high[edge]))
-
-
-def _lie_on(edge: TopoDS_Edge, face: TopoDS_Face, fit: "_Fit", source: TopoDS_Edge) -> None:
-    """Give an edge a line in the parameter plane of a face, that of the face's own edge."""
-    low, high = BRep_Tool.Range_s(edge)
-    # Where two faces of a group lie on one surface, the line of the first holds: it runs through the same points.
-    if BRep_Tool.CurveOnSurface_s(edge, face, low, high) is not None:
-        return
-    line = fit.on(source, face)
-    if line is not None:
-        builder = BRep_Builder()
-        builder.UpdateEdge(edge, line, face, BRep_Tool.Tolerance_s(edge))
-        builder.Range(edge, face, low, high)
 
 
 def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
@@ -298,8 +278,12 @@ class _Fit(NamedTuple):
         s = np.maximum.accumulate(s) if way > 0 else np.minimum.accumulate(s)
         return cls(t, s, speed if np.isfinite(speed).all() else np.gradient(s, t))
 
-    def on(self, edge: TopoDS_Edge, face: TopoDS_Face) -> Geom2d_BSplineCurve | None:
-        """The other edge's line in the parameter plane of a face, by the common parameter; None where it has none."""
+    def lay(self, common: TopoDS_Edge, face: TopoDS_Face, edge: TopoDS_Edge) -> None:
+        """Give the common edge the other edge's line in the parameter plane of a face, where it has one."""
+        low, high = BRep_Tool.Range_s(common)
+        # Where two faces of a group lie on one surface, the line of the first holds: it runs through the same points.
+        if BRep_Tool.CurveOnSurface_s(common, face, low, high) is not None:
+            return
         with may_refuse():
             p, d = np.moveaxis(along(BRepAdaptor_Curve2d(edge, face), self.there), 1, 0)
             t, d = self.t, d * self.speed[:, None]
@@ -307,8 +291,10 @@ class _Fit(NamedTuple):
             third = (np.diff(t) / 3)[:, None]
             after, before = p[:-1] + third * d[:-1], p[1:] - third * d[1:]
             poles = np.concatenate([p[:1], np.stack([after, before], axis=1).reshape(-1, 2), p[-1:]])
-            return cubic(np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]]), poles)
-        return None
+            line = cubic(np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]]), poles)
+            builder = BRep_Builder()
+            builder.UpdateEdge(common, line, face, BRep_Tool.Tolerance_s(common))
+            builder.Range(common, face, low, high)
 
 
 def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict[int, list[EdgePart]]) -> TopoDS_Face:

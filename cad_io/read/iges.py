@@ -23,8 +23,8 @@ from cad_io.errors import ReadError
 from cad_io.kernel import faces, shape_map
 from cad_io.kernel.shapes import children, unwrapped
 from cad_io.read.document import Read, add_attributes
-from cad_io.read.encodings import CALLED, decoded, encoding_of
 from cad_io.read.faults import Fault, Model, edge_count, misfit, open_border
+from cad_io.read.step_text import CALLED, decoded, encoding_of
 from cad_io.units import UNITS, UnitReading
 
 #: Units by the standard's numbers, and the lengths of all of them, mm; in capitals they have the standard's names.
@@ -213,11 +213,6 @@ _BORDERS = (102, 141, 142, 508)
 _FACE, _LOOP, _WHOLES = 510, 508, (186, 514)
 
 
-def fell_apart(model: Model) -> bool:
-    """Whether the transfer could not put faces together to the solids and shells that are written."""
-    return any(model.entities[fault.number].TypeNumber() in _WHOLES for fault in model.trouble(fails=False) if fault.number)
-
-
 def _face_numbers(model: Model, results: Collection[int], shapes: Sequence[TopoDS_Face]) -> dict[int, int]:
     """Face numbers of the entities that faces were made of, as far as that is known."""
     made = model.makers(dict(enumerate(shapes, 1)))
@@ -329,13 +324,7 @@ class Loaded:
         self.risky = bool(self.faults)
 
     def transfer(self) -> Read:
-        """Make the shape.
-
-        Raises
-        ------
-        ReadError
-            It holds no shape that can be read.
-        """
+        """Make the shape; ReadError where it holds no shape that can be read."""
         text = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
         document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
         # In metres: the kernel divides by it.
@@ -354,7 +343,9 @@ class Loaded:
         kinds = [line[:8].strip() for line in directory[::2]]
         written = sum(kind.isdigit() and int(kind) in FACES for kind in kinds)
         face_count = shape_map(shape, TopAbs_FACE).Extent()
-        split = fell_apart(self.model)
+        # The transfer could not put faces together to the solids and shells that are written.
+        doubts = [self.model.entities[fault.number] for fault in self.model.trouble(fails=False) if fault.number]
+        split = any(entity.TypeNumber() in _WHOLES for entity in doubts)
         if face_count < written or self.faults or split or self.model.trouble(fails=True):
             result.lost = unread_of_iges(self.model, self.faults, faces(result.shape), split=split)
             gone = sum(each.face is None for each in result.lost)

@@ -220,13 +220,7 @@ def _is_host(source: Any) -> bool:
 
 
 def _wrapped(source: Any) -> TopoDS_Shape:
-    """The kernel shape in an object.
-
-    Raises
-    ------
-    ReadError
-        It has none.
-    """
+    """The kernel shape in an object; ReadError where it has none."""
     shape = source
     if not isinstance(source, TopoDS_Shape):
         try:

@@ -140,10 +140,15 @@ class Loaded:
             return self._again().transfer(traced=True)
         shapes = faces(result.shape)
         numbers = self._unmark(result, shapes, real)
-        unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, self._scale())
+        scale = in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
+        unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, scale)
         result.lost = unread.found()
-        # Faces that the kernel did not even load as such, or that went unseen otherwise.
-        nameless = self._no_faces()[sum(each.face is None for each in result.lost) :]
+        # Faces that the kernel did not even load as such: shells list them, and they are missing in the text, or of a type
+        # unknown to it.
+        kinds = dict(_STATEMENT.findall(self.data))
+        named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
+        none = [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
+        nameless = none[sum(each.face is None for each in result.lost) :]
         result.lost += [LostFace(ident, "", "a shell names it, and no face can be read there") for ident in nameless]
         gone = len({each.entity for each in result.lost if each.face is None})
         result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - made - gone)
@@ -276,19 +281,10 @@ class Loaded:
                 result.names.update(dict.fromkeys(numbers.get(number, ()), name))
         return dict(numbers)
 
-    def _no_faces(self) -> list[str]:
-        """Return entities that shells list as faces, but that are missing in the text or of a type unknown to the reader."""
-        kinds = dict(_STATEMENT.findall(self.data))
-        named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
-        return [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
-
     def _idents(self) -> dict[int, str]:
         """Return the names (`#12`) of the entities in the file, by number. The kernel knows them, but does not give them."""
         idents = {i: ident.decode() for i, ident in enumerate(_IDENTS.findall(self.data), 1)}
         return idents if len(idents) == len(self.model.entities) else {}
-
-    def _scale(self) -> float:
-        return in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
 
     def _warnings(self, lost: UnreadFaces) -> Iterator[str]:
         felt = {fault for each in lost.felt.values() for fault in each}

@@ -89,7 +89,8 @@ def repair(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
     bad = dict.fromkeys(touched(model, faults)[0], _CRASHES)
     for number, entity in model.entities.items():
         if is_face(entity) and number not in bad:
-            if _endless(entity):
+            edges = [edge for edge in _edges(entity) if hasattr(edge, "EdgeStart")]
+            if any(edge.EdgeStart() is None or edge.EdgeEnd() is None for edge in edges):
                 bad[number] = _NO_ENDS
             elif None in _loops(entity):
                 bad[number] = _NO_BOUND
@@ -115,12 +116,6 @@ def _unbound(face: Any) -> None:
     for i, bound in enumerate(bounds):
         array.SetValue(i + 1, bound)
     face.SetBounds(array)
-
-
-def _endless(face: Any) -> bool:
-    """Whether an edge of a face has no vertex at an end."""
-    edges = (edge for edge in _edges(face) if hasattr(edge, "EdgeStart"))
-    return any(edge.EdgeStart() is None or edge.EdgeEnd() is None for edge in edges)
 
 
 def _loops(face: Any) -> list[Any]:
@@ -180,10 +175,12 @@ class UnreadFaces:
     def found(self) -> list[LostFace]:
         """Every face that is lost or altered, in the order of the file."""
         unread: list[LostFace] = []
+        # The part has faces of which no one knows what they were in the file.
+        unnamed = sum(map(len, self.numbers.values())) < len(self.shapes)
         for number, entity in self.model.entities.items():
             if is_face(entity):
                 here = self.numbers.get(number, ())
-                if not here and not (number in self.results and self._unnamed):
+                if not here and not (number in self.results and unnamed):
                     unread += self._gone(number)
                 unread += [
                     LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
@@ -199,11 +196,6 @@ class UnreadFaces:
 
     def ident(self, number: int) -> str:
         return self.idents.get(number, "")
-
-    @property
-    def _unnamed(self) -> bool:
-        """Whether the part has faces of which no one knows what they were in the file."""
-        return sum(map(len, self.numbers.values())) < len(self.shapes)
 
     def _gone(self, number: int) -> Iterator[LostFace]:
         """A face that is not in the part: once for each place at which its shell is."""
@@ -258,7 +250,7 @@ class UnreadFaces:
             return "an edge of it is missing"
         if not (felt or failed or number in self.doubted):
             return ""
-        if number in self.mended or any(self._is_loop(fault) for fault in failed):
+        if number in self.mended or any(isinstance(self.model.entities[fault.number], StepShape_Loop) for fault in failed):
             return _NO_BOUND
         if open_border(shape):
             return "its border is open"
@@ -269,9 +261,6 @@ class UnreadFaces:
         if any(self._beyond_proof(fault, number) for fault in felt):
             return "its geometry is not as written"
         return misfit(shape, self._fine)
-
-    def _is_loop(self, fault: Fault) -> bool:
-        return isinstance(self.model.entities[fault.number], StepShape_Loop)
 
     def _beyond_proof(self, fault: Fault, number: int) -> bool:
         """Faults whose effect no border can show: in topology, and between the borders of free-form surfaces."""

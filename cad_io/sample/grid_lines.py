@@ -203,7 +203,7 @@ def border_probes(part: Part, number: int, gap: float) -> Probes:
 
 
 def inner_probes(part: Part, number: int, lines: Lines, finer: NDArray[np.bool_]) -> Probes:
-    """Nodes of the halved grid inside the face, in cells of which not all corners are; `finer` as from `halves_inside`."""
+    """Nodes of the halved grid inside the face, in cells of which not all corners are; `finer`: which nodes lie in the face."""
     whole = finer[:-2:2, :-2:2] & finer[2::2, :-2:2] & finer[:-2:2, 2::2] & finer[2::2, 2::2]
     neighbours = np.zeros(finer.shape, bool)
     for du in range(3):
@@ -224,11 +224,6 @@ def halved(lines: Lines) -> tuple[Floats, Floats]:
         between[::2], between[1::2] = whole, 0.5 * (whole[1:] + whole[:-1])
         halves.append(between)
     return halves[0], halves[1]
-
-
-def halves_inside(trim: Trim, lines: Lines) -> NDArray[np.bool_]:
-    """Which nodes of the halved grid lie in the face."""
-    return trim.inside_grid(*halved(lines), border=False)
 
 
 def denser(lines: Lines, finer: NDArray[np.bool_], uv: Floats, trim: Trim) -> Lines:

@@ -20,7 +20,7 @@ from cad_io.face.trim import Trim
 from cad_io.kernel import edges_of, points_on, translated
 from cad_io.part import Part
 from cad_io.sample.at_point import locate
-from cad_io.sample.grid_lines import Lines, border_probes, denser, halves_inside, inner_probes, spaced, uniform
+from cad_io.sample.grid_lines import Lines, border_probes, denser, halved, inner_probes, spaced, uniform
 from cad_io.surface import Surface
 from cad_io.tessellate.start import starts
 
@@ -151,33 +151,15 @@ def sample(
     faces: Sequence[int],
     at: Callable[[int], None] = lambda face: None,
 ) -> SurfaceSamples:
-    """Sample faces of a part.
+    """Sample faces of a part, by their numbers; `orientation` says which side of each is out of the material.
 
-    Parameters
-    ----------
-    orientation : Orientation
-        Which side of each face is out of the material.
-    grid : int, optional
-        That many lines each way, at least 2, uniform over the surface's own domain, ends included, a closed seam once,
-        a border that is a single point 1e-4 of the range inward. Surfaces without end use the box of the trim.
-    spacing : float or mapping of int to float, optional
-        Instead of `grid`: grid neighbours at most so many mm apart, and no point of the face farther from its nearest
-        sample, for all faces or by face number. `max_gap` says where that was not to be had.
-    faces : sequence of int
-        Face numbers.
-    at : callable, optional
-        Told at which face the work is; 0: at none of them.
+    grid: that many lines each way, at least 2, uniform over the surface's own domain, ends included, a closed seam once, a border
+    that is a single point 1e-4 of the range inward. Surfaces without end use the box of the trim. spacing: instead of `grid`,
+    grid neighbours at most so many mm apart, and no point of the face farther from its nearest sample, for all faces or by face
+    number; `max_gap` says where that was not to be had. at: told at which face the work is; 0: at none of them.
 
-    Returns
-    -------
-    SurfaceSamples
-        Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of
-        triangles; one without any sample is in `empty`.
-
-    Raises
-    ------
-    SampleError
-        Both or neither of grid and spacing given, or one that has no meaning.
+    Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of triangles; one without
+    any sample is in `empty`. Raises SampleError where both or neither of grid and spacing are given, or one that has no meaning.
     """
     if (grid is None) == (spacing is None):
         raise SampleError("give either a grid or a spacing", file=part.file)
@@ -228,7 +210,14 @@ def _taken(
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
-    samples = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
+    samples = None if step is None else _spaced(part, number, trim, step)
+    # On so many lines each way, on more where none hits the face.
+    for doubling in range(_DOUBLINGS + 1) if step is None else ():
+        lines = uniform(part.surface(number), trim, 2**doubling * (int(grid or 2) - 1) + 1)
+        inside = trim.inside_grid(lines.u, lines.v)
+        if inside.any():
+            samples = _on_grid(part, number, trim, lines, inside)
+            break
     if samples is None:
         return _in_triangles(part, number, step)
     # Nodes stand all over the face and along its border: it is no farther from them than they are from each other.
@@ -240,16 +229,6 @@ def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: fl
         thin = _in_triangles(part, number, step)
         return thin if thin is not None and thin.gap < samples.gap else samples
     return samples
-
-
-def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamples | None:
-    """Samples on so many lines each way, on more where none hits the face."""
-    for doubling in range(_DOUBLINGS + 1):
-        lines = uniform(part.surface(number), trim, 2**doubling * (int(grid or 2) - 1) + 1)
-        inside = trim.inside_grid(lines.u, lines.v)
-        if inside.any():
-            return _on_grid(part, number, trim, lines, inside)
-    return None
 
 
 def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | None:
@@ -293,7 +272,7 @@ def _covering(part: Part, number: int, trim: Trim, samples: _FaceSamples, step: 
         return samples._replace(gap=float(border.distance(samples.derivatives[:, 0]).max(initial=0.0)))
     most, nodes = max(_MOST_MORE * len(samples.uv), _FEW_SAMPLES), max(_MOST_MORE * grid.index.size, _NODES)
     for _ in range(_HALVINGS + 1):
-        finer = halves_inside(trim, lines)
+        finer = trim.inside_grid(*halved(lines), border=False)
         probes = [border, inner_probes(part, number, lines, finer)]
         away = np.concatenate([each.distance(samples.derivatives[:, 0]) for each in probes])
         samples = samples._replace(gap=float(away.max(initial=0.0)))

@@ -14,9 +14,8 @@ from OCP.gp import gp_Pnt2d, gp_Vec2d
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
-from cad_io.face.trim import inside
-from cad_io.face.uv_region import interior_point, nodes_inside
-from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, extent, left_of, nearest
+from cad_io.face.trim import inside, interior_point, nodes_inside
+from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, left_of, nearest
 from cad_io.split.contour import LabelGrid, Spline
 
 if TYPE_CHECKING:
@@ -443,7 +442,7 @@ def _turns(halves: list[Half], twin: dict[int, int], come: list[int], leave: lis
         if len(choice) > 1:
             if not directions:
                 paths = {k: halves[k].xy for k in leave} | {~k: halves[k].xy[::-1] for k in come}
-                radius = min(0.3 * min(extent(path) for path in paths.values()), span)
+                radius = min(0.3 * min(float(np.linalg.norm(p - p[0], axis=1).max()) for p in paths.values()), span)
                 directions = {k: bearing(path, radius) for k, path in paths.items()}
             back = directions[~i]
             choice = [min(choice, key=lambda k: ((back - directions[k]) % (2 * np.pi) or 2 * np.pi, k))]

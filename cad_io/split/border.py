@@ -95,11 +95,6 @@ def enclosed(path: Floats) -> float:
     return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y))
 
 
-def extent(path: Floats) -> float:
-    """How far a path (n, 2) leads away from its start at most."""
-    return float(np.linalg.norm(path - path[0], axis=1).max())
-
-
 def bearing(path: Floats, radius: float) -> float:
     """Direction, rad, in which a path (n, 2) first leaves a circle around its start; of its farthest point if it does not."""
     away = np.linalg.norm(path - path[0], axis=1)

@@ -144,36 +144,33 @@ def rewired(net: Net, face: Any) -> Any:
     return TopoDS.Face_s(new.Oriented(face.Orientation()))
 
 
-class Placed:
-    """A shape put together again, with other faces in place of some.
+def placed(
+    shape: Any, numbers: dict[int, int], known: Any, changed: dict[int, list[Any]]
+) -> tuple[list[Any], dict[int, list[Any]]]:
+    """A shape put together again, with other faces in place of some: one shape, or the pieces of a loose face; and by number of a
+    face a TopoDS_Face list, as they stand there.
 
-    shapes: what it became, one shape or the pieces of a loose face. faces: number of a face -> TopoDS_Face list, as they stand
-    there.
+    `known` is the map of faces, `numbers` tells their own numbers, `changed` what replaces a face, FORWARD.
     """
+    builder, faces = BRep_Builder(), dict[int, list[Any]]()
 
-    def __init__(self, shape: Any, numbers: dict[int, int], known: Any, changed: dict[int, list[Any]]) -> None:
-        """`known` is the map of faces, `numbers` tells their own numbers, `changed` what replaces a face, FORWARD."""
-        self._numbers, self._known, self._changed = numbers, known, changed
-        self._builder = BRep_Builder()
-        self.faces: dict[int, list[Any]] = {}
-        self.shapes = self._again(shape)
-
-    def _again(self, shape: Any) -> list[Any]:
+    def again(shape: Any) -> list[Any]:
         if shape.ShapeType() == TopAbs_FACE:
-            number = self._numbers[self._known.FindIndex(shape)]
-            new = self._changed.get(number)
-            placed = [TopoDS.Face_s(f.Oriented(shape.Orientation())) for f in new] if new else [TopoDS.Face_s(shape)]
-            self.faces[number] = placed
-            return placed
+            number = numbers[known.FindIndex(shape)]
+            new = changed.get(number)
+            faces[number] = [TopoDS.Face_s(f.Oriented(shape.Orientation())) for f in new] if new else [TopoDS.Face_s(shape)]
+            return faces[number]
         plain = shape.Oriented(TopAbs_FORWARD)
         new = plain.EmptyCopied()
         new.Location(TopLoc_Location())  # which the children have already
         for child in children(plain):
-            for each in self._again(child):
-                self._builder.Add(new, each)
+            for each in again(child):
+                builder.Add(new, each)
         if new.ShapeType() == TopAbs_SHELL:
             new.Closed(BRep_Tool.IsClosed_s(new))
         return [new.Oriented(shape.Orientation())]
+
+    return again(shape), faces
 
 
 def _edges(net: Net, face: Any, surface: Surface, arrangement: Arrangement) -> list[Any]:

@@ -19,7 +19,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from scipy.ndimage import distance_transform_edt, maximum_filter
 
 from cad_io.arrays import FaceLabels, Floats, Ints, Record
-from cad_io.face.uv_region import nodes_inside, outline
+from cad_io.face.trim import nodes_inside, outline
 from cad_io.kernel import edges_of
 
 #: Share of its allowed stretch that a crossing keeps from either end, so that curves of two levels stay apart.

@@ -7,7 +7,6 @@ Cost is linear in the length of the curves. Time decides nothing but whether a c
 seconds (`plan_cutters_base.copies`): what comes out does not depend on how busy the machine is.
 """
 
-import io
 import mmap
 import os
 import pickle
@@ -18,19 +17,18 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import FaceLabels
-from cad_io.face.uv_region import uv_areas
+from cad_io.face.trim import uv_areas
 from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
-from cad_io.kernel.shapes import as_one, children, components, compound
+from cad_io.kernel.shapes import as_bytes, as_one, children, components, compound, of_bytes
 from cad_io.split.arrangement import Arrangement, Judged, joined, judged, regions_of, slivers
 from cad_io.split.border import Border, CannotSplit
-from cad_io.split.build import Placed, pieces, rewired
+from cad_io.split.build import pieces, placed, rewired
 from cad_io.split.contour import Line, curves, label_grid, smoothed
 from cad_io.split.net import Net, repair, valid
 from cad_io.surface import Surface
@@ -124,15 +122,15 @@ def wrong_pieces(face: Any, pieces: list[Any]) -> str:
 
 def wrong_whole(before: Any, after: Any) -> str:
     """Why a shape with other faces does not stand for the one before, or nothing."""
-    if _shells(before) != _shells(after):
+
+    def shells(shape: Any) -> tuple[int, list[bool]]:
+        """Number of solids; closedness of all shells, sorted."""
+        closed = [bool(BRep_Tool.IsClosed_s(shell)) for shell in explore(shape, TopAbs_SHELL)]
+        return shape_map(shape, TopAbs_SOLID).Extent(), sorted(closed)
+
+    if shells(before) != shells(after):
         return "splitting changes solids or shells"
     return "splitting makes the shape invalid" if not valid(after) and valid(before) else ""
-
-
-def _shells(shape: Any) -> tuple[int, list[bool]]:
-    """Number of solids; closedness of all shells, sorted."""
-    closed = [bool(BRep_Tool.IsClosed_s(shell)) for shell in explore(shape, TopAbs_SHELL)]
-    return shape_map(shape, TopAbs_SOLID).Extent(), sorted(closed)
 
 
 def copied(shape: Any, faces: dict[int, Any]) -> tuple[Any, dict[int, Any]]:
@@ -182,7 +180,7 @@ class Attempt:
     def __init__(self, trial: Trial, drawings: dict[int, Drawing]) -> None:
         """Try it; `drawings` by the number of the face."""
         self.wrong: dict[int, str] = {}
-        self._placed: Placed | None = None
+        self._placed: tuple[list[Any], dict[int, list[Any]]] | None = None
         self._works_on = works_on = trial.works_on
         own, fresh, net = trial.copied()
         self._net = net
@@ -211,9 +209,9 @@ class Attempt:
         if self.wrong or not changed:
             return
         numbers = {net.faces.FindIndex(face): number for number, face in fresh.items()}
-        self._placed = Placed(own, numbers, net.faces, changed)
+        self._placed = placed(own, numbers, net.faces, changed)
         works_on(self._cut)
-        if reason := wrong_whole(trial.given, as_one(self._placed.shapes)):
+        if reason := wrong_whole(trial.given, as_one(self._placed[0])):
             self._ask(changed, neighbours)
             if not self.wrong:
                 self.wrong = dict.fromkeys(self._cut, reason)
@@ -259,10 +257,8 @@ class Attempt:
         """Numbers of the faces, and the component with their pieces: sharing survives. None if nothing changed."""
         if self._placed is None:
             return None
-        stream = io.BytesIO()
-        shapes, faces = self._placed.shapes, self._placed.faces
-        BinTools.Write_s(compound([compound(shapes), *map(compound, faces.values())]), stream)
-        return list(faces), stream.getvalue()
+        shapes, faces = self._placed
+        return list(faces), as_bytes(compound([compound(shapes), *map(compound, faces.values())]))
 
 
 #: Why a face is not cut if the limit ended the work.
@@ -318,9 +314,8 @@ def cut_faces(
         if not rest:
             break
         watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
-        job = partial(_answer, shape, faces, rest, surface_of, worst, watch, careful)
         try:
-            answer = limited(job, watch.whole, processor=True)
+            answer = limited(partial(_answer, shape, faces, rest, surface_of, worst, watch, careful), watch.whole, processor=True)
         except (TimeLimit, ChildDied) as error:
             seen = watch.seen() & rest.keys()
             if careful or len(seen) < 2:
@@ -435,9 +430,7 @@ def _unpacked(answer: bytes, shape: Any) -> tuple[Any, CutFaces]:
         if unit is None:
             made.append(old)
             continue
-        whole = TopoDS_Shape()
-        BinTools.Read_s(whole, io.BytesIO(unit[1]))
-        result, *groups = children(whole)
+        result, *groups = children(of_bytes(unit[1]))
         made += children(result)
         pieces.faces |= {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(unit[0], groups, strict=True)}
     return (as_one(made) if any(units) else shape), pieces

@@ -11,7 +11,7 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 
 from cad_io.arrays import FaceLabels, Floats, Ints
-from cad_io.face.uv_region import nodes_inside, outline
+from cad_io.face.trim import nodes_inside, outline
 from cad_io.split.cut_faces import cut_faces
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
@@ -119,16 +119,6 @@ class _Stage:
         return self.part.surface(self.pieces[number - 1][0].face)
 
 
-def _requests(stage: _Stage, roomy: dict[int, FaceLabels]) -> Iterator[FaceLabels]:
-    """Labels that part each piece of several labels into two halves of them."""
-    taken = _taken(stage.pieces, roomy)
-    for i, (piece, group) in enumerate(stage.pieces, 1):
-        if len(group) > 1:
-            field = roomy[piece.face]
-            off = np.isin(taken[piece.face], [0, i], invert=True)
-            yield FaceLabels(i, field.u, field.v, _halves(field, off, group))
-
-
 def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, tuple[int, ...]]:
     """A piece of the original face, and the labels on it, from a piece of the stage and what it was cut from."""
     if len(group) <= 1:
@@ -152,7 +142,14 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     stage = _Stage(part, start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces])
     whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
     while any(len(group) > 1 for _, group in stage.pieces):
-        done = split(stage, list(_requests(stage, roomy)), seconds=seconds)
+        # Labels that part each piece of several labels into two halves of them.
+        taken, requests = _taken(stage.pieces, roomy), []
+        for i, (piece, group) in enumerate(stage.pieces, 1):
+            if len(group) > 1:
+                field = roomy[piece.face]
+                off = np.isin(taken[piece.face], [0, i], invert=True)
+                requests.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
+        done = split(stage, requests, seconds=seconds)
         pieces = [_halved(each, *stage.pieces[each.face - 1]) for each in done.pieces]
         for i, why in done.whole.items():
             whole[stage.pieces[i - 1][0].face] = why

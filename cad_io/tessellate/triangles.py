@@ -95,7 +95,8 @@ class Patch(NamedTuple):
             tried = self.tried(chord, many, workspace)
             if tried.triangles <= many:
                 return self, tried
-            if self.ground.is_finer(cells, than=before):
+            # Lines may be dense already.
+            if any(len(a) > len(b) for a, b in zip(self.ground.finer(cells), self.ground.finer(before), strict=True)):
                 self, before = self._replace(table=table_of(self.ground, cells)[0]), cells
         return self, self.tried(chord, most, workspace)
 

@@ -186,16 +186,6 @@ class _Glb:
         self.meshes: list[dict[str, Any]] = []
         self.materials: list[dict[str, Any]] = []
 
-    def _material(self, name: str, rgb: tuple[float, float, float] | None) -> int:
-        """The number of the material of a name and a colour, white without one; open shells are looked at from both sides."""
-        surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
-        if rgb is not None:
-            surface["baseColorFactor"] = [*linear(rgb), 1.0]
-        material = {"name": name, "doubleSided": True, "pbrMetallicRoughness": surface}
-        if material not in self.materials:
-            self.materials.append(material)
-        return self.materials.index(material)
-
     def node(self, node: dict[str, Any], parent: int | None = None) -> int:
         if parent is None:
             self.roots.append(len(self.nodes))
@@ -210,7 +200,14 @@ class _Glb:
             return {}
         attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
         indices = self._accessor(mesh.triangle.reshape(-1))
-        primitive = {"attributes": attributes, "indices": indices, "material": self._material(material, rgb)}
+        # White without a colour; open shells are looked at from both sides.
+        surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
+        if rgb is not None:
+            surface["baseColorFactor"] = [*linear(rgb), 1.0]
+        made = {"name": material, "doubleSided": True, "pbrMetallicRoughness": surface}
+        if made not in self.materials:
+            self.materials.append(made)
+        primitive = {"attributes": attributes, "indices": indices, "material": self.materials.index(made)}
         self.meshes.append({"name": name, "primitives": [primitive]})
         return {"mesh": len(self.meshes) - 1}
 

@@ -140,7 +140,16 @@ def _write(
         if writer.Write(str(temporary)) != IFSelect_RetDone:
             raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
     text = temporary.read_bytes()
-    _recount(text, filled, file)
+    # Faces, names and styles in the written text are counted: the kernel is known to lose some in silence.
+    written = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
+    styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
+    if written < filled.faces or styles < filled.styles:
+        raise WriteError(
+            f"of {filled.faces} faces the CAD kernel wrote {written}, of {filled.styles} colours {styles}", file=file
+        )
+    named = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(\s*'[^']", text))
+    if named < filled.named:
+        raise WriteError(f"of {filled.named} names of faces the CAD kernel wrote {named}", file=file)
     temporary.write_bytes(canonical(text))
 
 
@@ -360,19 +369,6 @@ def _unplaced(shape: Any) -> Iterator[Any]:
 
 def _name(label: Any, name: str) -> None:
     TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
-
-
-def _recount(text: bytes, document: _Document, file: str) -> None:
-    """Count faces, names and styles in the written text: the kernel is known to lose some in silence."""
-    faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
-    styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
-    if faces < document.faces or styles < document.styles:
-        raise WriteError(
-            f"of {document.faces} faces the CAD kernel wrote {faces}, of {document.styles} colours {styles}", file=file
-        )
-    named = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(\s*'[^']", text))
-    if named < document.named:
-        raise WriteError(f"of {document.named} names of faces the CAD kernel wrote {named}", file=file)
 
 
 def _ascii(name: str) -> str:

@@ -344,8 +344,8 @@ def _words(part: "Part", value: Any, option: str) -> list[str]:
 def _word(part: "Part", value: Any, option: str) -> str:
     """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
-    from cad_io.read.encodings import typed
     from cad_io.read.objects import face_numbers
+    from cad_io.read.step_text import typed
 
     if isinstance(value, str):
         return typed(value, part.encoding) if part.encoding else value
