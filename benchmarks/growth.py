@@ -30,7 +30,7 @@ def peak() -> float:
 def one(grid: int, chord: float) -> dict[str, float]:
     """One size, in this process."""
     from cad_io import read_part
-    from cad_io.part.orient import orient
+    from cad_io.part.bodies import orient
     from cad_io.sample import sample
     from cad_io.tessellate import tessellate
     from plan_cutters import Cutter

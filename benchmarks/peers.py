@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 
 from cad_io import SurfaceSamples, Triangles, read_part
 from cad_io.arrays import Floats
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter

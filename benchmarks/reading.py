@@ -24,7 +24,7 @@ from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDocStd import TDocStd_Document
 
 from cad_io import Part, ReadError, read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 
 STEP, IGES = {".step", ".stp"}, {".iges", ".igs"}

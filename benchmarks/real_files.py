@@ -22,7 +22,7 @@ from OCP.GeomAbs import GeomAbs_CN
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 
 from cad_io import Part, read_part
-from cad_io.face.uv_region import boundary
+from cad_io.face.trim import boundary
 from cad_io.kernel import first_derivatives, interval_ends
 
 CUTTER, LIMIT = "R3L40", 300

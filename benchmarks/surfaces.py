@@ -14,7 +14,7 @@ import numpy as np
 from cad_io import Part, read_part
 from cad_io.face.curvature import curvature
 from cad_io.kernel import second_derivatives, values
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 
 SAMPLES = Path(__file__).parents[1] / "samples"

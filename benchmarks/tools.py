@@ -18,7 +18,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cad_io import read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from plan_cutters import Cutter, Holder, Stage, plan
 from plan_cutters.document.clock import Clock

@@ -88,67 +88,44 @@ def _brief(value: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """The whole plane, cylinder, cone, sphere or torus that a face is a part of.
+    """The whole plane, cylinder, cone, sphere or torus that a face is a part of."""
 
-    Attributes
-    ----------
-    point : tuple of float
-        mm; the point of a plane or of a cylinder's axis that is nearest the origin, the apex of a cone, the centre of a
-        sphere or torus.
-    direction : tuple of float, optional
-        Unit normal of a plane, or unit direction of an axis. The first of its longest components is positive; of a cone it
-        points from the apex to the face. None of a sphere.
-    radius : float, optional
-        mm; of a cylinder or sphere, and of the circle about which a torus lies.
-    minor_radius : float, optional
-        mm; of the tube of a torus.
-    half_angle : float, optional
-        rad; between the axis and the surface of a cone.
-    side : int
-        +1 where `dS/du x dS/dv` points along a plane's direction, or away from an axis, from a centre or from the middle of
-        a tube; -1 where it does not; 0 where that is not known.
-    """
-
+    #: mm; the point of a plane or of a cylinder's axis that is nearest the origin, the apex of a cone, the centre of a sphere or
+    #: torus.
     point: tuple[float, float, float]
+    #: Unit normal of a plane, or unit direction of an axis. The first of its longest components is positive; of a cone it points
+    #: from the apex to the face. None of a sphere.
     direction: tuple[float, float, float] | None = None
+    #: mm; of a cylinder or sphere, and of the circle about which a torus lies.
     radius: float | None = None
+    #: mm; of the tube of a torus.
     minor_radius: float | None = None
+    #: rad; between the axis and the surface of a cone.
     half_angle: float | None = None
+    #: +1 where `dS/du x dS/dv` points along a plane's direction, or away from an axis, from a centre or from the middle of a
+    #: tube; -1 where it does not; 0 where that is not known.
     side: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class FaceInfo:
-    """One face of a part.
+    """One face of a part."""
 
-    Attributes
-    ----------
-    number : int
-        From 1, in the order of the kernel's map of the read shape; written `F<number>`.
-    name : str
-        Name in the file; empty if it has none.
-    surface : str
-        Kind of the stored surface: one of SIMPLE_KINDS, `bezier`, `bspline`, `revolution`, `extrusion`, `offset` or
-        `other`.
-    shape : str
-        What it is in shape: one of SIMPLE_KINDS if it is that within tolerance, else `sculptured`.
-    area : float
-        mm2.
-    colour : tuple of float, optional
-        sRGB, 0 to 1, as found in the file.
-    unjudged : str, optional
-        Why no surface can be judged here; None for a face that can.
-    carrier : Carrier, optional
-        None of a sculptured face, and of one without a border.
-    """
-
+    #: From 1, in the order of the kernel's map of the read shape; written `F<number>`.
     number: int
+    #: Name in the file; empty if it has none.
     name: str
+    #: Kind of the stored surface: one of SIMPLE_KINDS, `bezier`, `bspline`, `revolution`, `extrusion`, `offset` or `other`.
     surface: str
+    #: What it is in shape: one of SIMPLE_KINDS if it is that within tolerance, else `sculptured`.
     shape: str
+    #: mm2.
     area: float
+    #: sRGB, 0 to 1, as found in the file.
     colour: tuple[float, float, float] | None = None
+    #: Why no surface can be judged here; None for a face that can.
     unjudged: str | None = None
+    #: None of a sculptured face, and of one without a border.
     carrier: Carrier | None = None
 
     @property
@@ -158,26 +135,17 @@ class FaceInfo:
 
 @dataclass(frozen=True, slots=True)
 class LostFace:
-    """A face written in a file that is not in the part, or not as written.
+    """A face written in a file that is not in the part, or not as written."""
 
-    Attributes
-    ----------
-    entity : str
-        As the file names it: `#123` (STEP), `D45` (IGES); empty where that is not known.
-    name : str
-        Name in the file; empty if it has none.
-    why : str
-        What became of it, and the cause where it is known.
-    face : int, optional
-        Its number in the part where it is there, but altered: with a hole or an edge missing, for one.
-    box : ((x, y, z), (x, y, z)), optional
-        Corners, mm, of the box that its known points span, in part coordinates; the face may reach beyond it.
-    """
-
+    #: As the file names it: `#123` (STEP), `D45` (IGES); empty where that is not known.
     entity: str
+    #: Name in the file; empty if it has none.
     name: str
+    #: What became of it, and the cause where it is known.
     why: str
+    #: Its number in the part where it is there, but altered: with a hole or an edge missing, for one.
     face: int | None = None
+    #: Corners, mm, of the box that its known points span, in part coordinates; the face may reach beyond it.
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __str__(self) -> str:
@@ -187,51 +155,34 @@ class LostFace:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Orientation(Record):
-    """Which side of each face is out of the material.
+    """Which side of each face is out of the material."""
 
-    Attributes
-    ----------
-    sign : (faces,) float
-        +1 where `dS/du x dS/dv` points out of the material, -1 where it points in.
-    method : str
-        How it was found, for people.
-    confident : bool
-        False where it is a guess.
-    guessed : tuple of int
-        Numbers of the faces of solids whose side is a guess: nothing that is requested turns them.
-    """
-
+    #: (faces,); +1 where `dS/du x dS/dv` points out of the material, -1 where it points in.
     sign: Floats
+    #: How it was found, for people.
     method: str
+    #: False where it is a guess.
     confident: bool
+    #: Numbers of the faces of solids whose side is a guess: nothing that is requested turns them.
     guessed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class FaceGrid(Record):
-    """The parameter grid of one face and which sample sits at each node.
+    """The parameter grid of one face and which sample sits at each node."""
 
-    Attributes
-    ----------
-    face : int
-        Face number.
-    u, v : (nu,), (nv,) float
-        Grid lines.
-    index : (nu, nv) int32
-        Row of the sample in SurfaceSamples, -1 outside the trim.
-    closed_u, closed_v : bool
-        The last line's neighbour is the first one (a seam).
-    span : tuple of float
-        Ends of the range that the lines were laid over: u least, u most, v least, v most. A closed range's second end is
-        its first one, a turn later.
-    """
-
+    #: Face number.
     face: int
+    #: (nu,), (nv,); Grid lines.
     u: Floats
     v: Floats
+    #: (nu, nv); Row of the sample in SurfaceSamples, -1 outside the trim.
     index: Ints
+    #: The last line's neighbour is the first one (a seam).
     closed_u: bool
     closed_v: bool
+    #: Ends of the range that the lines were laid over: u least, u most, v least, v most. A closed range's second end is its
+    #: first one, a turn later.
     span: tuple[float, float, float, float]
 
 
@@ -257,8 +208,6 @@ class SurfaceSamples(Record):
         Pairs of samples next to each other, within a face and across smooth joints.
     unjudged : (n,) int32
         -1 where the geometry is good, else an index into `reasons`.
-    reasons : tuple of str
-    grids : tuple of FaceGrid
     max_gap : float
         Largest distance, mm, between grid neighbours and from a point of a sampled face, up to its border, to the nearest
         sample of that face, through space. Faces in `empty` have no part in it.

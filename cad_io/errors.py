@@ -2,17 +2,7 @@
 
 
 class CadIoError(Exception):
-    """Base of all errors of `cad_io`.
-
-    Parameters
-    ----------
-    cause : str
-        The fault and its remedy, one line.
-    file : str, optional
-        The file concerned.
-    face : str, optional
-        The face concerned, as `F12`.
-    """
+    """Base of all errors of `cad_io`: the fault and its remedy in one line, the file and the face (as `F12`) concerned."""
 
     def __init__(self, cause: str, *, file: str | None = None, face: str | None = None) -> None:
         self.cause, self.file, self.face = cause, file, face

@@ -11,13 +11,7 @@ LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
 
 
 def in_mm(unit: str) -> float:
-    """Length of a unit, mm.
-
-    Raises
-    ------
-    ReadError
-        No unit is called so.
-    """
+    """Length of a unit, mm; ReadError where no unit is called so."""
     if not isinstance(unit, str):
         raise ReadError(f"a length unit is one of {', '.join(UNITS)}, not a {type(unit).__name__}")
     if unit not in UNITS:
@@ -26,27 +20,18 @@ def in_mm(unit: str) -> float:
 
 
 class UnitReading(NamedTuple):
-    """A reading of a length unit that is in doubt is a record of what the file says.
+    """A reading of a length unit that is in doubt is a record of what the file says."""
 
-    Attributes
-    ----------
-    cause : str
-        `disagree`: it says two units, and the one that its flag names is taken. `scale`: its lengths are to be divided by a
-        scale, which was done. `not_sure`: it says nothing that is known, or a part of what it says is not.
-    stated : str
-        What it says.
-    taken : str
-        The unit that was taken.
-    unit : str
-        The unit that chooses the other reading; empty: none does.
-    times : float
-        A length by the other reading, as a multiple of what was taken.
-    """
-
+    #: `disagree`: it says two units, and the one that its flag names is taken. `scale`: its lengths are to be divided by a
+    #: scale, which was done. `not_sure`: it says nothing that is known, or a part of what it says is not.
     cause: Literal["disagree", "scale", "not_sure"]
+    #: What it says.
     stated: str
+    #: The unit that was taken.
     taken: str
+    #: The unit that chooses the other reading; empty: none does.
     unit: str = ""
+    #: A length by the other reading, as a multiple of what was taken.
     times: float = 1.0
 
     def text(self, size: tuple[float, float, float]) -> str:

@@ -1,22 +1,92 @@
-"""Is a face, moved, another face? Compare their borders both ways, the surfaces between these, and the sides that they enclose.
+"""Is a face, moved (rotated, mirrored or shifted), another face? Compare their borders both ways, the surfaces between these, and
+the sides that they enclose.
 
 No step asks the kernel to project a point: distances to a border are looked for along its own parameter curves, so the work is
 bounded by the number of segments. What is not understood is not equal.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import Any
 
 import numpy as np
+from OCP.TopAbs import TopAbs_REVERSED
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Record
+from cad_io.face.carrier import CLOSED, closed_form
 from cad_io.face.trim import Trim
 from cad_io.kernel import domain
-from cad_io.part.motion import Motion
+from cad_io.part.part import Part
 from cad_io.surface import Surface
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Motion(Record):
+    """A motion that keeps all distances: x becomes `linear @ x + shift`.
+
+    Examples
+    --------
+    >>> turn = Motion.turn(np.zeros(3), np.array([0.0, 0.0, 1.0]), np.pi / 2)
+    >>> turn.points(np.array([[1.0, 0.0, 5.0]])).round(9).tolist()
+    [[0.0, 1.0, 5.0]]
+    """
+
+    #: (3, 3); Orthogonal; of a mirror the determinant is -1.
+    linear: Floats
+    #: (3,); mm.
+    shift: Floats
+
+    @classmethod
+    def turn(cls, place: Floats, direction: Floats, angle: float) -> "Motion":
+        """A rotation about a unit direction through a place, by an angle, rad."""
+        x, y, z = direction
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        linear = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+        return cls(linear, place - linear @ place)
+
+    @classmethod
+    def mirror(cls, place: Floats, normal: Floats) -> "Motion":
+        """A mirror with a unit normal at a place."""
+        linear = np.eye(3) - 2.0 * np.outer(normal, normal)
+        return cls(linear, 2.0 * (place @ normal) * normal)
+
+    @classmethod
+    def translation(cls, shift: Floats) -> "Motion":
+        """A shift."""
+        return cls(np.eye(3), np.asarray(shift, float))
+
+    def points(self, point: Floats) -> Floats:
+        """Points (n, 3) moved."""
+        return np.asarray(point @ self.linear.T + self.shift)
+
+    def directions(self, vector: Floats) -> Floats:
+        """Vectors (n, 3) turned or mirrored."""
+        return np.asarray(vector @ self.linear.T)
+
+    def back(self, point: Floats) -> Floats:
+        """Points (n, 3) that are moved to these."""
+        return np.asarray((point - self.shift) @ self.linear)
+
+    @property
+    def axis(self) -> tuple[Floats, Floats] | None:
+        """A place and the unit direction about which a rotation turns; None for others, and for no motion at all."""
+        if np.linalg.det(self.linear) < 0.0:
+            return None
+        turn = self.linear - self.linear.T
+        if np.abs(self.linear - np.eye(3)).max() < 1e-9:
+            return None
+        direction = np.array([turn[2, 1], turn[0, 2], turn[1, 0]])
+        if np.linalg.norm(direction) < 1e-6:
+            # Half a turn: what is not mirrored is the axis.
+            values, vectors = np.linalg.eigh(0.5 * (self.linear + self.linear.T))
+            direction = vectors[:, int(values.argmax())]
+        direction = direction / np.linalg.norm(direction)
+        place = np.linalg.lstsq(np.eye(3) - self.linear, self.shift - (self.shift @ direction) * direction, rcond=1e-9)[0]
+        return place, direction
+
 
 #: Points of a segment that is the border itself, and of one that is a chord of it.
 _ALONG, _CHORD = 32, 4
@@ -34,41 +104,26 @@ _MEASURED = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class FaceShape:
-    """A face with its border, as it is compared.
-
-    Attributes
-    ----------
-    number : int
-    kind : str
-        Kind of the stored surface, as `FaceInfo.surface`.
-    area : float
-        mm2.
-    vector : (3,) float
-        Integral of `dS/du x dS/dv`, mm2.
-    side : float
-        +1 where the shape's own outer side is that of `dS/du x dS/dv`, else -1.
-    surface : Surface
-    trim : Trim
-    point : (k, 3) float
-        Points of the border, without seams, mm.
-    weight : (k,) float
-        The length that each stands for, mm.
-    segment : (k,) int64
-        Of the trim, on which each lies.
-    share : (k,) float
-        How far along its segment, 0 to 1.
-    """
+    """A face with its border, as it is compared."""
 
     number: int
+    #: Kind of the stored surface, as `FaceInfo.surface`.
     kind: str
+    #: mm2.
     area: float
+    #: (3,); Integral of `dS/du x dS/dv`, mm2.
     vector: Floats
+    #: +1 where the shape's own outer side is that of `dS/du x dS/dv`, else -1.
     side: float
     surface: Surface
     trim: Trim
+    #: (k, 3); Points of the border, without seams, mm.
     point: Floats
+    #: (k,); The length that each stands for, mm.
     weight: Floats
+    #: (k,); Of the trim, on which each lies.
     segment: Any
+    #: (k,); How far along its segment, 0 to 1.
     share: Floats
 
     @cached_property
@@ -77,7 +132,9 @@ class FaceShape:
         total = self.weight.sum()
         if total > 0.0:
             return np.asarray(self.weight @ self.point / total)
-        return np.asarray(self._lines_point.mean(axis=0))
+        u0, u1, v0, v1 = self.trim.box
+        u, v = (each.ravel() for each in np.meshgrid(np.linspace(u0, u1, 9)[:-1], np.linspace(v0, v1, 9)))
+        return np.asarray(self.surface.values(u, v).mean(axis=0))
 
     @cached_property
     def length(self) -> float:
@@ -101,12 +158,6 @@ class FaceShape:
         normal = np.cross(d[:, 1], d[:, 2])
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
-
-    @cached_property
-    def _lines_point(self) -> Floats:
-        u0, u1, v0, v1 = self.trim.box
-        u, v = (each.ravel() for each in np.meshgrid(np.linspace(u0, u1, 9)[:-1], np.linspace(v0, v1, 9)))
-        return self.surface.values(u, v)
 
     def _at(self, segment: Any, share: Floats) -> Floats:
         """Parameters (k, 2) on segments of the border."""
@@ -141,19 +192,12 @@ class FaceShape:
         return best
 
 
-def face_shape(number: int, kind: str, side: float, surface: Surface, trim: Trim, measured: Any, size: float) -> FaceShape | None:
-    """A face as it is compared; None where its border has no finite points, or too many.
-
-    Parameters
-    ----------
-    number, kind, side
-        As of `FaceShape`.
-    surface : Surface
-    trim : Trim
-    measured : Measure
-    size : float
-        Of the part, mm.
-    """
+def face_shape(part: Part, number: int, size: float) -> FaceShape | None:
+    """A face of a part of a size, mm, as it is compared; None where its border has no finite points, or too many."""
+    trim, measured = part.trim(number), part.measure(number)
+    if trim is None or measured is None:
+        return None
+    surface, side = part.surface(number), -1.0 if part.face(number).Orientation() == TopAbs_REVERSED else 1.0
     pieces = np.where(trim.exact, _ALONG, _CHORD)
     if pieces.sum() > _MOST:
         return None
@@ -167,17 +211,13 @@ def face_shape(number: int, kind: str, side: float, surface: Surface, trim: Trim
         return None
     # Where an edge is a single point, and where the face goes on behind a seam, there is no border.
     stays = weight > 1e-12 * size
-    stays[_seams(d[:, 0], segment, stays, _SEAM * size)] = False
-    border = d[stays, 0], weight[stays], segment[stays], share[stays]
-    return FaceShape(number, kind, measured.area, measured.vector, side, surface, trim, *border)
-
-
-def _seams(point: Floats, segment: Any, stays: Any, tolerance: float) -> Any:
-    """Numbers of the points that lie on two segments."""
     rows = np.flatnonzero(stays)
-    pairs = cKDTree(point[rows]).query_pairs(tolerance, output_type="ndarray") if len(rows) else np.zeros((0, 2), int)
-    pairs = rows[pairs]
-    return np.unique(pairs[segment[pairs[:, 0]] != segment[pairs[:, 1]]])
+    if len(rows):
+        pairs = rows[cKDTree(d[rows, 0]).query_pairs(_SEAM * size, output_type="ndarray")]
+        stays[pairs[segment[pairs[:, 0]] != segment[pairs[:, 1]]]] = False
+    border = d[stays, 0], weight[stays], segment[stays], share[stays]
+    kind = part.faces[number - 1].surface
+    return FaceShape(number, kind, measured.area, measured.vector, side, surface, trim, *border)
 
 
 def equal(one: FaceShape, other: FaceShape, motion: Motion, tolerance: float) -> bool:
@@ -219,7 +259,7 @@ def _same_surface(one: FaceShape, other: FaceShape, motion: Motion, tolerance: f
     if one.kind == "plane":
         # Its border lies in it.
         return len(one.point) >= 3
-    if one.kind in _CLOSED:
+    if one.kind in CLOSED:
         return _same_elementary(one, other, motion, tolerance)
     if one.number == other.number and _onto_itself(one, motion, tolerance):
         return True
@@ -250,26 +290,13 @@ def elementary(face: FaceShape) -> tuple[Floats, Floats, tuple[float, ...]]:
 
     Of a cone the point is the apex, the axis goes from there to the face, and the tangent of the half angle stands for a radius.
     """
-    adaptor = face.surface.adaptor
-    form: Any = {"cylinder": "Cylinder", "cone": "Cone", "sphere": "Sphere", "torus": "Torus"}[face.kind]
-    form = getattr(adaptor, form)()
-    if face.kind == "sphere":
-        return np.array(form.Location().Coord()), np.array((0.0, 0.0, 1.0)), (form.Radius(),)
-    axis = form.Axis()
-    place, direction = np.array(axis.Location().Coord()), np.array(axis.Direction().Coord())
-    if face.kind == "cylinder":
-        return place, direction, (form.Radius(),)
-    if face.kind == "torus":
-        return place, direction, (form.MajorRadius(), form.MinorRadius())
-    apex = np.array(form.Apex().Coord())
-    middle = face.centre - apex
-    if middle @ direction < 0.0:
+    place, direction, radii = closed_form(face.kind, face.surface.adaptor)
+    if face.kind != "cone":
+        return place, direction, radii
+    if (face.centre - place) @ direction < 0.0:
         direction = -direction
-    reach = float(np.linalg.norm(face.point - apex, axis=1).max(initial=0.0))
-    return apex, direction, (reach * abs(np.tan(form.SemiAngle())),)
-
-
-_CLOSED = ("cylinder", "cone", "sphere", "torus")
+    reach = float(np.linalg.norm(face.point - place, axis=1).max(initial=0.0))
+    return place, direction, (reach * abs(np.tan(radii[0])),)
 
 
 def axis_of(face: FaceShape) -> tuple[Floats, Floats] | None:

@@ -1,39 +1,145 @@
-"""A part: the kernel's shape, its faces by number, and what is known about each.
+"""A part: the kernel's shape, its faces by number, and what is known about each; why a face cannot be judged.
 
 Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_OtherSurface
+from OCP.BRepBndLib import BRepBndLib
+from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_OtherSurface, GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
-from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.errors import ReadError
-from cad_io.face.carrier import sided, stored_carrier
+from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
-from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
-from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.natural import ENDLESS, endless
-from cad_io.part.blends import Bare, blends
-from cad_io.part.boxes import box_of, face_box
-from cad_io.part.packing import PartContent, packed, unpacked
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
+from cad_io.kernel.shapes import ENDLESS, Node, PartContent, endless, packed, unpacked
+from cad_io.part.edges import blends
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
-from cad_io.part.unjudged import NO_AREA, UNMEASURED, why_unjudged
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
 from plan_cutters_base.copies import SideProcess
 from plan_cutters_base.user_files import fingerprint
+
+#: Reasons that others look at.
+NO_AREA = "has no area"
+ROUND_TWICE = "its border runs round it more than once"
+WRONG_WAY = "its border runs the wrong way round, and its area would be negative"
+CROSSES = "crosses itself (its curve of revolution crosses its axis)"
+#: Of faces with these neither the area nor what they enclose is to be believed.
+UNMEASURED = (ROUND_TWICE, WRONG_WAY, CROSSES)
+#: A border that encloses more than its box does by more than this share runs round it more than once.
+_ROUNDED = 1e-3
+_TURNED = (GeomAbs_SurfaceOfRevolution, GeomAbs_Torus, GeomAbs_Cone)
+#: Points along the curve, halvings of the interval in which it meets the axis, and the share of the face's size that is none.
+_POINTS, _HALVINGS, _NONE = 129, 50, 1e-6
+
+
+def why_unjudged(face: TopoDS_Face, surface: Surface, trim: Trim | None, measured: Measure | None, least: float) -> str | None:
+    """Why a face cannot be judged; None if it can. Without a trim it has no border; areas up to `least`, mm2, are none."""
+    if surface.adaptor.GetType() == GeomAbs_OtherSurface:
+        if BRep_Tool.Triangulation_s(face, TopLoc_Location()) is not None:
+            return "holds only triangles, no surface: export exact geometry (B-rep)"
+        return "has no surface that can be evaluated"
+    if not edges_of(face):
+        return ENDLESS if endless(face) else "has no edges"
+    if trim is None or measured is None:
+        return "its edges have no finite curve on the surface"
+    if not np.isfinite(measured.area):
+        return "its surface cannot be evaluated everywhere"
+    u0, u1, v0, v1 = trim.box
+    if trim.closed and trim.uv_area > (1 + _ROUNDED) * ((u1 - u0) * (v1 - v0)):
+        return ROUND_TWICE
+    if measured.area < -least:
+        return WRONG_WAY
+    if measured.area <= least:
+        return NO_AREA
+    return CROSSES if crosses_axis(surface, trim) else None
+
+
+def crosses_axis(surface: Surface, trim: Trim) -> bool:
+    """Whether the curve that makes a surface of revolution leads through the axis, within the border of a face.
+
+    `dS/du` is as long as the distance from the axis, square to the half plane of the curve, and changes its sign with the side of
+    the axis. A curve that ends on the axis, or passes it at a distance, does not cross it.
+    """
+    if surface.adaptor.GetType() not in _TURNED:
+        return False
+    u0, u1, low, high = trim.box
+
+    def across(v: Floats) -> Floats:
+        return surface.first(np.full(len(v), 0.5 * (u0 + u1)), v)[:, 1]
+
+    v = np.linspace(low, high, _POINTS)
+    along = across(v)
+    if not np.isfinite(along).all():
+        return False
+    away = np.linalg.norm(along, axis=1)
+    none = _NONE * max(float(away.max()), float(trim.scale[1] * (high - low)))
+    side = along @ along[int(away.argmax())]
+    side = np.sign(side) * (away > none)
+    known = np.flatnonzero(side)
+    return any(side[a] != side[b] and _least(across, along[a], v[a], v[b]) <= none for a, b in pairwise(known.tolist()))
+
+
+def _least(across: Callable[[Floats], Floats], reference: Floats, low: float, high: float) -> float:
+    """Distance from the axis where the curve changes sides between two parameters, by halving: `reference` is `dS/du` at the
+    lower one."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if float(across(np.array([middle]))[0] @ reference) > 0.0 else (low, middle)
+    return float(np.linalg.norm(across(np.array([low, high])), axis=1).min())
+
+
+def box_of(faces: list[TopoDS_Face], excluded: Container[int]) -> tuple[Floats, Floats]:
+    """Tight corners of the box around faces.
+
+    The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
+    box still sticks out of what is covered, the farthest first; of faces set aside it is not asked at all.
+    """
+    loose = np.array([face_box(face, tight=False) for face in faces])
+    usable = np.isfinite(loose).all(axis=(1, 2))
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if not usable.any():
+        return low, high
+    stick = np.concatenate(
+        [loose[:, 0] - np.nanmin(loose[usable, 0], axis=0), np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1
+    )
+    for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
+        if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
+            tight = loose[i] if i + 1 in excluded else face_box(faces[i], tight=True)
+            tight = tight if np.isfinite(tight).all() else loose[i]
+            low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
+    return low, high
+
+
+def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
+    """Corners (2, 3) of the box around a face, nan where it has none; not `tight`: quick, and somewhat wider."""
+    box = Bnd_Box()
+    with may_refuse():
+        if tight:
+            BRepBndLib.AddOptimal_s(face, box, False, False)
+        else:
+            BRepBndLib.Add_s(face, box, False)
+        if not (box.IsVoid() or box.IsOpen()):
+            box.SetGap(0.0)
+            return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+    return np.full((2, 3), np.nan)
+
 
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
 FARTHEST = 1e9
@@ -78,7 +184,6 @@ class Part:
 
     Attributes
     ----------
-    shape, file, sha256, unit, layers, tree, picked : as given
     references : tuple of (str, str or None)
         Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
     unit_readings : tuple of UnitReading
@@ -101,7 +206,6 @@ class Part:
         Faces that stand in no solid, joined where they touch.
     blends : frozenset of int
         Numbers of the faces that are fillets and rounds.
-    warnings : tuple of str
 
     Raises
     ------
@@ -172,11 +276,12 @@ class Part:
         )
 
     @classmethod
-    def of(cls, content: PartContent) -> "Part":
-        """Make a part from what a reader has found, by the names of the parameters, with its `references`."""
+    def of(cls, content: PartContent, excluded: Mapping[int, str] | None = None) -> "Part":
+        """Make a part from what a reader has found, by the names of the parameters and attributes, with faces set aside."""
         part = cls(**{name: value for name, value in content.items() if name not in ("references", "unit_readings", "encoding")})
         part.references, part.unit_readings = content.get("references", ()), content.get("unit_readings", ())
         part.encoding = content.get("encoding", "")
+        part.aside = excluded or {}
         return part
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -251,9 +356,7 @@ class Part:
 
     def without(self, excluded: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
-        part = Part.of(self._found())
-        part.aside = {**self.aside, **excluded}
-        return part
+        return Part.of(self._found(), {**self.aside, **excluded})
 
     def facts(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> dict[str, Any]:
         """Return what measuring tells, for `recall` in another process that reads the same part; arguments as of `measured`."""
@@ -275,8 +378,18 @@ class Part:
 
     @property
     def warnings(self) -> tuple[str, ...]:
+        warnings = [*self._said, *filter(None, [self.unit_doubt])]
+        if self.looseness > LOOSEST * max(self.size):
+            warnings.append(
+                f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
+                "may be missing: export it again with a smaller uncertainty"
+            )
         stopped = self.sewn.stopped if "sewn" in self.__dict__ else None
-        return (*self._said, *filter(None, [self.unit_doubt]), *self._loose_warnings(), *_sewing_warnings(stopped))
+        if stopped is not None:
+            warnings.append(
+                f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
+            )
+        return tuple(warnings)
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -347,42 +460,37 @@ class Part:
         with translated("joining faces", file=self.file):
             return sew(self.shape, self._faces, float(np.linalg.norm(self.size)))
 
+    def joined(self, number: int) -> TopoDS_Face:
+        """A face with the edges that it shares with faces that it touches, in a solid or sewn."""
+        return self.sewn.faces.get(number) or self.face(number)
+
     @cached_property
     def blends(self) -> frozenset[int]:
-        """Numbers of the faces that are fillets and rounds: see `cad_io.part.blends`."""
+        """Numbers of the faces that are fillets and rounds: see `cad_io.part.edges`."""
         with translated("looking for blends", file=self.file):
-            joined, trim, surface = self.sewn.faces, self.trim, self.surface
-            faces = [
-                Bare(
-                    f,
-                    joined.get(f.number) or self.face(f.number),
-                    trim(f.number),
-                    None if f.number in self.aside else surface(f.number),
-                )
-                for f in self.faces
-            ]
-            return blends(faces, float(np.linalg.norm(self.size)))
+            return blends(self)
 
     @cached_property
     def neighbours(self) -> tuple[tuple[int, ...], ...]:
         """Numbers of the faces across each face's edges; entry i is of face number i + 1."""
-        return neighbours([self.sewn.faces.get(i + 1, face) for i, face in enumerate(self._faces)])
+        return neighbours([self.joined(n) for n in range(1, len(self._faces) + 1)])
 
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""
         return explore(self.shape, TopAbs_SOLID)
 
+    def members(self, shape: TopoDS_Shape) -> list[tuple[int, TopoDS_Face]]:
+        """Faces of a solid or a shell of the part, as they stand there, each with its number; 0 for none of the part's."""
+        return [(self._numbers.FindIndex(face), TopoDS.Face_s(face)) for face in explore(shape, TopAbs_FACE)]
+
+    @cached_property
+    def _numbers(self) -> TopTools_IndexedMapOfShape:
+        return shape_map(self.shape, TopAbs_FACE)
+
     @property
     def unit_doubt(self) -> str:
         """Why the length unit is doubtful, as `warnings` has it; empty where it is not."""
         return unit_doubt(self.size, self.unit_readings)
-
-    def _loose_warnings(self) -> Iterator[str]:
-        if self.looseness > LOOSEST * max(self.size):
-            yield (
-                f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
-                "may be missing: export it again with a smaller uncertainty"
-            )
 
     def _checked(self, number: int) -> int:
         if not 1 <= number <= len(self._faces):
@@ -425,11 +533,4 @@ class Part:
 
 def _again(content: PartContent, excluded: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    part = Part.of(unpacked(content))
-    part.aside = excluded
-    return part
-
-
-def _sewing_warnings(stopped: str | None) -> Iterator[str]:
-    if stopped is not None:
-        yield f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
+    return Part.of(unpacked(content), excluded)

@@ -1,28 +1,27 @@
-"""Patterns: motions that carry the whole part, or some of its faces, onto equal faces.
+"""Patterns: motions that carry a part, or some faces, onto equal faces; and bodies and faces that lie where earlier ones lie.
 
 Candidates come from what any motion keeps: the middles of borders, their lengths and second moments. Each candidate is then
-compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none. What
-follows from it for verdicts is `docs/operations_proof.md`, lemma P2.
-A motion of the whole part keeps the middle of all borders and their second moment: few axes and planes can be its own.
+compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none, and
+a copy that is nearly there, or mirrored, is another body, and so is one that shares some of its faces only. What follows from
+it for verdicts is `docs/operations_proof.md`, lemma P2. A motion of the whole part keeps the middle of all borders and their
+second moment: few axes and planes can be its own.
 """
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.TopAbs import TopAbs_REVERSED
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Record
-from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
-from cad_io.part.motion import Motion
-from cad_io.part.part import Part
-from cad_io.part.unjudged import NO_AREA
+from cad_io.graphs import connected
+from cad_io.kernel import explore
+from cad_io.part.equal_faces import FaceShape, Motion, axis_of, equal, face_shape
+from cad_io.part.part import NO_AREA, Part
 
 Kind = Literal["rotation", "mirror", "shift"]
 Which = NDArray[np.int64]
@@ -38,58 +37,36 @@ _LEAST_COPIES = 3
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pattern(Record):
-    """Faces that are equal under motions.
+    """Faces that are equal under motions."""
 
-    Attributes
-    ----------
-    kind : str
-        `rotation`, `mirror` or `shift`.
-    order : int
-        How many copies there are: the whole turn over the angle of a rotation, 2 of a mirror.
-    whole : bool
-        Whether each motion carries each face of the part onto a face of it.
-    motions : tuple of Motion
-        Of the first copy to each other one, `order` - 1.
-    images : tuple of mapping
-        Of each motion: which face goes onto which, by their numbers; all faces of a whole part, else those of the first copy.
-    faces : tuple of tuple of int
-        By class of equal faces, the first copy's first; of a whole part without faces that go onto themselves.
-    """
-
+    #: `rotation`, `mirror` or `shift`.
     kind: Kind
+    #: How many copies there are: the whole turn over the angle of a rotation, 2 of a mirror.
     order: int
+    #: Whether each motion carries each face of the part onto a face of it.
     whole: bool
+    #: Of the first copy to each other one, `order` - 1.
     motions: tuple[Motion, ...]
+    #: Of each motion: which face goes onto which, by their numbers; all faces of a whole part, else those of the first copy.
     images: tuple[Mapping[int, int], ...]
+    #: By class of equal faces, the first copy's first; of a whole part without faces that go onto themselves.
     faces: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class _Faces:
-    """All faces of a part that can be compared.
-
-    Attributes
-    ----------
-    shape : list of FaceShape
-    kind : (n,) int64
-        Class of each: those of one class are alike as far as area, border and its moments say.
-    centre : (n, 3) float
-    size : float
-        Of the part, mm.
-    whole : bool
-        Whether these are all faces of the part.
-    """
+    """All faces of a part that can be compared."""
 
     shape: list[FaceShape]
+    #: (n,); Class of each: those of one class are alike as far as area, border and its moments say.
     kind: Which
+    #: (n, 3)
     centre: Floats
+    #: Of the part, mm.
     size: float
+    #: Whether these are all faces of the part.
     whole: bool
     compared: list[int]
-
-    @property
-    def tolerance(self) -> float:
-        return EXACT * self.size
 
     @property
     def near(self) -> float:
@@ -106,7 +83,7 @@ class _Faces:
         self.compared[0] += 1
         if self.compared[0] > _MOST_COMPARED:
             return False
-        return equal(self.shape[one], self.shape[other], motion, self.tolerance)
+        return equal(self.shape[one], self.shape[other], motion, EXACT * self.size)
 
 
 def patterns(part: Part, at: Callable[[int], None] = lambda face: None, without: Collection[int] = ()) -> tuple[Pattern, ...]:
@@ -134,35 +111,21 @@ def _faces_of(part: Part, at: Callable[[int], None], without: Collection[int]) -
     shapes = list[FaceShape]()
     for face in judged:
         at(face.number)
-        trim, measured = part.trim(face.number), part.measure(face.number)
-        if trim is None or measured is None:
-            continue
-        side = -1.0 if part.face(face.number).Orientation() == TopAbs_REVERSED else 1.0
-        shape = face_shape(face.number, face.surface, side, part.surface(face.number), trim, measured, size)
+        shape = face_shape(part, face.number, size)
         if shape is not None:
             shapes.append(shape)
     whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in there)
-    centre = np.array([each.centre for each in shapes]).reshape(-1, 3)
-    return _Faces(shapes, _classes(shapes, size), centre, size, whole, [0])
-
-
-def _classes(shapes: Sequence[FaceShape], size: float) -> Which:
-    """Class of each face, by its kind, area, border length and second moments."""
     if not shapes:
-        return np.zeros(0, np.int64)
+        return None
+    # Class of each face, by its kind, area, border length and second moments.
     kinds = {kind: k for k, kind in enumerate(sorted({each.kind for each in shapes}))}
     # In lengths, so that one distance tells; kinds are far apart.
     feature = np.array([
-        [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length, *_spread(each)] for each in shapes
+        [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length,
+         *np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(each.tensor))).tolist()] for each in shapes
     ])  # fmt: skip
-    pairs = cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")
-    n = len(shapes)
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
-
-
-def _spread(shape: FaceShape) -> list[float]:
-    return np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(shape.tensor))).tolist()
+    kind = connected(len(shapes), cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")).astype(np.int64)
+    return _Faces(shapes, kind, np.array([each.centre for each in shapes]), size, whole, [0])
 
 
 # Motions of the whole part.
@@ -205,10 +168,19 @@ def _axes(faces: _Faces, middle: Floats, own: Floats) -> Iterator[tuple[Floats, 
             spread, across = np.linalg.svd(faces.centre[rows] - faces.centre[rows].mean(axis=0))[1:]
             if spread[2] <= faces.near and spread[1] > faces.near:
                 directions.append((middle, across[2]))
-    directions += [(middle, each) for each in own]
+    yield from _each_once([*directions, *((middle, each) for each in own)])
+
+
+def _signed(direction: Floats) -> Floats:
+    """A direction, or its opposite: its longest component is positive."""
+    return np.asarray(direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0))
+
+
+def _each_once(axes: Iterable[tuple[Floats, Floats]]) -> Iterator[tuple[Floats, Floats]]:
+    """Axes without those that have the direction of an earlier one."""
     tried = np.zeros((0, 3))
-    for place, direction in directions:
-        direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+    for place, direction in axes:
+        direction = _signed(direction)
         if not (np.linalg.norm(tried - direction, axis=1) < 1e-5).any():
             tried = np.concatenate([tried, direction[None]])
             yield place, direction
@@ -295,15 +267,8 @@ def _normals(faces: _Faces, middle: Floats, own: Floats, axes: Sequence[tuple[Fl
         if np.linalg.norm(away) > faces.near:
             some.append(away / np.linalg.norm(away))
     some += [np.cross(direction, faces.centre[rows[0]] - middle) for _, direction in axes if len(rows)]
-    tried = np.zeros((0, 3))
-    for normal in some:
-        length = np.linalg.norm(normal)
-        if length <= 1e-9:
-            continue
-        normal = normal / length * (1.0 if normal[np.abs(normal).argmax()] > 0.0 else -1.0)
-        if not (np.linalg.norm(tried - normal, axis=1) < 1e-5).any():
-            tried = np.concatenate([tried, normal[None]])
-            yield normal
+    units = ((middle, each / length) for each in some if (length := np.linalg.norm(each)) > 1e-9)
+    yield from (normal for _, normal in _each_once(units))
 
 
 # Motions of some faces.
@@ -345,7 +310,7 @@ def _ring(faces: _Faces, rows: Which) -> Iterator[tuple[str, list[Motion], Which
     radius = np.linalg.norm(away, axis=1)
     if np.abs(away @ direction).max() > faces.near or np.ptp(radius) > faces.near or radius.min() <= faces.near:
         return
-    direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+    direction = _signed(direction)
     x = away[0] / radius[0]
     angle = np.remainder(np.arctan2(away @ np.cross(direction, x), away @ x), 2.0 * math.pi)
     order = np.argsort(np.where(angle > 2.0 * math.pi - 1e-6, 0.0, angle), kind="stable")
@@ -375,3 +340,152 @@ def _parallel(one: FaceShape, other: FaceShape, near: float) -> bool:
     if np.abs(one.tensor - other.tensor).max() > near * one.length:
         return False
     return bool(np.abs(one.side * one.vector - other.side * other.vector).max() <= 1e-3 * one.area)
+
+
+#: Middles of boxes, and roots of areas, of faces that may be one differ by less than this share of the part's size: the smaller
+#: ones for parts of which too many faces lie so near.
+_NEAR_SHARES = (1e-3, 1e-4, 1e-5)
+#: Pairs of faces that are looked at, at most, to a face.
+_MOST_PAIRS = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """Solids, or faces, that lie in one place."""
+
+    #: Face numbers of each, in the order of the part; of all the same face is at the same place.
+    faces: tuple[tuple[int, ...], ...]
+    #: Numbers of the solids in the part, from 1, and 0 of a shell; empty of loose faces and of faces that one solid has twice.
+    bodies: tuple[int, ...] = ()
+
+
+def repeats(part: Part) -> tuple[Repeat, ...]:
+    """Find what a part has more than once in one place; it is looked for once."""
+    if part.repeats is None:
+        part.repeats = tuple(_each(part))
+    return part.repeats
+
+
+def repeated_faces(part: Part, ignored: Collection[int] = ()) -> dict[int, int]:
+    """Which faces repeat others and are left out, each with the face that stands for it.
+
+    Of what lies in one place that stays of which no face is ignored, the first one; where some of each is ignored, all stay as
+    they are.
+    """
+    result: dict[int, int] = {}
+    for each in repeats(part):
+        whole = [faces for faces in each.faces if not set(faces) & set(ignored)]
+        if whole:
+            others = [faces for faces in each.faces if faces != whole[0]]
+            result |= {n: stays for faces in others for n, stays in zip(faces, whole[0], strict=True) if n != stays}
+    # Where a face that stands for another is left out itself, what stands for that.
+    for number, stays in result.items():
+        while stays in result:
+            stays = result[stays]
+        result[number] = stays
+    return {number: stays for number, stays in result.items() if number not in ignored}
+
+
+def doubled(part: Part) -> Mapping[int, int]:
+    """Loose faces, and faces that one solid has twice, that repeat an earlier one: by number, which time it is, from 1."""
+    return {faces[0]: nth for each in repeats(part) if not each.bodies for nth, faces in enumerate(each.faces) if nth}
+
+
+def _each(part: Part) -> Iterator[Repeat]:
+    compared = _Compared(part)
+    if not compared.near:
+        return
+    # A solid may stand there once more as its shell.
+    solids, shells = (
+        [tuple(dict.fromkeys(n for n, _ in part.members(each) if n)) for each in shapes]
+        for shapes in (part.solid_shapes(), explore(part.shape, TopAbs_SHELL, TopAbs_SOLID))
+    )
+    for faces in solids:
+        yield from _faces(compared, faces, sided=True)
+    groups: list[list[tuple[int, tuple[int, ...]]]] = []
+    for number, faces in [*enumerate(solids, 1), *((0, each) for each in shells)]:
+        for group in groups:
+            _, first = group[0]
+            there = compared.onto(first, faces)
+            if there is not None and first != there:
+                group.append((number, there))
+                break
+        else:
+            if number:
+                groups.append([(number, faces)])
+    for group in groups:
+        if len(group) > 1:
+            yield Repeat(tuple(faces for _, faces in group), tuple(number for number, _ in group))
+    in_solids = {n for faces in solids for n in faces}
+    yield from _faces(compared, [f.number for f in part.faces if f.number not in in_solids], sided=False)
+
+
+def _faces(compared: "_Compared", numbers: Sequence[int], *, sided: bool) -> Iterator[Repeat]:
+    """Faces of a set that lie where others of it lie; `sided`: only with the same outer side."""
+    groups: dict[int, list[int]] = {}
+    taken: set[int] = set()
+    mine = set(numbers)
+    for first in sorted(mine):
+        if first in taken:
+            continue
+        more = [n for n in compared.near.get(first, ()) if n > first and n in mine and compared.same(first, n, sided=sided)]
+        groups[first] = [first, *more]
+        taken.update(more)
+    for group in groups.values():
+        if len(group) > 1:
+            yield Repeat(tuple((n,) for n in group))
+
+
+@dataclass(slots=True)
+class _Compared:
+    """The faces of a part as they are compared, each made when first asked for."""
+
+    part: Part
+    shapes: dict[int, FaceShape | None] = field(default_factory=dict)
+    near: dict[int, list[int]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        part, self.near = self.part, {}
+        usable = [f for f in part.faces if f.area > 0.0 and part.centre(f.number) is not None]
+        feature = np.array([[*(part.centre(f.number) or ()), np.sqrt(f.area)] for f in usable]).reshape(-1, 4)
+        if len(usable) < 2 or not np.isfinite(feature).all():
+            return
+        tree, most = cKDTree(feature), (1 + 2 * _MOST_PAIRS) * len(usable)
+        near = next((each * self.size for each in _NEAR_SHARES if tree.count_neighbors(tree, each * self.size) <= most), 0.0)
+        for i, j in sorted(tree.query_pairs(near)):
+            a, b = usable[i].number, usable[j].number
+            self.near.setdefault(a, []).append(b)
+            self.near.setdefault(b, []).append(a)
+
+    @property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.part.size))
+
+    def onto(self, faces: Sequence[int], others: Sequence[int]) -> tuple[int, ...] | None:
+        """The faces of another solid in the order of those of one in whose place it lies; None where it does not."""
+        remaining = set(others)
+        if len(faces) != len(others):
+            return None
+        there: list[int] = []
+        for n in faces:
+            same = n if n in remaining else next((m for m in self.near.get(n, ()) if m in remaining and self.same(n, m)), None)
+            if same is None:
+                return None
+            remaining.discard(same)
+            there.append(same)
+        return tuple(there)
+
+    def same(self, one: int, other: int, *, sided: bool = False) -> bool:
+        """Whether two faces are one; `sided`: with the same outer side, too."""
+        a, b = self._shape(one), self._shape(other)
+        if a is None or b is None:
+            return False
+        return any(
+            equal(a, replace(b, side=way * b.side), Motion.translation(np.zeros(3)), EXACT * self.size)
+            for way in ((1.0,) if sided else (1.0, -1.0))
+        )
+
+    def _shape(self, number: int) -> FaceShape | None:
+        if number not in self.shapes:
+            self.shapes[number] = face_shape(self.part, number, self.size)
+        return self.shapes[number]

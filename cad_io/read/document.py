@@ -17,7 +17,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, 
 
 from cad_io.arrays import LostFace
 from cad_io.kernel import explore, shape_map
-from cad_io.kernel.assembly import Node
+from cad_io.kernel.shapes import Node
 from cad_io.units import UnitReading
 
 Colour = tuple[float, float, float]
@@ -52,7 +52,8 @@ _NONE_DROPPED = DroppedNames()
 
 def add_attributes(document: TDocStd_Document, result: Read, dropped: DroppedNames = _NONE_DROPPED) -> None:
     """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
-    _Walk(result, dropped).roots(roots(document))
+    walk, start = _Walk(result, dropped), _Inherited(TopLoc_Location())
+    result.tree = tuple(walk.node(label, start) for label in each(roots(document)))
 
 
 def roots(document: TDocStd_Document) -> TDF_LabelSequence:
@@ -104,12 +105,8 @@ class _Walk(FaceMarks):
 
     def __init__(self, result: Read, dropped: DroppedNames) -> None:
         super().__init__(result.shape)
-        self.result, self.dropped = result, dropped
+        self.dropped = dropped
         self.names, self.colours, self.layers = result.names, result.colours, result.layers
-
-    def roots(self, labels: TDF_LabelSequence) -> None:
-        start = _Inherited(TopLoc_Location())
-        self.result.tree = tuple(self.node(label, start) for label in each(labels))
 
     def node(self, label: TDF_Label, inherited: "_Inherited") -> Node:
         instance, place = "", TopLoc_Location()

@@ -1,9 +1,14 @@
-"""Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects."""
+"""Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects.
+
+A copy of the process may read, so that a crash or a hang of the kernel becomes an error like any other. Files that a STEP file
+refers to are looked at each by itself: the kernel leaves out in silence what it cannot read of them.
+"""
 
 import math
 import os
+import pickle
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from numbers import Real
 from typing import Any
@@ -15,24 +20,148 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
 from cad_io.arrays import LostFace
-from cad_io.errors import ReadError
+from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, silence, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.components import unwrapped
-from cad_io.kernel.natural import ENDLESS, bound_naturally, endless
+from cad_io.kernel.shapes import ENDLESS, Node, PartContent, bound_naturally, comes_back, endless, packed, unpacked, unwrapped
 from cad_io.part import Part
-from cad_io.part.packing import comes_back, packed, unpacked
 from cad_io.read import iges, step
 from cad_io.read.document import Read
-from cad_io.read.isolation import Crashed, PartContent
-from cad_io.read.isolation import guarded as in_copy
 from cad_io.read.objects import from_object
-from cad_io.read.references import followed, in_folder_of, names
-from cad_io.read.referred import Referred, referred
-from cad_io.read.sniff import load
+from cad_io.read.sniff import load, sniff
+from cad_io.read.step_text import DOCUMENTS, followed, in_folder_of, names
 from cad_io.units import in_mm
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
-from plan_cutters_base.user_files import checksum, checksums
+from plan_cutters_base.user_files import OutsideError, checksum, checksums
+
+
+class Crashed(ReadError):
+    """The kernel crashed."""
+
+
+def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -> PartContent:
+    """Result of `find()`, which may crash or hang, in a forked copy of this process; where the system cannot fork (Windows),
+    here.
+
+    Raises ReadError of what `find` raised, or where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
+    file.
+    """
+
+    def answered() -> bytes:
+        try:
+            return pickle.dumps(packed(find()))
+        except CadIoError as error:
+            return pickle.dumps({"error": (error.cause, error.file, error.face)})
+
+    try:
+        answer = pickle.loads(limited(answered, timeout))
+    except TimeLimit:
+        raise ReadError(
+            f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
+        ) from None
+    except ChildDied as died:
+        raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
+    if "error" in answer:
+        cause, where, face = answer["error"]
+        raise ReadError(cause, file=where, face=face)
+    with translated("taking over what it made of the file", error=ReadError, file=file):
+        return unpacked(answer)
+
+
+@dataclass
+class Referred:
+    """A record of this kind says what the files hold that a STEP file refers to, and those that these refer to."""
+
+    #: Path -> how many faces the file itself has.
+    faces: dict[str, int] = field(default_factory=dict)
+    #: What is missing of them: whole files, and faces.
+    lost: list[LostFace] = field(default_factory=list)
+    #: The kernel crashes or hangs at one of them, or may do so.
+    risky: bool = False
+
+    @property
+    def foreign(self) -> int:
+        """Faces of all of them."""
+        return sum(self.faces.values())
+
+    def add(self, other: "Referred") -> None:
+        """Take over what another one has."""
+        self.faces |= other.faces
+        self.lost += [each for each in other.lost if each not in self.lost]
+        self.risky |= other.risky
+
+
+def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()) -> Referred:
+    """Look at what a STEP file, of which the content is given, refers to; reading one of the files may take so many seconds.
+
+    above: files that refer to this one, without links. Raises ReadError where a file refers to itself, or to one that may not be
+    read.
+    """
+    result = Referred()
+    above = (*above, os.path.realpath(file))
+    for name in names(data):
+        path = os.path.join(os.path.dirname(file), name)
+        if os.path.realpath(path) in above:
+            raise ReadError(f"refers to {name}, which refers to it again: save the assembly as one file", file=file)
+        try:
+            content = in_folder_of(file)(name)
+        except OutsideError as error:
+            raise ReadError(f"refers to {name}: {error.strerror}", file=file) from None
+        except ReadError as error:
+            raise ReadError(error.cause, file=file) from None
+        if path in result.faces:
+            continue
+        if content is None:
+            _miss(result, name, "the file refers to it, and it cannot be read: put it into the folder of the file")
+            continue
+        try:
+            kind = sniff(content, name)
+        except ReadError:
+            kind = ""
+        if kind != "step":
+            _miss(result, name, "the file refers to it, and it is no STEP file: only these are followed")
+            continue
+        below = referred(path, content, timeout, above)
+        try:
+            count, unread, risky = _alone(path, content, below.foreign, timeout)
+        except ReadError as error:
+            _miss(result, name, f"the file refers to it, and it {error.cause}")
+            continue
+        result.add(below)
+        result.add(
+            Referred({path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky)
+        )
+    return result
+
+
+def _miss(referred: Referred, name: str, why: str) -> None:
+    if not name.lower().endswith(DOCUMENTS):
+        referred.lost.append(LostFace("", name, why))
+
+
+def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:
+    """How many faces a file itself has, what is missing there, and whether it is risky; in a copy of the process."""
+
+    def look() -> bytes:
+        try:
+            with translated("reading the file", error=ReadError, file=file):
+                loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
+                read = loaded.transfer()
+                count = step.distinct_faces(read.shape) - foreign
+                return pickle.dumps((count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky))
+        except ReadError as error:
+            return pickle.dumps(error.cause)
+
+    try:
+        answer = pickle.loads(limited(look, timeout))
+    except TimeLimit:
+        raise ReadError(f"is not read within {timeout:g} s", file=file) from None
+    except ChildDied as died:
+        raise ReadError(f"cannot be read by the CAD kernel ({died})", file=file) from None
+    if isinstance(answer, str):
+        raise ReadError(answer, file=file)
+    return answer
+
 
 Loaded = step.Loaded | iges.Loaded
 _LOADERS: dict[str, Callable[..., Loaded]] = {"step": step.Loaded, "iges": iges.Loaded}
@@ -180,17 +309,7 @@ def _content(read: Read, others: Referred | None = None) -> PartContent:
     for n, face in enumerate(faces(read.shape), 1):
         if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:
             read.lost.append(LostFace("", read.names.get(n, ""), f"it {ENDLESS if endless(face) else 'has no edges'}", n))
-    return {
-        "shape": read.shape,
-        "names": read.names,
-        "colours": read.colours,
-        "layers": read.layers,
-        "tree": read.tree,
-        "warnings": tuple(read.warnings),
-        "lost": tuple(read.lost),
-        "unit_readings": read.unit_readings,
-        "encoding": read.encoding,
-    }
+    return vars(read) | {"warnings": tuple(read.warnings), "lost": tuple(read.lost)}
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

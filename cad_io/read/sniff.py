@@ -31,12 +31,8 @@ _OTHERS = (
 
 
 def load(file: str) -> tuple[str, bytes]:
-    """Kind, as `sniff` tells it, and content of a CAD file.
-
-    Raises
-    ------
-    ReadError
-        There is no such file, or it is not one that can be read.
+    """Kind, as `sniff` tells it, and content of a CAD file; ReadError where there is no such file, or it is not one that can be
+    read.
     """
     with _opened(file) as stream:
         data = stream.read(_HEAD)
@@ -76,19 +72,9 @@ def _opened(file: str) -> Iterator[BinaryIO]:
 
 
 def sniff(data: bytes, file: str) -> str:
-    """Kind of a CAD file: `step`, `iges`, `brep` or `binary brep`.
+    """Kind of a CAD file, by its content or at least the first 4096 bytes: `step`, `iges`, `brep` or `binary brep`.
 
-    Parameters
-    ----------
-    data : bytes
-        Its content, or at least the first 4096 bytes.
-    file : str
-        Named in errors.
-
-    Raises
-    ------
-    ReadError
-        Empty, or not a CAD file that can be read.
+    Raises ReadError, which names the file, where it is empty, or not a CAD file that can be read.
     """
     start = data[:_HEAD]
     if not start.strip():

@@ -33,12 +33,11 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
-from cad_io.kernel.components import as_one, unwrapped
+from cad_io.kernel.shapes import as_one, unwrapped
 from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
-from cad_io.read.face_comparison import open_border
-from cad_io.read.faults import Model, type_of
-from cad_io.read.references import names as referred_names
+from cad_io.read.faults import Model, open_border, type_of
 from cad_io.read.step_text import adopted, readable
+from cad_io.read.step_text import names as referred_names
 from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import UNITS, UnitReading, in_mm
 from plan_cutters_base import user_files as files
@@ -68,33 +67,13 @@ class NothingError(ReadError):
 class Loaded:
     """A STEP file whose entities are loaded, but not yet made into shapes.
 
-    Parameters
-    ----------
-    file : str
-    data : bytes
-        Its content, to count faces in.
-    unit : str, optional
-        Length unit to take instead of the file's, one of `units.UNITS`.
-    names : bool
-        Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
-    careful : bool
-        Leave out every face that uses something faulty.
-    adopt : bool
-        Read solids to which no product leads, as where the file is read for itself.
-    foreign : int
-        Faces that come from files which this one refers to: they are none of its own.
+    data: the content of the file, to count faces in. unit: length unit to take instead of the file's, one of `units.UNITS`.
+    names: ask the kernel for names, colours and layers, on which it crashes in some faulty files. careful: leave out every face
+    that uses something faulty. adopt: read solids to which no product leads, as where the file is read for itself. foreign: faces
+    that come from files which this one refers to, none of its own. `risky`: the transfer may crash or hang, to be run in a copy
+    of the process. `alone`: what it becomes follows from its own bytes, and not from what stands beside it.
 
-    Attributes
-    ----------
-    risky : bool
-        The transfer may crash or hang: to be run in a copy of the process.
-    alone : bool
-        What it becomes follows from its own bytes, and not from what stands beside it.
-
-    Raises
-    ------
-    ReadError
-        Cut off, not STEP, or known to hang the transfer.
+    Raises ReadError where it is cut off, not STEP, or known to hang the transfer.
     """
 
     def __init__(
@@ -139,17 +118,9 @@ class Loaded:
         self._refuse_unnoticed()
 
     def transfer(self, *, traced: bool = False) -> Read:
-        """Make the shape.
+        """Make the shape; `traced`: find out which face was which entity, too; a file with faults is traced in any case.
 
-        Parameters
-        ----------
-        traced : bool
-            Find out which face was which entity, too; a file with faults is traced in any case.
-
-        Raises
-        ------
-        ReadError
-            It holds no face that can be read.
+        Raises ReadError where it holds no face that can be read.
         """
         traced = traced or bool(self.faults)
         real = self._mark() if traced else {}
@@ -169,10 +140,15 @@ class Loaded:
             return self._again().transfer(traced=True)
         shapes = faces(result.shape)
         numbers = self._unmark(result, shapes, real)
-        unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, self._scale())
+        scale = in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
+        unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, scale)
         result.lost = unread.found()
-        # Faces that the kernel did not even load as such, or that went unseen otherwise.
-        nameless = self._no_faces()[sum(each.face is None for each in result.lost) :]
+        # Faces that the kernel did not even load as such: shells list them, and they are missing in the text, or of a type
+        # unknown to it.
+        kinds = dict(_STATEMENT.findall(self.data))
+        named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
+        none = [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
+        nameless = none[sum(each.face is None for each in result.lost) :]
         result.lost += [LostFace(ident, "", "a shell names it, and no face can be read there") for ident in nameless]
         gone = len({each.entity for each in result.lost if each.face is None})
         result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - made - gone)
@@ -305,19 +281,10 @@ class Loaded:
                 result.names.update(dict.fromkeys(numbers.get(number, ()), name))
         return dict(numbers)
 
-    def _no_faces(self) -> list[str]:
-        """Return entities that shells list as faces, but that are missing in the text or of a type unknown to the reader."""
-        kinds = dict(_STATEMENT.findall(self.data))
-        named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
-        return [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
-
     def _idents(self) -> dict[int, str]:
         """Return the names (`#12`) of the entities in the file, by number. The kernel knows them, but does not give them."""
         idents = {i: ident.decode() for i, ident in enumerate(_IDENTS.findall(self.data), 1)}
         return idents if len(idents) == len(self.model.entities) else {}
-
-    def _scale(self) -> float:
-        return in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
 
     def _warnings(self, lost: UnreadFaces) -> Iterator[str]:
         felt = {fault for each in lost.felt.values() for fault in each}

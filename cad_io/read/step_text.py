@@ -1,9 +1,256 @@
-"""STEP files that the kernel could not read as they stand: names in older encodings, and solids that no product leads to."""
+"""The text of a STEP file, without the CAD kernel: files that it refers to, names in older encodings, solids without a product.
 
+Whoever keeps or sends a part knows so what belongs to it. Names in files are neither ASCII nor UTF-8 where older programs write
+the encoding of their country. Files do not say it. So each encoding of `CANDIDATES` is tried, in this order, and scored by how
+plausible the letters are that come out; the first one with the highest score is taken for the whole file. No name is ever
+refused: bytes that the encoding does not know are read as Latin-1.
+"""
+
+import os
 import re
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-from cad_io.read.encodings import CALLED, decoded, encoding_of, is_plain
+from cad_io.errors import ReadError
+from plan_cutters_base import user_files as files
+
+#: Python's names of the encodings that are tried, the first of equals is taken.
+CANDIDATES = ("gb18030", "cp932", "big5", "cp949", "cp1252", "cp1251")
+#: What people call them.
+CALLED = {
+    "gb18030": "GB18030", "cp932": "Shift-JIS", "big5": "Big5", "cp949": "EUC-KR", "cp1251": "Windows-1251",
+    "cp1252": "Windows-1252",
+}  # fmt: skip
+_HIGH = re.compile(rb"[\x80-\xff]")
+_WORD = re.compile(r"[^\W\d_]+")
+#: Letters that are frequent in the names of parts.
+_FREQUENT = {
+    "gb18030": (
+        "零件装配体部图草拉伸切除轴孔板座盖支架螺栓母钉垫片齿轮箱壳底上下左右前后中心内外圆角倒面凸台基准实模"
+        "型机床刀具夹头杆销键槽圈套筒管接法兰阀泵叶盘电缸活塞连油封环导轨滑块组合副本总成的不镜像阵列旋转扫描"
+        "放样控制段舱测试新建特征钢铝铸固定可动移减速器弹簧涡"
+    ),
+    "cp932": (
+        "部品組立図軸穴板受台座蓋取付金具歯車箱底上下左右前後中心内外円角面基準型機械治工頭棒溝輪管弁翼盤継手"
+        "固定可動本体新規押出回転羽根減速"
+    ),
+    "big5": (
+        "零件裝配體組圖軸孔板座蓋支架螺栓母釘墊片齒輪箱殼底上下左右前後中心內外圓角面凸台基準實模型機床刀具夾"
+        "頭桿銷鍵槽圈套筒管接閥泵葉盤電缸活塞連油封環導軌滑塊合副本總成的鏡像陣列旋轉掃描控制新建特徵鋼鋁鑄固"
+        "定可動移減速器彈簧渦法蘭絲帽"
+    ),
+    "cp949": (
+        "부품하우징축기어판브라켓베링조립덮개임펠러볼트너핀홀더커버바디상좌전후측면본체플렌지샤프스실린블록레"
+        "일가이드척금형몸통휠캡밸펌모터로암케소단자대중심내외경구멍고정회동센서다각날손잡나사와셔크노즐"
+    ),
+}
+#: What a letter of a kind counts.
+_SURE, _LIKELY, _ODD = 1.0, 0.6, 0.1
+
+
+def typed(text: str, called: str) -> str:
+    r"""A name that a person gives as the bytes or the letters that its file shows elsewhere, as it is read here.
+
+    `called` is as of `CALLED`. A text that cannot be such bytes stays as it is.
+
+    >>> typed("\udcb3\udcdd\udcc2\udcd6", "GB18030"), typed("³ÝÂÖ", "GB18030"), typed("齿轮", "GB18030"), typed("rim", "")
+    ('齿轮', '齿轮', '齿轮', 'rim')
+    """
+    encoding = next((name for name, word in CALLED.items() if word == called), "")
+    # A terminal hands on bytes that are not in its own encoding as halves of surrogate pairs, and the others as letters.
+    raw = any("\udc80" <= letter <= "\udcff" for letter in text)
+    for how in ([("utf-8", "surrogateescape")] if raw else [("latin-1", "strict"), ("cp1252", "strict")]) if encoding else ():
+        try:
+            return text.encode(*how).decode(encoding)
+        except UnicodeError:
+            continue
+    return text
+
+
+def is_plain(data: bytes) -> bool:
+    """Whether bytes are ASCII or UTF-8."""
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def encoding_of(names: Sequence[bytes]) -> str:
+    """The encoding that names are in.
+
+    Examples
+    --------
+    >>> encoding_of([b"rim"]), encoding_of(["Gehäuse".encode()])
+    ('utf-8', 'utf-8')
+    >>> [encoding_of([name.encode(code)]) for name, code in (("齿轮", "gb18030"), ("ハウジング", "cp932"), ("Gehäuse", "cp1252"))]
+    ['gb18030', 'cp932', 'cp1252']
+    >>> encoding_of([])
+    'utf-8'
+    """
+    high = [name for name in names if _HIGH.search(name)]
+    if all(map(is_plain, high)):
+        return "utf-8"
+    return max(CANDIDATES, key=lambda each: sum(_plausible(name, each) for name in high))
+
+
+def decoded(name: bytes, encoding: str) -> str:
+    """A name in an encoding; what it does not know is read as UTF-8, or else as Latin-1.
+
+    Of an encoding of single bytes, which knows nearly all, UTF-8 is tried first; a name in GB18030 may be UTF-8 by chance.
+
+    >>> decoded(b"\\xb3\\xdd\\xc2\\xd6", "gb18030"), decoded(b"\\xb3", "gb18030"), decoded("é".encode(), "cp1251")
+    ('齿轮', '³', 'é')
+    """
+    for each in ("utf-8", encoding) if encoding in _WORDS else (encoding, "utf-8"):
+        try:
+            return name.decode(each)
+        except UnicodeDecodeError:
+            continue
+    return name.decode("latin-1")
+
+
+def _plausible(name: bytes, encoding: str) -> float:
+    """How plausible a name is in an encoding: 0 to 1, for each of its bytes that is not ASCII."""
+    try:
+        text = name.decode(encoding)
+    except UnicodeDecodeError:
+        return 0.0
+    letters = [letter for letter in text if ord(letter) > 0x7F]
+    if encoding in _WORDS:
+        total = sum(_WORDS[encoding](word) for word in _WORD.findall(text))
+        # A sign of diameter, degrees or tolerance stands beside numbers in any part of Europe.
+        total += _LIKELY * sum(letter in "°±µ×²³®©№" for letter in letters if not letter.isalpha() or letter == "µ")
+    else:
+        total = sum(_one(letter, encoding) for letter in letters)
+    return len(_HIGH.findall(name)) * total / max(1, len(letters))
+
+
+def _one(letter: str, encoding: str) -> float:
+    """How usual a letter is where an encoding of East Asia is in use."""
+    if letter in _FREQUENT.get(encoding, ""):
+        return _SURE
+    if encoding == "cp949":
+        return _LIKELY if "가" <= letter <= "힣" and min(letter.encode("euc_kr", "replace")) >= 0xA1 else _ODD
+    if encoding == "cp932" and "ぁ" <= letter <= "ー":
+        return _SURE
+    first, last = {"gb18030": (0xB0, 0xD7), "cp932": (0x88, 0x97), "big5": (0xA4, 0xC6)}[encoding]
+    code = letter.encode({"gb18030": "gb2312"}.get(encoding, encoding), "replace")
+    # The half of each standard that has the letters in daily use.
+    return _LIKELY if len(code) > 1 and first <= code[0] <= last else _ODD if len(code) > 1 else 0.0
+
+
+def _cyrillic(word: str) -> float:
+    """Russian words stand in one case, or with a capital in front; they hold no Latin letters."""
+    if any(letter < "\x80" for letter in word):
+        return 0.0
+    if word[1:].islower() or word.isupper():
+        russian = sum("А" <= letter <= "я" or letter in "Ёё" for letter in word)
+        return 0.9 * russian + 0.3 * (len(word) - russian) if len(word) > 1 else 0.3
+    return 0.0
+
+
+def _latin(word: str) -> float:
+    """Accents are single among plain letters, in the case of their word."""
+    high = [letter for letter in word if letter > "\x7f" and letter != "µ"]
+    if not word[1:].islower() and not word.isupper() and len(word) > 1:
+        return _ODD * len(high)
+    plain = len(word) - len(high)
+    return _SURE * len(high) if plain >= len(high) else _LIKELY * len(high) if len(high) == 1 else _ODD * len(high)
+
+
+_WORDS: dict[str, Callable[[str], float]] = {"cp1251": _cyrillic, "cp1252": _latin}
+
+
+#: The entities that name a file, each by its first text, and their short names (ISO 10303-21; AP214 and AP242 call them
+#: external documents).
+WORDS = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", b"DOCUMENT_FILE", b"APEXIA", b"DCMFL"
+_NAMED = re.compile(rb"(?:" + b"|".join(WORDS) + rb")\s*\(\s*'((?:[^']|'')*)'")
+#: A comment, or a text, in which none begins.
+_COMMENT = re.compile(rb"/\*.*?\*/|'[^']*'", re.DOTALL)
+#: Letters beyond ASCII, and a backslash, as a text has them (ISO 10303-21, 6.4.3).
+_LETTERS = re.compile(rb"\\X2\\((?:[0-9A-Fa-f]{4})*)\\X0\\|\\X4\\((?:[0-9A-Fa-f]{8})*)\\X0\\|\\X\\([0-9A-Fa-f]{2})|\\S\\(.)|\\\\")
+#: Documents beside the shape: that one is not there costs no geometry.
+DOCUMENTS = (".pdf", ".txt", ".doc", ".docx", ".xls", ".xlsx", ".csv", ".htm", ".html", ".jpg", ".jpeg", ".png", ".tif",
+              ".tiff", ".svg")  # fmt: skip
+#: Files that are followed from one, at most.
+_MOST = 10_000
+
+
+def names(data: bytes) -> tuple[str, ...]:
+    """Names of the files that a STEP file's text refers to, as the CAD kernel reads them there, each once."""
+    if not any(word in data for word in WORDS):
+        return ()
+    if b"/*" in data:
+        data = _COMMENT.sub(lambda match: b" " if match[0].startswith(b"/") else match[0], data)
+    return tuple(name for name in dict.fromkeys(map(_name, _NAMED.findall(data))) if name.strip())
+
+
+def _name(text: bytes) -> str:
+    """The name of a file that a text in STEP stands for: a long one may be broken into lines."""
+    whole = text.replace(b"\r", b"").replace(b"\n", b"").replace(b"''", b"'")
+    # As the kernel takes them: a folder of Windows is one on every system.
+    return os.fsdecode(_LETTERS.sub(_letters, whole)).replace("\\", "/")
+
+
+def _letters(match: re.Match[bytes]) -> bytes:
+    two, four, one, upper = match.groups()
+    if two is not None:
+        text = bytes.fromhex(two.decode()).decode("utf-16-be", "replace")
+    elif four is not None:
+        text = bytes.fromhex(four.decode()).decode("utf-32-be", "replace")
+    elif one is not None:
+        text = bytes.fromhex(one.decode()).decode("latin-1")
+    else:
+        text = "\\" if upper is None else chr(upper[0] | 0x80)
+    return text.encode()
+
+
+def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple[str, bytes | None]]:
+    """Follow the references of a STEP file, by its content, and those of the files that they lead to.
+
+    `read` gives the content of a file by its path from the folder of the first one; None where there is none. Yields that path,
+    and the content; each path once. A file that is no STEP file refers to nothing. Raises ReadError where there are too many.
+    """
+    seen: set[str] = set()
+    waiting = [("", data)]
+    while waiting:
+        folder, content = waiting.pop()
+        for name in names(content):
+            path = os.path.normpath(os.path.join(folder, name))
+            if path in seen:
+                continue
+            if len(seen) >= _MOST:
+                raise ReadError(f"refers to more than {_MOST} files: save the assembly as one file")
+            seen.add(path)
+            raw = read(path)
+            yield path, raw
+            if raw is not None:
+                waiting.append((os.path.dirname(path), raw))
+
+
+def in_folder_of(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
+    """Read files by their paths from the folder of a file; None where there is none that can be read.
+
+    Raises `plan_cutters_base.user_files.OutsideError` where one may not be read, ReadError where one is a pipe or a device, which
+    the kernel would wait for.
+    """
+    folder = os.path.dirname(os.fspath(file))
+
+    def read(name: str) -> bytes | None:
+        try:
+            return files.content(os.path.join(folder, name))
+        except files.OutsideError:
+            raise
+        except files.IrregularError as error:
+            if os.path.isdir(os.path.join(folder, name)):
+                return None
+            raise ReadError(f"refers to {name}, which {error}: save the part that it was in its place") from None
+        except (OSError, ValueError):
+            return None
+
+    return read
+
 
 #: Comments and strings; what stands between the apostrophes of a comment is no string.
 _STRING = re.compile(rb"/\*.*?\*/|'(?:[^']|'')*'", re.DOTALL)

@@ -32,8 +32,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import LostFace
-from cad_io.read.face_comparison import edge_count, misfit, open_border
-from cad_io.read.faults import Fault, Model, by_number, type_of
+from cad_io.read.faults import Fault, Model, by_number, edge_count, misfit, open_border, type_of
 
 #: Parameters that carry no geometry.
 _WORDS = frozenset(
@@ -82,23 +81,16 @@ def touched(model: Model, faults: Iterable[Fault]) -> tuple[dict[int, list[Fault
 
 
 def repair(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
-    """Take out, before the transfer, what makes the kernel crash or throw away a whole solid.
+    """Take out, before the transfer, what makes the kernel crash or throw away a whole solid, and faces that use what has
+    `faults`.
 
-    Parameters
-    ----------
-    model : Model
-    faults : sequence of Fault
-        Faces that use what has these are taken out, too.
-
-    Returns
-    -------
-    dict
-        By number, what is taken from a face: a bound, or the face itself from its shells.
+    Returns by number what is taken from a face: a bound, or the face itself from its shells.
     """
     bad = dict.fromkeys(touched(model, faults)[0], _CRASHES)
     for number, entity in model.entities.items():
         if is_face(entity) and number not in bad:
-            if _endless(entity):
+            edges = [edge for edge in _edges(entity) if hasattr(edge, "EdgeStart")]
+            if any(edge.EdgeStart() is None or edge.EdgeEnd() is None for edge in edges):
                 bad[number] = _NO_ENDS
             elif None in _loops(entity):
                 bad[number] = _NO_BOUND
@@ -124,12 +116,6 @@ def _unbound(face: Any) -> None:
     for i, bound in enumerate(bounds):
         array.SetValue(i + 1, bound)
     face.SetBounds(array)
-
-
-def _endless(face: Any) -> bool:
-    """Whether an edge of a face has no vertex at an end."""
-    edges = (edge for edge in _edges(face) if hasattr(edge, "EdgeStart"))
-    return any(edge.EdgeStart() is None or edge.EdgeEnd() is None for edge in edges)
 
 
 def _loops(face: Any) -> list[Any]:
@@ -167,21 +153,9 @@ def missing_faces(model: Model) -> Iterator[tuple[int, int]]:
 class UnreadFaces:
     """Find the unread faces of a transferred file.
 
-    Parameters
-    ----------
-    model : Model
-    idents : mapping
-        The name of an entity in the file, `#12`, by its number.
-    faults : sequence of Fault
-        Of the model, before the transfer.
-    mended : mapping
-        The faces, or bounds of faces, that `mend` took out before the transfer: entity number -> text.
-    shapes : sequence of TopoDS_Face
-        Faces of the part.
-    numbers : mapping
-        Numbers in the part of each face entity that is there.
-    scale : float
-        Of the file's coordinates, mm.
+    idents: the name of an entity in the file, `#12`, by its number. faults: of the model, before the transfer. repaired: the
+    faces, or bounds of faces, that `repair` took out before the transfer, entity number -> text. shapes: faces of the part.
+    numbers: those in the part of each face entity that is there. scale: of the file's coordinates, mm.
     """
 
     def __init__(
@@ -201,10 +175,12 @@ class UnreadFaces:
     def found(self) -> list[LostFace]:
         """Every face that is lost or altered, in the order of the file."""
         unread: list[LostFace] = []
+        # The part has faces of which no one knows what they were in the file.
+        unnamed = sum(map(len, self.numbers.values())) < len(self.shapes)
         for number, entity in self.model.entities.items():
             if is_face(entity):
                 here = self.numbers.get(number, ())
-                if not here and not (number in self.results and self._unnamed):
+                if not here and not (number in self.results and unnamed):
                     unread += self._gone(number)
                 unread += [
                     LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
@@ -220,11 +196,6 @@ class UnreadFaces:
 
     def ident(self, number: int) -> str:
         return self.idents.get(number, "")
-
-    @property
-    def _unnamed(self) -> bool:
-        """Whether the part has faces of which no one knows what they were in the file."""
-        return sum(map(len, self.numbers.values())) < len(self.shapes)
 
     def _gone(self, number: int) -> Iterator[LostFace]:
         """A face that is not in the part: once for each place at which its shell is."""
@@ -279,7 +250,7 @@ class UnreadFaces:
             return "an edge of it is missing"
         if not (felt or failed or number in self.doubted):
             return ""
-        if number in self.mended or any(self._is_loop(fault) for fault in failed):
+        if number in self.mended or any(isinstance(self.model.entities[fault.number], StepShape_Loop) for fault in failed):
             return _NO_BOUND
         if open_border(shape):
             return "its border is open"
@@ -290,9 +261,6 @@ class UnreadFaces:
         if any(self._beyond_proof(fault, number) for fault in felt):
             return "its geometry is not as written"
         return misfit(shape, self._fine)
-
-    def _is_loop(self, fault: Fault) -> bool:
-        return isinstance(self.model.entities[fault.number], StepShape_Loop)
 
     def _beyond_proof(self, fault: Fault, number: int) -> bool:
         """Faults whose effect no border can show: in topology, and between the borders of free-form surfaces."""

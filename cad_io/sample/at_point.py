@@ -18,7 +18,7 @@ from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
 from plan_cutters_base.copies import Ended, each
 
@@ -30,38 +30,21 @@ SECONDS, _A_FACE = 5.0, 0.1
 def locate(
     part: Part, orientation: Orientation, point: Sequence[float], within: float = 1e-3, *, ignore: Container[int] = ()
 ) -> SurfaceSamples:
-    """The sample nearest to a point.
+    """The sample nearest to a point (3,) in part coordinates, mm, of length 1; its area is 0, for it stands for no part of the
+    face.
 
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-    point : (3,) float
-        Part coordinates, mm.
-    within : float
-        Farthest that the surface may be, mm. Between faces that are equally near, the lowest number counts.
-    ignore : container of int
-        Numbers of faces that are not looked at.
-
-    Returns
-    -------
-    SurfaceSamples
-        Of length 1; its area is 0, for it stands for no part of the face.
-
-    Raises
-    ------
-    SampleError
-        No face is that near, or it has no normal or curvature there.
+    within: farthest that the surface may be, mm. Between faces that are equally near, the lowest number counts; numbers in
+    `ignore` are not looked at. Raises SampleError where no face is that near, or it has no normal or curvature there.
     """
-    place = np.asarray(point, float)
-    if place.shape != (3,) or not np.isfinite(place).all():
-        raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
+    place = _place(part, point)
     target = gp_Pnt(*place.tolist())
-    near = [
-        f.number
-        for f in part.faces
-        if f.number not in ignore and f.unjudged is None and _may_be_near(part, f.number, target, within)
-    ]
+    near = []
+    for number in (f.number for f in part.faces if f.number not in ignore and f.unjudged is None):
+        box = Bnd_Box()
+        BRepBndLib.Add_s(part.face(number), box, False)
+        box.Enlarge(within)
+        if not box.IsOut(target):
+            near.append(number)
 
     def projected(number: int) -> tuple[float, tuple[float, float]] | None:
         with translated("projecting a point", error=SampleError, file=part.file, face=f"F{number}"):
@@ -96,10 +79,7 @@ def locate(
 def foot_on(part: Part, face: int, point: Sequence[float] | Floats, within: float) -> tuple[float, float] | None:
     """Parameters of the point of a trimmed face that is nearest to a place, None if none is within so many mm of it.
 
-    Raises
-    ------
-    SampleError
-        The kernel fails on the face.
+    Raises SampleError where the kernel fails on the face.
     """
     with translated("projecting a point", error=SampleError, file=part.file, face=f"F{face}"):
         foot = _projected(part, face, np.asarray(point, float), within)
@@ -107,24 +87,11 @@ def foot_on(part: Part, face: int, point: Sequence[float] | Floats, within: floa
 
 
 def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) -> tuple[Floats, float]:
-    """The point (3,) of a part's faces that is nearest to a place, and its distance, mm.
+    """The point (3,) of a part's faces that is nearest to a place (3,) in part coordinates, and its distance, mm.
 
-    Parameters
-    ----------
-    part : Part
-    point : (3,) float
-        Part coordinates, mm.
-    ignore : container of int
-        Numbers of faces that are not looked at.
-
-    Raises
-    ------
-    SampleError
-        There is no face, or the kernel finds no distance.
+    Faces with numbers in `ignore` are not looked at. Raises SampleError where there is no face, or the kernel finds no distance.
     """
-    place = np.asarray(point, float)
-    if place.shape != (3,) or not np.isfinite(place).all():
-        raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
+    place = _place(part, point)
     looked_at = [part.face(info.number) for info in part.faces if info.number not in ignore]
 
     def measured(shapes: list[Any]) -> tuple[tuple[float, float, float], float] | None:
@@ -141,11 +108,11 @@ def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) 
     return np.array(measurement[0]), measurement[1]
 
 
-def _may_be_near(part: Part, number: int, target: gp_Pnt, within: float) -> bool:
-    box = Bnd_Box()
-    BRepBndLib.Add_s(part.face(number), box, False)
-    box.Enlarge(within)
-    return not box.IsOut(target)
+def _place(part: Part, point: Sequence[float]) -> Floats:
+    place = np.asarray(point, float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
+    return place
 
 
 def _projected(part: Part, number: int, place: Floats, within: float) -> tuple[float, tuple[float, float]] | None:

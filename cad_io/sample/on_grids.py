@@ -1,24 +1,116 @@
-"""Sample faces on parameter grids, with the kernel's exact normals and curvatures."""
+"""Samples of faces on grids, with the kernel's exact normals and curvatures, linked within faces and across smooth joints."""
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.TopoDS import TopoDS_Edge
+from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples, cross
+from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples, cross, rows_by_face
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
-from cad_io.kernel import translated
+from cad_io.kernel import edges_of, points_on, translated
 from cad_io.part import Part
 from cad_io.sample.at_point import locate
-from cad_io.sample.gap import border_probes, denser, halves_inside, inner_probes
-from cad_io.sample.grid_lines import Lines, spaced, uniform
-from cad_io.sample.joints import smooth_joints
+from cad_io.sample.grid_lines import Lines, border_probes, denser, halved, inner_probes, spaced, uniform
+from cad_io.surface import Surface
 from cad_io.tessellate.start import starts
+
+#: Normals (out of the material) on both sides of a smooth joint agree within this, rad.
+SMOOTH = np.deg2rad(1.0)
+#: Samples are linked when not farther apart than so many gaps.
+REACH = 1.5
+_POINTS = (3, 200)  # least and most points looked at along one edge
+
+
+def smooth_joints(part: Part, orientation: Orientation, point: Floats, face: Ints, gap: Mapping[int, float]) -> NDArray[np.intp]:
+    """Pairs (m, 2) of samples of different faces, nearest to the same point of a smooth common edge.
+
+    point (n, 3), face (n,): samples, in the order of their faces, and their face numbers. gap: largest distance between grid
+    neighbours, mm, by face number; its keys are the sampled faces.
+    """
+    edges = TopTools_IndexedMapOfShape()
+    uses: dict[int, list[tuple[int, TopoDS_Edge]]] = defaultdict(list)
+    for number in gap:
+        for edge in edges_of(part.joined(number)):
+            uses[edges.Add(edge)].append((number, edge))
+    trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
+    finite = np.flatnonzero(np.isfinite(point).all(axis=1))
+    rows_of = {number: finite[rows] for number, rows in rows_by_face(face[finite]).items()}
+    pairs = [np.zeros((0, 2), np.intp)]
+    for users in uses.values():
+        if len(users) != 2 or users[0][0] == users[1][0] or BRep_Tool.Degenerated_s(users[0][1]):
+            continue
+        reach = REACH * max(gap[number] for number, _ in users)
+        curves = [
+            _Curve(part.surface(number), BRepAdaptor_Curve2d(edge, part.joined(number)), *BRep_Tool.Range_s(edge))
+            for number, edge in users
+        ]
+        share = _shares(curves[0], reach)
+        if share is None:
+            continue
+        (at, normal_a), (_, normal_b) = (
+            _side(part, orientation, number, curve, share) for (number, _), curve in zip(users, curves, strict=True)
+        )
+        smooth = (normal_a * normal_b).sum(axis=1) > np.cos(SMOOTH)
+        if not smooth.any():
+            continue
+        nearest = []
+        for number, _ in users:
+            if number not in trees:
+                rows = rows_of.get(number, finite[:0])
+                trees[number] = (cKDTree(point[rows]), rows)
+            tree, rows = trees[number]
+            nearest.append(rows[tree.query(at[smooth])[1]])
+        joints = np.unique(np.stack(nearest, axis=1), axis=0)
+        distance = np.linalg.norm(point[joints[:, 0]] - point[joints[:, 1]], axis=1)
+        pairs.append(joints[distance <= reach])
+    return np.concatenate(pairs)
+
+
+class _Curve(NamedTuple):
+    """An edge's parameter curve on one of its faces; the range is the edge's own, the same for both faces."""
+
+    surface: Surface
+    curve: BRepAdaptor_Curve2d
+    low: float
+    high: float
+
+    def derivatives(self, share: Floats) -> Floats:
+        """S, Su, Sv (k, 3, 3) at shares of the range."""
+        t = self.low + (self.high - self.low) * share
+        uv = points_on(self.curve, t)
+        return self.surface.first(uv[:, 0], uv[:, 1])
+
+
+def _shares(curve: _Curve, reach: float) -> Floats | None:
+    """Where to look along an edge: two points a reach; None if it cannot be evaluated."""
+    if not (np.isfinite([curve.low, curve.high]).all() and max(-curve.low, curve.high) < 1e50):
+        return None
+    rough = curve.derivatives(np.linspace(0.0, 1.0, 9))[:, 0]
+    length = float(np.linalg.norm(np.diff(rough, axis=0), axis=1).sum())
+    if not np.isfinite(length):
+        return None
+    count = int(np.clip(np.ceil(2 * length / max(reach, 1e-12)), *_POINTS))
+    return (np.arange(count) + 0.5) / count
+
+
+def _side(part: Part, orientation: Orientation, number: int, curve: _Curve, share: Floats) -> tuple[Floats, Floats]:
+    """Points (k, 3) along an edge and one face's normals (k, 3) there, out of the material."""
+    d = curve.derivatives(share)
+    with np.errstate(all="ignore"):
+        normal = cross(d[:, 1], d[:, 2])
+        normal *= orientation.sign[number - 1] / np.linalg.norm(normal, axis=1)[:, None]
+    return d[:, 0], normal
+
 
 __all__ = ["bends", "locate", "sample"]
 
@@ -59,34 +151,15 @@ def sample(
     faces: Sequence[int],
     at: Callable[[int], None] = lambda face: None,
 ) -> SurfaceSamples:
-    """Sample faces of a part.
+    """Sample faces of a part, by their numbers; `orientation` says which side of each is out of the material.
 
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-        Which side of each face is out of the material.
-    grid : int, optional
-        That many lines each way, at least 2, uniform over the surface's own domain, ends included, a closed seam once,
-        a border that is a single point 1e-4 of the range inward. Surfaces without end use the box of the trim.
-    spacing : float or mapping of int to float, optional
-        Instead of `grid`: grid neighbours at most so many mm apart, and no point of the face farther from its nearest
-        sample, for all faces or by face number. `max_gap` says where that was not to be had.
-    faces : sequence of int
-        Face numbers.
-    at : callable, optional
-        Told at which face the work is; 0: at none of them.
+    grid: that many lines each way, at least 2, uniform over the surface's own domain, ends included, a closed seam once, a border
+    that is a single point 1e-4 of the range inward. Surfaces without end use the box of the trim. spacing: instead of `grid`,
+    grid neighbours at most so many mm apart, and no point of the face farther from its nearest sample, for all faces or by face
+    number; `max_gap` says where that was not to be had. at: told at which face the work is; 0: at none of them.
 
-    Returns
-    -------
-    SurfaceSamples
-        Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of
-        triangles; one without any sample is in `empty`.
-
-    Raises
-    ------
-    SampleError
-        Both or neither of grid and spacing given, or one that has no meaning.
+    Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of triangles; one without
+    any sample is in `empty`. Raises SampleError where both or neither of grid and spacing are given, or one that has no meaning.
     """
     if (grid is None) == (spacing is None):
         raise SampleError("give either a grid or a spacing", file=part.file)
@@ -137,10 +210,18 @@ def _taken(
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
-    samples = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
+    samples = None if step is None else _spaced(part, number, trim, step)
+    # On so many lines each way, on more where none hits the face.
+    for doubling in range(_DOUBLINGS + 1) if step is None else ():
+        lines = uniform(part.surface(number), trim, 2**doubling * (int(grid or 2) - 1) + 1)
+        inside = trim.inside_grid(lines.u, lines.v)
+        if inside.any():
+            samples = _on_grid(part, number, trim, lines, inside)
+            break
     if samples is None:
         return _in_triangles(part, number, step)
-    if trim.rectangular and _covered(samples):
+    # Nodes stand all over the face and along its border: it is no farther from them than they are from each other.
+    if trim.rectangular and samples.grid is not None and (samples.grid.index >= 0).all():
         return samples
     samples = _covering(part, number, trim, samples, step)
     if step is not None and samples.gap > step and len(samples.uv) < _FEW:
@@ -148,16 +229,6 @@ def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: fl
         thin = _in_triangles(part, number, step)
         return thin if thin is not None and thin.gap < samples.gap else samples
     return samples
-
-
-def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamples | None:
-    """Samples on so many lines each way, on more where none hits the face."""
-    for doubling in range(_DOUBLINGS + 1):
-        lines = uniform(part.surface(number), trim, 2**doubling * (int(grid or 2) - 1) + 1)
-        inside = trim.inside_grid(lines.u, lines.v)
-        if inside.any():
-            return _on_grid(part, number, trim, lines, inside)
-    return None
 
 
 def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | None:
@@ -201,7 +272,7 @@ def _covering(part: Part, number: int, trim: Trim, samples: _FaceSamples, step: 
         return samples._replace(gap=float(border.distance(samples.derivatives[:, 0]).max(initial=0.0)))
     most, nodes = max(_MOST_MORE * len(samples.uv), _FEW_SAMPLES), max(_MOST_MORE * grid.index.size, _NODES)
     for _ in range(_HALVINGS + 1):
-        finer = halves_inside(trim, lines)
+        finer = trim.inside_grid(*halved(lines), border=False)
         probes = [border, inner_probes(part, number, lines, finer)]
         away = np.concatenate([each.distance(samples.derivatives[:, 0]) for each in probes])
         samples = samples._replace(gap=float(away.max(initial=0.0)))
@@ -214,11 +285,6 @@ def _covering(part: Part, number: int, trim: Trim, samples: _FaceSamples, step: 
             break
         samples = _on_grid(part, number, trim, lines, inside)._replace(gap=samples.gap)
     return samples
-
-
-def _covered(samples: _FaceSamples) -> bool:
-    """Nodes stand all over the face and along its border: it is no farther from them than they are from each other."""
-    return samples.grid is not None and bool((samples.grid.index >= 0).all())
 
 
 def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[np.bool_]) -> _FaceSamples:
@@ -307,7 +373,11 @@ def _together(
         neighbours=neighbours.reshape(-1, 2),
         unjudged=np.where(bad, 0, -1).astype(np.int32),
         reasons=REASONS if bad.any() else (),
-        grids=tuple(_moved(f.grid, int(s)) for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None),
+        grids=tuple(
+            replace(f.grid, index=np.where(f.grid.index < 0, -1, f.grid.index + s).astype(np.int32))
+            for f, s in zip(taken, start[:-1], strict=True)
+            if f.grid is not None
+        ),
         max_gap=max(whole, default=0.0),
         empty=empty,
         face_gaps=tuple((f.number, gap) for f, gap in zip(taken, whole, strict=True)),
@@ -316,10 +386,6 @@ def _together(
 
 def _density(derivatives: Floats) -> Floats:
     return np.linalg.norm(cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
-
-
-def _moved(grid: FaceGrid, by: int) -> FaceGrid:
-    return replace(grid, index=np.where(grid.index < 0, -1, grid.index + by).astype(np.int32))
 
 
 def _stack(rows: Sequence[Floats], width: int) -> Floats:

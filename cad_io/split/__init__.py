@@ -3,7 +3,6 @@
 May use: single faces and the kernel's manners.
 """
 
-from cad_io.split.by_turns import split_by_turns
-from cad_io.split.pieces import split
+from cad_io.split.pieces import split, split_by_turns
 
 __all__ = ["split", "split_by_turns"]

@@ -1,46 +1,106 @@
-"""Faces, shells and solids put together again from cut edges."""
+"""Edges made from curves in a face's parameter plane; faces, shells and solids put together again from cut edges."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_SHELL
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Vertex, TopoDS_Wire
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Vertex, TopoDS_Wire
 
 from cad_io.arrays import Floats
-from cad_io.kernel import edges_of
-from cad_io.kernel.components import children
-from cad_io.split.arrangement import Arrangement
+from cad_io.kernel import cubic, edges_of
+from cad_io.kernel.shapes import children
+from cad_io.split.arrangement import Arrangement, Half, Region
 from cad_io.split.border import CannotSplit
-from cad_io.split.net import Net
-from cad_io.split.regions import Half, Region
-from cad_io.split.surface_edge import followed, surface_edge, trimmed
+from cad_io.split.contour import Spline
+from cad_io.split.net import DEVIATION, Net
 from cad_io.surface import Surface
+
+_MOST_POINTS = 5000
+
+
+class Followed(NamedTuple):
+    """A curve on a surface: in space and in the parameter plane, range, ends in space, deviation in mm."""
+
+    space: Any
+    plane: Any
+    first: float
+    last: float
+    ends: tuple[Any, Any]
+    tolerance: float
+
+
+def trimmed(spline: Spline, a: float, b: float) -> Spline:
+    """The same cubic between two of its parameters."""
+    from scipy.interpolate import BSpline, make_interp_spline  # half a second to load
+
+    near = 1e-6 * (b - a)
+    inner = spline.knots[(spline.knots > a + near) & (spline.knots < b - near)]
+    knots = np.concatenate([[a] * 4, inner, [b] * 4])
+    # By rounding, means of equal knots lie beyond them.
+    averages = np.clip(np.convolve(knots[1:-1], np.ones(3) / 3, mode="valid"), a, b)
+    poles = make_interp_spline(averages, BSpline(spline.knots, spline.poles, 3)(averages), k=3, t=knots).c
+    return Spline(knots, np.array(poles), False)
+
+
+def followed(surface: Surface, spline: Spline) -> Followed:
+    """Find the cubic curve in space of the same parameter as a parameter curve of a surface; ValueError where DEVIATION cannot be
+    reached.
+
+    The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is interpolated and
+    sites are added where the error, measured between the sites, is above DEVIATION.
+    """
+    from scipy.interpolate import BSpline, make_interp_spline
+
+    curve = BSpline(spline.knots, spline.poles, 3)
+
+    def at(t: Floats) -> Floats:
+        return surface.values(*curve(t).T)
+
+    knots = np.unique(spline.knots)
+    averages = np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
+    while True:
+        space = make_interp_spline(averages, at(averages), k=3)
+        gap = np.diff(averages)
+        between = np.stack([averages[:-1] + share * gap for share in (0.25, 0.5, 0.75)])
+        error = np.linalg.norm(space(between.ravel()) - at(between.ravel()), axis=1).reshape(between.shape).max(axis=0)
+        worst = float(error.max())
+        if worst < DEVIATION:
+            break
+        if len(averages) > _MOST_POINTS or not np.isfinite(worst):
+            raise ValueError(f"a curve on the surface stays {worst:.1e} mm off its curve in space")
+        averages = np.union1d(averages, between[1][error >= DEVIATION])
+
+    ends = gp_Pnt(*space(averages[0]).tolist()), gp_Pnt(*space(averages[-1]).tolist())
+    plane = cubic(spline.knots, spline.poles)
+    return Followed(cubic(space.t, space.c), plane, float(averages[0]), float(averages[-1]), ends, max(1.2 * worst, 1e-7))
+
+
+def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
+    """Edge along a curve on a face's surface, in part coordinates; its tolerance is the measured deviation.
+
+    The tolerance of the vertices at its ends grows where they are farther off.
+    """
+    builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
+    basis = BRep_Tool.Surface_s(face, location)
+    builder.MakeEdge(edge, curve.space, curve.tolerance)
+    builder.UpdateEdge(edge, curve.plane, basis, location, curve.tolerance)
+    for vertex, orientation, end in zip((start, stop), (TopAbs_FORWARD, TopAbs_REVERSED), curve.ends, strict=True):
+        off = BRep_Tool.Pnt_s(vertex).Distance(end)
+        builder.UpdateVertex(vertex, max(curve.tolerance, 1.01 * off + 1e-9))
+        builder.Add(edge, vertex.Oriented(orientation))
+    builder.Range(edge, curve.first, curve.last)
+    builder.SameRange(edge, True)
+    builder.SameParameter(edge, True)
+    return edge
 
 
 def pieces(net: Net, face: Any, surface: Surface, arrangement: Arrangement, regions: list[Region]) -> list[Any]:
-    """Faces of the regions of a face, in its FORWARD orientation.
+    """Faces of the regions of a face of a net whose edges are cut, in its FORWARD orientation; `surface` is the face's own.
 
-    Parameters
-    ----------
-    net : Net
-        Its edges are cut.
-    face : TopoDS_Face
-        Of that net.
-    surface : Surface
-        The face's own.
-    arrangement : Arrangement
-        Of the face.
-    regions : list of Region
-
-    Raises
-    ------
-    CannotSplit
-        The border of a piece does not close in space.
-    ValueError
-        A curve cannot be followed in space.
+    Raises CannotSplit where the border of a piece does not close in space, ValueError where a curve cannot be followed in space.
     """
     builder, plain = BRep_Builder(), TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     drawing = _edges(net, plain, surface, arrangement)
@@ -84,40 +144,33 @@ def rewired(net: Net, face: Any) -> Any:
     return TopoDS.Face_s(new.Oriented(face.Orientation()))
 
 
-class Placed:
-    """A shape put together again, with other faces in place of some.
+def placed(
+    shape: Any, numbers: dict[int, int], known: Any, changed: dict[int, list[Any]]
+) -> tuple[list[Any], dict[int, list[Any]]]:
+    """A shape put together again, with other faces in place of some: one shape, or the pieces of a loose face; and by number of a
+    face a TopoDS_Face list, as they stand there.
 
-    Attributes
-    ----------
-    shapes : list of TopoDS_Shape
-        What it became: one shape, or the pieces of a loose face.
-    faces : dict
-        Number of a face -> TopoDS_Face list, as they stand there.
+    `known` is the map of faces, `numbers` tells their own numbers, `changed` what replaces a face, FORWARD.
     """
+    builder, faces = BRep_Builder(), dict[int, list[Any]]()
 
-    def __init__(self, shape: Any, numbers: dict[int, int], known: Any, changed: dict[int, list[Any]]) -> None:
-        """`known` is the map of faces, `numbers` tells their own numbers, `changed` what replaces a face, FORWARD."""
-        self._numbers, self._known, self._changed = numbers, known, changed
-        self._builder = BRep_Builder()
-        self.faces: dict[int, list[Any]] = {}
-        self.shapes = self._again(shape)
-
-    def _again(self, shape: Any) -> list[Any]:
+    def again(shape: Any) -> list[Any]:
         if shape.ShapeType() == TopAbs_FACE:
-            number = self._numbers[self._known.FindIndex(shape)]
-            new = self._changed.get(number)
-            placed = [TopoDS.Face_s(f.Oriented(shape.Orientation())) for f in new] if new else [TopoDS.Face_s(shape)]
-            self.faces[number] = placed
-            return placed
+            number = numbers[known.FindIndex(shape)]
+            new = changed.get(number)
+            faces[number] = [TopoDS.Face_s(f.Oriented(shape.Orientation())) for f in new] if new else [TopoDS.Face_s(shape)]
+            return faces[number]
         plain = shape.Oriented(TopAbs_FORWARD)
         new = plain.EmptyCopied()
         new.Location(TopLoc_Location())  # which the children have already
         for child in children(plain):
-            for each in self._again(child):
-                self._builder.Add(new, each)
+            for each in again(child):
+                builder.Add(new, each)
         if new.ShapeType() == TopAbs_SHELL:
             new.Closed(BRep_Tool.IsClosed_s(new))
         return [new.Oriented(shape.Orientation())]
+
+    return again(shape), faces
 
 
 def _edges(net: Net, face: Any, surface: Surface, arrangement: Arrangement) -> list[Any]:

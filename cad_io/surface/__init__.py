@@ -3,7 +3,7 @@
 May use: the compiler, arrays and the kernel's manners.
 """
 
-from cad_io.surface.bends import Bends
+from cad_io.surface.elementary import Bends
 from cad_io.surface.surface import Surface
 
 __all__ = ["Bends", "Surface"]

@@ -1,4 +1,4 @@
-"""Planes, cylinders, cones, spheres and tori in closed form, in the CAD kernel's parameters.
+"""Planes, cylinders, cones, spheres and tori in closed form, in the CAD kernel's parameters, and how they bend over cells.
 
 Each is a frame (origin, X, Y, Z) and `S = O + r(v) (cos u X + sin u Y) + h(v) Z`, a plane `S = O + u X + v Y`.
 """
@@ -9,7 +9,24 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.arrays import Floats
-from cad_io.surface.bends import Bends
+
+
+class Bends(NamedTuple):
+    """Bounds over a grid of cells.
+
+    middle (a, b, 3, 3): Suu, Svv, Suv, none of which differs from its middle by more than spread (a, b, 3) anywhere in the
+    cell. first (a, b, 2): neither Su nor Sv is longer.
+    """
+
+    middle: Floats
+    spread: Floats
+    first: Floats
+
+    @staticmethod
+    def none(u: Floats, v: Floats) -> "Bends":
+        """Room for the cells between lines."""
+        shape = len(u) - 1, len(v) - 1
+        return Bends(np.zeros((*shape, 3, 3)), np.zeros((*shape, 3)), np.zeros((*shape, 2)))
 
 
 class Limits(NamedTuple):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.surface import Bends, Surface
-from cad_io.surface.forms import lines_within
+from cad_io.surface.surface import lines_within
 from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
@@ -102,11 +102,12 @@ class Ground(NamedTuple):
         if self.lines is None:
             return [np.linspace(self.box[2 * k], self.box[2 * k + 1], count + 1) for k in range(2)]
         count = count if all(self.ways) else _ALONG * count
-        return [_subdivided(each, count) if way else each for each, way in zip(self.lines, self.ways, strict=True)]
-
-    def is_finer(self, count: int, *, than: int) -> bool:
-        """Whether a table of so many cells has more than another: lines may be dense already."""
-        return any(len(a) > len(b) for a, b in zip(self.finer(count), self.finer(than), strict=True))
+        return [
+            evenly(each, np.maximum(1, np.ceil(count * np.diff(each) / (each[-1] - each[0]) - 1e-6)).astype(int))
+            if way and len(each) <= count
+            else each
+            for each, way in zip(self.lines, self.ways, strict=True)
+        ]
 
 
 def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
@@ -162,13 +163,6 @@ def evenly(lines: Floats, times: NDArray[np.int64]) -> Floats:
     step = np.diff(lines) / times
     within = np.arange(len(which)) - (np.cumsum(times) - times)[which]
     return np.append(within * step[which] + lines[which], lines[-1])
-
-
-def _subdivided(lines: Floats, count: int) -> Floats:
-    """Lines with others between them, so that there are about `count` cells or more."""
-    if len(lines) > count:
-        return lines
-    return evenly(lines, np.maximum(1, np.ceil(count * np.diff(lines) / (lines[-1] - lines[0]) - 1e-6)).astype(int))
 
 
 def _groups(cells: int, across: int) -> NDArray[np.int64]:

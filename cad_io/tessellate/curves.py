@@ -13,10 +13,9 @@ from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse, GeomAbs_Line
 
 from cad_io.arrays import Floats
 from cad_io.kernel import along, may_refuse
-from cad_io.surface.bspline import DEGREE, Net, basis, span, wrapped
+from cad_io.surface.bspline import DEGREE, Net, basis, net_bends, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
-from cad_io.surface.forms import curve_lines, curve_net
-from cad_io.surface.net_bends import net_bends
+from cad_io.surface.surface import curve_lines, curve_net
 from cad_io.tessellate.bounds import evenly
 from plan_cutters_base.jit import decorators
 
@@ -68,7 +67,9 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
         straight = _straight(curve, ends)
         if straight is not None:
             conic, net, mine, bends = None, straight, np.array(ends), np.zeros((2, 3))
-        elif conic is not None and _agrees(curve, ends, lambda t, c=conic: _on_conic(c, t)):
+        elif conic is not None and _agrees(
+            curve, ends, lambda t, c=conic: c[:2] + np.cos(t)[:, None] * c[2:4] + np.sin(t)[:, None] * c[4:6]
+        ):
             net, mine = None, np.array(ends)
             bends = np.array([[*np.hypot(conic[2:4], conic[4:6]), 0.0]] * 2)
         else:
@@ -121,10 +122,6 @@ def _conic(curve: BRepAdaptor_Curve2d) -> Floats | None:
         return None
     axes = conic.XAxis().Direction(), conic.YAxis().Direction()
     return np.array([*conic.Location().Coord(), *(r * c for r, d in zip(radii, axes, strict=True) for c in d.Coord())])
-
-
-def _on_conic(conic: Floats, t: Floats) -> Floats:
-    return conic[:2] + np.cos(t)[:, None] * conic[2:4] + np.sin(t)[:, None] * conic[4:6]
 
 
 def _net(curve: BRepAdaptor_Curve2d) -> Net | None:

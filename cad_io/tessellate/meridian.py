@@ -58,20 +58,10 @@ class Meridian(Record):
 
 
 def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], chord: float) -> Meridian:
-    """Lines that enclose a part about an axis.
+    """Lines that enclose a part about an axis, mm, and may lie so far (`chord`, mm) outside of it; heights count from `origin`
+    along `direction`.
 
-    Parameters
-    ----------
-    part : Part
-    origin, direction : (3,) float
-        The axis, mm; heights count from `origin` along `direction`.
-    chord : float
-        How far lines may lie outside of what they enclose, mm.
-
-    Raises
-    ------
-    ReadError
-        A face cannot be meshed, so that it is not known how far it reaches.
+    Raises ReadError where a face cannot be meshed, so that it is not known how far it reaches.
     """
     base, along = np.array(origin, float), np.array(direction, float)
     along = along / np.linalg.norm(along)

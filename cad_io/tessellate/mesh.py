@@ -1,29 +1,113 @@
-"""The kernel's triangulation of faces, as triangles in the parameter plane.
+"""The kernel's mesher: triangles of faces to be drawn, or in the parameter plane to begin with.
 
-Only the parameter plane is taken from it: that it covers the trim. How near its triangles come to the surface is a
-wish (0.107 mm was found where 0.01 was asked), so points are evaluated, and refined, by who asks. It works in a copy of the
-process: on some faces it never ends.
+Of what others begin with only the parameter plane is taken from it: that it covers the trim. How near its triangles come to the
+surface is a wish (0.107 mm was found where 0.01 was asked), so points are evaluated, and refined, by who asks. It works in a copy
+of the process, face by face: on some faces it never ends.
 """
 
 import pickle
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Ints
-from cad_io.kernel import bounding
-from cad_io.kernel.mesher import under_mesh, uv_triangles
+from cad_io.kernel import bounding, may_refuse
 from cad_io.part import Part
 from cad_io.surface import Surface
-from plan_cutters_base.copies import ChildDied, limited
+from plan_cutters_base.copies import ChildDied, Ended, each, limited
+
+Taken = TypeVar("Taken")
+
+#: Processor time, s: for one face, and for all of them; and so many faces may not end.
+FACE, FACES, HANGS = 2.0, 15.0, 5
+
+
+class Meshed(NamedTuple):
+    """Nodes of a face, uv (n, 2) and points (n, 3) mm, and triangles (m, 3), counter-clockwise in the parameter plane."""
+
+    uv: Floats
+    point: Floats
+    triangle: NDArray[np.int64]
+
+
+def meshed(faces: Sequence[Any], deflection: float, angle: float) -> Iterator[Meshed | None]:
+    """Triangles of each face, in their order; None where the mesher, asked for a deflection (mm) and an angle (rad), fails or
+    does not end.
+
+    Two faces that share an edge have the same nodes there but for a few edges (45 of 48,000 on a real part), for it is cut by its
+    own curve. The faces are left without a mesh.
+    """
+
+    def taken(mesh: Any, location: TopLoc_Location) -> Meshed:
+        uv, triangle = uv_triangles(mesh)
+        # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.
+        return Meshed(uv, nodes_of(mesh, location), triangle)
+
+    def work(face: Any) -> tuple[Meshed | None, float]:
+        start = time.process_time()
+        with may_refuse():
+            return under_mesh(face, deflection, angle, taken)
+        return None, time.process_time() - start
+
+    remaining = FACES
+    for done in each(work, faces, seconds=FACE, hangs=HANGS):
+        if remaining <= 0.0:
+            yield None
+        elif isinstance(done, Ended):
+            remaining -= FACE
+            yield None
+        else:
+            meshes, spent = done
+            remaining -= spent
+            yield meshes
+
+
+def under_mesh(
+    face: Any, deflection: float, angle: float, take: Callable[[Any, TopLoc_Location], Taken]
+) -> tuple[Taken | None, float]:
+    """Mesh a face here, without a limit: what `take` makes of its mesh and its place, and the processor time that both took, s.
+
+    The face is left without a mesh. Where the mesher, asked for a deflection (mm) and an angle (rad), makes no triangle, None is
+    the answer.
+    """
+    start = time.process_time()
+    # Finer triangles that it carries would be kept.
+    BRepTools.Clean_s(face)
+    try:
+        BRepMesh_IncrementalMesh(face, deflection, False, angle, False)
+        place = TopLoc_Location()
+        mesh = BRep_Tool.Triangulation_s(face, place)
+        empty = mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes()
+        taken = None if empty else take(mesh, place)
+    finally:
+        BRepTools.Clean_s(face)
+    return taken, time.process_time() - start
+
+
+def nodes_of(mesh: Any, location: TopLoc_Location) -> Floats:
+    """Nodes (n, 3) of a mesh in its place, mm."""
+    place = location.Transformation()
+    return np.array([mesh.Node(i).Transformed(place).Coord() for i in range(1, mesh.NbNodes() + 1)])
+
+
+def uv_triangles(mesh: Any) -> tuple[Floats, NDArray[np.int64]]:
+    """Nodes (n, 2) of a mesh in the parameter plane, and its triangles (m, 3), rows of them."""
+    return (
+        np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)]),
+        np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1,
+    )
+
 
 #: How far a border curve may pass a mesh's nodes, mm.
 _ON = 1e-7
@@ -49,19 +133,7 @@ class UVMesh(NamedTuple):
 def kernel_start(part: Part, number: int, deflection: float, angle: float, seconds: float) -> tuple[UVMesh | None, float]:
     """Mesh a face by the kernel's mesher, which may never end: its triangles, None where it fails, and the seconds it took.
 
-    Parameters
-    ----------
-    part : Part
-    number : int
-    deflection, angle : float
-        What is asked of the kernel's mesher: mm, rad.
-    seconds : float
-        Of processor time that it may take.
-
-    Raises
-    ------
-    TimeLimit
-        It does not end.
+    Of a deflection (mm) and an angle (rad) it is asked for; `seconds`: of processor time that it may take, else TimeLimit.
     """
 
     face = part.face(number)

@@ -17,11 +17,11 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, Record
+from cad_io.graphs import connected
 from cad_io.kernel import edges_of
-from cad_io.part.boxes import face_box
-from cad_io.part.cap import coned, polyline
-from cad_io.part.part import Part
-from cad_io.part.unjudged import NO_AREA
+from cad_io.part.bodies import coned, polyline
+from cad_io.part.part import NO_AREA, Part, face_box
+from cad_io.tessellate.mesh import nodes_of
 
 _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 #: Nodes each way to estimate the area of a face that is said to have none; the share of the part's squared diagonal up to
@@ -55,13 +55,7 @@ class StandIns(Record):
 def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> StandIns:
     """Stand-ins for the faces that `Triangles.missing` lists, and boxes for those of `Part.lost` whose place is known.
 
-    Parameters
-    ----------
-    part : Part
-    missing : sequence of (int, str)
-        Face numbers, with the reason.
-    chord : float
-        Distance of edges' polygons from the edges, mm.
+    chord: distance of edges' polygons from the edges, mm.
     """
     vertex: list[Floats] = []
     owner: list[Ints] = []
@@ -109,10 +103,8 @@ def _own_triangles(part: Part, number: int) -> Floats | None:
     mesh = BRep_Tool.Triangulation_s(part.face(number), place)
     if mesh is None or not mesh.NbTriangles():
         return None
-    move = place.Transformation()
-    node = np.array([mesh.Node(i + 1).Transformed(move).Coord() for i in range(mesh.NbNodes())])
     corner = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())]) - 1
-    points = np.asarray(node[corner])
+    points = np.asarray(nodes_of(mesh, place)[corner])
     return points if np.isfinite(points).all() else None
 
 
@@ -124,9 +116,7 @@ def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
     """
     nodes = vertex.reshape(-1, 3)
     near = _SAME * float(np.ptp(nodes, axis=0).max())
-    pairs = cKDTree(nodes).query_pairs(near, output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(nodes), len(nodes)))
-    corner = connected_components(graph, directed=False)[1].reshape(-1, 3)
+    corner = connected(len(nodes), cKDTree(nodes).query_pairs(near, output_type="ndarray")).reshape(-1, 3)
     count, weight = len(vertex), np.zeros(len(vertex), np.int8)
     _, first_of = np.unique(np.sort(corner, axis=1), axis=0, return_index=True)
     counted = np.zeros(count, bool)

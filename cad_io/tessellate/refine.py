@@ -231,25 +231,12 @@ def _refined(start, table, curves, chord, most, stack, spare, result):
 
 @entry
 def refined(start, table, curves, chord, most, result):
-    """Cut triangles until each is within a distance of the surface.
+    """Cut triangles until each is within a distance (`chord`, mm) of the surface; where there are more than `most`, it ends: they
+    are too many.
 
-    Parameters
-    ----------
-    start : Start
-    table : Table
-    curves : Curves
-    chord : float
-        mm.
-    most : int
-        Where there are more triangles, it ends: they are too many.
-    result : Found, written
-        As far as there is room: with none, triangles are only counted.
-
-    Returns
-    -------
-    (int, int, float, float, float)
-        Numbers of triangles and of nodes, however many there was room for; the largest bound of a triangle's distance and the
-        part that the border curves have in it at most, mm; the triangles' area in the parameter plane.
+    They are written into `result` as far as there is room: with none, triangles are only counted. Returns numbers of triangles
+    and of nodes, however many there was room for; the largest bound of a triangle's distance and the part that the border curves
+    have in it at most, mm; the triangles' area in the parameter plane.
     """
     high = _DEEPEST + 2
     stack = Stack(

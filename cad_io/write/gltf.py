@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
+from cad_io.tessellate.mesh import meshed
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
 from plan_cutters_base.whole import whole
 
@@ -60,39 +60,18 @@ def write_gltf(
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles.
+    """Write all pieces as triangles; triangles of a face left whole are split along the grid of its labels and stand in a node a
+    label.
 
-    Triangles of a face that was left whole are split along the grid of its labels and stand in a node a label.
+    path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
+    for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
+    facts (JSON values) about a face, by number, in the node `F<number>`, and about a piece, in its node, which has the style's
+    name. deflection: chord error of the triangles, mm; default FINE times the part's diagonal. merged: one node and mesh for
+    everything: `extras` of the node holds a list of the faces' facts, and each vertex its face number as `_FACE`. others: bodies
+    beside the part, a node each below those that they name.
 
-    Parameters
-    ----------
-    split : Split
-    path : path-like
-        Appears whole or not at all.
-    style : callable
-        Name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks for, and looks the same. Pieces of
-        one kind and colour share a material, which has the name of the kind.
-    extras : callable
-        Facts (JSON values) about a face, by number: `extras` of the node `F<number>`.
-    piece_extras : callable
-        Facts about a piece: `extras` of its node, which has the style's name.
-    deflection : float, optional
-        Chord error of the triangles, mm; default FINE times the part's diagonal.
-    merged : bool
-        One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
-        face number as `_FACE`.
-    others : sequence of Other
-        Bodies beside the part, a node each below those that they name.
-
-    Returns
-    -------
-    tuple of int
-        Numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh.
-
-    Raises
-    ------
-    WriteError
-        The file cannot be written, or there is no triangle to write.
+    Returns numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh. Raises
+    WriteError where the file cannot be written, or there is no triangle to write.
     """
     with whole(path, WriteError) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
@@ -207,16 +186,6 @@ class _Glb:
         self.meshes: list[dict[str, Any]] = []
         self.materials: list[dict[str, Any]] = []
 
-    def _material(self, name: str, rgb: tuple[float, float, float] | None) -> int:
-        """The number of the material of a name and a colour, white without one; open shells are looked at from both sides."""
-        surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
-        if rgb is not None:
-            surface["baseColorFactor"] = [*linear(rgb), 1.0]
-        material = {"name": name, "doubleSided": True, "pbrMetallicRoughness": surface}
-        if material not in self.materials:
-            self.materials.append(material)
-        return self.materials.index(material)
-
     def node(self, node: dict[str, Any], parent: int | None = None) -> int:
         if parent is None:
             self.roots.append(len(self.nodes))
@@ -231,7 +200,14 @@ class _Glb:
             return {}
         attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
         indices = self._accessor(mesh.triangle.reshape(-1))
-        primitive = {"attributes": attributes, "indices": indices, "material": self._material(material, rgb)}
+        # White without a colour; open shells are looked at from both sides.
+        surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
+        if rgb is not None:
+            surface["baseColorFactor"] = [*linear(rgb), 1.0]
+        made = {"name": material, "doubleSided": True, "pbrMetallicRoughness": surface}
+        if made not in self.materials:
+            self.materials.append(made)
+        primitive = {"attributes": attributes, "indices": indices, "material": self.materials.index(made)}
         self.meshes.append({"name": name, "primitives": [primitive]})
         return {"mesh": len(self.meshes) - 1}
 

@@ -1,6 +1,12 @@
-"""Faces as triangles to look at, with exact normals and surface parameters."""
+"""Faces as triangles to look at, with exact normals and surface parameters.
+
+They are cut where they lie farthest from the surface, until they are near enough or enough. Both triangles at an edge are cut
+where it is, so that no cracks open within a face. What is drawn proves nothing: distances are looked at in the middles of edges
+and of triangles. Where a face could not be split, its triangles are cut along the grid of its labels.
+"""
 
 from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,12 +19,240 @@ from OCP.TopAbs import TopAbs_REVERSED
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.kernel.mesher import Meshed
 from cad_io.part import Part
+from cad_io.split.contour import fill
 from cad_io.surface import Surface
+from cad_io.tessellate.mesh import BorderCurve, Meshed, UVMesh
 from cad_io.tessellate.start import expected, starts
-from cad_io.write.label_mesh import label_mesh
-from cad_io.write.net import Net, cut
+
+
+class LabelledMesh(NamedTuple):
+    """Parameters (n, 2) and points (n, 3) mm of corners; triangles (m, 3); a label (m,) each."""
+
+    uv: Floats
+    point: Floats
+    triangle: NDArray[np.int64]
+    label: Ints
+
+
+def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64], labels: FaceLabels) -> LabelledMesh:
+    """The same surface in as many triangles or more, with the labels of a grid of which at least one node is known.
+
+    uv (n, 2), point (n, 3): surface parameters, and mm, of corners; triangle (m, 3).
+    """
+    surface = BRep_Tool.Surface_s(face)
+    cell_u, turns_u, shut_u = _cells(uv[:, 0], labels.u, surface.UPeriod() if surface.IsUPeriodic() else 0.0)
+    cell_v, turns_v, shut_v = _cells(uv[:, 1], labels.v, surface.VPeriod() if surface.IsVPeriodic() else 0.0)
+    known = labels.label[:-1] if shut_u else labels.label
+    known = np.tile(known[:, :-1] if shut_v else known, (turns_u, turns_v))
+    filled = fill(known)
+    mixed = _Mixed(filled)
+    corner: Floats = np.column_stack([cell_u, cell_v, uv, point])[triangle]
+    done = []
+    while len(corner):
+        low, high = corner[:, :, :2].min(axis=1), corner[:, :, :2].max(axis=1)
+        # Borders are at whole numbers and a half: the first and the last one strictly inside the box.
+        first, last = np.floor(low + 0.5) + 0.5, np.ceil(high - 0.5) - 0.5
+        across = (first <= last) & mixed(low, high)[:, None]
+        done.append(corner[~across.any(axis=1)])
+        axis = np.where(across, last - first, -1.0).argmax(axis=1)
+        rows = np.flatnonzero(across.any(axis=1))
+        at = np.floor(0.5 * (first + last))[rows, axis[rows]] + 0.5
+        corner = _cut(corner[rows], axis[rows], at)
+    joined = np.concatenate(done)
+    node = np.clip(np.rint(joined[:, :, :2].mean(axis=1)), 0, np.array(filled.shape) - 1).astype(int)
+    each, index = np.unique(joined.reshape(-1, joined.shape[2]), axis=0, return_inverse=True)
+    return LabelledMesh(each[:, 2:4], each[:, 4:], index.reshape(-1, 3), filled[node[:, 0], node[:, 1]])
+
+
+class _Mixed:
+    """Whether nodes of different label have a part in boxes of cells, low and high (n, 2)."""
+
+    def __init__(self, label: Ints) -> None:
+        self.last = np.array(label.shape) - 1
+        steps = np.zeros((2, *label.shape), np.int64)
+        steps[0, 1:] = label[1:] != label[:-1]
+        steps[1, :, 1:] = label[:, 1:] != label[:, :-1]
+        self.count = np.pad(steps.cumsum(1).cumsum(2), ((0, 0), (1, 0), (1, 0)))
+
+    def __call__(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
+        i, j = np.clip(np.rint(low), 0, self.last).astype(int).T
+        m, n = np.clip(np.rint(high), 0, self.last).astype(int).T + 1
+        mixed = np.zeros(len(low), bool)
+        # A step leads to its node from the one before: the first ones lead into the box, not through it.
+        for count, a, b in ((self.count[0], i + 1, j), (self.count[1], i, j + 1)):
+            a, b = np.minimum(a, m), np.minimum(b, n)
+            mixed |= count[m, n] - count[a, n] - count[m, b] + count[a, b] > 0
+        return mixed
+
+
+def _cut(corner: Floats, axis: NDArray[np.intp], at: Floats) -> Floats:
+    """Triangles (3 n, 3, k) after cutting each of (n, 3, k) along the line on which its column `axis` is `at`.
+
+    Both sides of the line hold a corner.
+    """
+    each = np.arange(len(corner))
+    above = corner[each, :, axis] > at[:, None]
+    # The corner that is alone on its side becomes the first.
+    lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
+    p, q, r = corner[each[:, None], (lone[:, None] + np.arange(3)) % 3].transpose(1, 0, 2)
+
+    def crossing(other: Floats) -> Floats:
+        far, near = other[each, axis] - at, p[each, axis] - at
+        share = (near / (near - far))[:, None]
+        out = p + share * (other - p)
+        out[each, axis] = at
+        return out
+
+    pq, pr = crossing(q), crossing(r)
+    return np.concatenate([np.stack(t, axis=1) for t in ((p, pq, pr), (pq, q, r), (pq, r, pr))])
+
+
+def _cells(at: Floats, line: Floats, period: float) -> tuple[Floats, int, bool]:
+    """Parameters counted in cells of a grid line; over how many turns; whether the line's ends are one place."""
+    if not period:
+        return np.interp(at, line, np.arange(len(line))), 1, False
+    if line[-1] - line[0] < period * (1 - 1e-6):
+        # The corners may lie whole periods off the grid.
+        off = np.round((at.mean() - 0.5 * (line[0] + line[-1])) / period) * period
+        return np.interp(at - off, line, np.arange(len(line))), 1, False
+    excess = at - line[0]
+    turn = np.floor(excess / period + 1e-9)
+    turn -= turn.min()
+    inner = np.interp(excess - np.floor(excess / period + 1e-9) * period, line - line[0], np.arange(len(line)))
+    return inner + turn * (len(line) - 1), int(turn.max()) + 2, True
+
+
+Indices = NDArray[np.int64]
+
+#: Rounds of cutting; each brings triangles four times nearer.
+_ROUNDS = 6
+#: The border of a face is drawn as a line, in which corners are seen sooner than in a shaded surface: there edges may turn by
+#: this share of the angle.
+_BORDER = 0.4
+#: Where edges turn too much, they are cut down to this share of the chord error.
+_LEAST = 1 / 16
+#: New triangles of a triangle with corners 0, 1, 2 and new nodes 3, 4, 5 in its edges from these, by which edges are cut.
+_PARTS = {
+    0: [(0, 1, 2)],
+    1: [(0, 3, 2), (3, 1, 2)],
+    2: [(0, 1, 4), (0, 4, 2)],
+    4: [(0, 1, 5), (5, 1, 2)],
+    3: [(3, 1, 4), (0, 3, 4), (0, 4, 2)],
+    6: [(5, 4, 2), (0, 1, 4), (0, 4, 5)],
+    5: [(0, 3, 5), (3, 1, 2), (3, 2, 5)],
+    7: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+}
+
+
+@dataclass(slots=True)
+class Net:
+    """A face's triangles."""
+
+    surface: Surface
+    #: (n, 2); surface parameters of the nodes, and where they are, mm.
+    uv: Floats
+    point: Floats
+    #: (t, 3); counter-clockwise in the parameter plane.
+    corner: Indices
+    #: Two nodes in order, that are neighbours on a border curve -> its number, and its parameters at them.
+    border: dict[tuple[int, int], tuple[int, float, float]]
+    curves: Sequence[BorderCurve]
+
+    @staticmethod
+    def of(surface: Surface, start: UVMesh) -> "Net":
+        """The triangles that a mesh begins with."""
+        border = {}
+        for k, each in enumerate(start.border):
+            nodes, at = each.nodes.tolist(), each.parameter.tolist()
+            for a, b, s, t in zip(nodes[:-1], nodes[1:], at[:-1], at[1:], strict=True):
+                border[min(a, b), max(a, b)] = (k, s, t) if a < b else (k, t, s)
+        point = surface.values(start.uv[:, 0], start.uv[:, 1])
+        return Net(surface, start.uv, point, start.corner.astype(np.int64), border, start.border)
+
+    def looked_at(self, chord: float, angle: float) -> "Look":
+        """How far the edges' middles lie from the surface."""
+        there, count = np.roll(self.corner, -1, axis=1), len(self.uv)
+        key, of = np.unique(np.minimum(self.corner, there) * count + np.maximum(self.corner, there), return_inverse=True)
+        edge, of = np.stack([key // count, key % count], axis=1), of.reshape(-1, 3)
+        uv = 0.5 * (self.uv[edge[:, 0]] + self.uv[edge[:, 1]])
+        ends, most = np.array(list(self.border), np.int64).reshape(-1, 2), np.full(len(key), angle)
+        at = np.minimum(np.searchsorted(key, ends[:, 0] * count + ends[:, 1]), len(key) - 1)
+        for i, (k, s, t), (a, b) in zip(at.tolist(), self.border.values(), ends.tolist(), strict=True):
+            if key[i] == a * count + b:
+                uv[i] = self.curves[k].curve.Value(0.5 * (s + t)).Coord()
+                most[i] = _BORDER * angle
+        point, (first, last) = self.surface.values(uv[:, 0], uv[:, 1]), self.point[edge.T]
+        off, length = np.linalg.norm(point - 0.5 * (first + last), axis=1), np.linalg.norm(last - first, axis=1)
+        # What the middle of a triangle is off counts for its longest edge.
+        inner = self.uv[self.corner].mean(axis=1)
+        deep = np.linalg.norm(self.surface.values(inner[:, 0], inner[:, 1]) - self.point[self.corner].mean(axis=1), axis=1)
+        longest = of[np.arange(len(of)), length[of].argmax(axis=1)]
+        np.maximum.at(off, longest, deep)
+        off = np.where(np.isfinite(off) & np.isfinite(point).all(axis=1), off, 0.0)
+        # An arc with the sagitta s over the length l turns by about 8 s / l.
+        turns = 8.0 * off > most * length
+        least = np.where(most < angle, 0.0, _LEAST * chord)
+        worth = np.where(off > chord, off, np.where(turns & (off > least), 0.5 * chord, 0.0))
+        return Look(edge, of, uv, point, off, worth)
+
+    def cut(self, look: "Look", chosen: NDArray[np.bool_]) -> None:
+        """Cut chosen edges in their middles, and the triangles at them."""
+        new = np.full(len(chosen), -1, np.int64)
+        new[chosen] = len(self.uv) + np.arange(int(chosen.sum()))
+        for i in np.flatnonzero(chosen).tolist() if self.border else ():
+            a, b = look.edge[i].tolist()
+            if (a, b) in self.border:
+                k, s, t = self.border.pop((a, b))
+                self.border[a, int(new[i])], self.border[b, int(new[i])] = (k, s, 0.5 * (s + t)), (k, t, 0.5 * (s + t))
+        self.uv, self.point = np.vstack([self.uv, look.uv[chosen]]), np.vstack([self.point, look.point[chosen]])
+        six = np.hstack([self.corner, new[look.of]])
+        kind = (chosen[look.of] * np.array([1, 2, 4])).sum(axis=1)
+        self.corner = np.concatenate([six[kind == k][:, np.array(_PARTS[k])].reshape(-1, 3) for k in _PARTS])
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Edges (m, 2) of a net, those of each triangle (t, 3), their middles, uv (m, 2) and point (m, 3) mm, how far these are from
+    them, off (m,) mm, and what cutting each is worth, worth (m,), 0: nothing."""
+
+    edge: Indices
+    of: Indices
+    uv: Floats
+    point: Floats
+    off: Floats
+    worth: Floats
+
+
+def cut(nets: Sequence[Net], chord: float, angle: float, most: int) -> float:
+    """Cut triangles of faces that are farther from them than a chord error, mm, or whose edges turn by more than an angle, rad.
+
+    The farthest are cut first; it ends where there are so many triangles. Returns the largest distance seen that is left, mm.
+    """
+    first = 0.0
+    open_nets = list(nets)
+    for _ in range(_ROUNDS):
+        looks = [net.looked_at(chord, angle) for net in open_nets]
+        # A face that is near enough is not looked at again.
+        wanted = [bool((look.worth > 0.0).any()) for look in looks]
+        open_nets = [net for net, more in zip(open_nets, wanted, strict=True) if more]
+        looks = [look for look, more in zip(looks, wanted, strict=True) if more]
+        # A cut edge makes two more triangles.
+        quota = (most - sum(len(net.corner) for net in nets)) // 2
+        worth = np.concatenate([np.zeros(0), *(look.worth for look in looks)])
+        count = int((worth > 0.0).sum())
+        first = float(worth.max(initial=0.0))
+        if not count or quota <= 0:
+            break
+        chosen = worth > 0.0
+        if count > quota:
+            chosen[:] = False
+            chosen[np.argsort(-worth, kind="stable")[:quota]] = True
+        ends = np.cumsum([len(look.worth) for look in looks])[:-1]
+        for net, look, mine in zip(open_nets, looks, np.split(chosen, ends), strict=True):
+            net.cut(look, mine)
+    return first
+
 
 #: Largest angle between neighbouring facets, rad.
 ANGLE = 0.35
@@ -57,24 +291,11 @@ def render_mesh(
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are
-    wanted: the time goes with what is drawn.
+    wanted: the time goes with what is drawn. sides (faces,): as `Orientation.sign`: normals point out of the material. most:
+    triangles to have at most, but for those to begin with: where there would be more, the chord error grows. deflection: the
+    chord error to begin with, mm; default FINE times the part's diagonal. without: numbers of faces that are not shown.
 
-    Parameters
-    ----------
-    part : Part
-    sides : (faces,) float
-        As `Orientation.sign`: normals point out of the material.
-    most : int
-        Triangles to have at most, but for those to begin with: where there would be more, the chord error grows.
-    deflection : float, optional
-        The chord error to begin with, mm; default FINE times the part's diagonal.
-    without : collection of int
-        Numbers of faces that are not shown.
-
-    Raises
-    ------
-    WriteError
-        The kernel fails, or makes no triangle at all.
+    Raises WriteError where the kernel fails, or makes no triangle at all.
     """
     with translated("meshing", error=WriteError, file=part.file):
         wanted = FINE * diagonal(part.shape) if deflection is None else deflection
@@ -117,14 +338,7 @@ def diagonal(shape: Any) -> float:
 def face_mesh(face: Any, surface: Surface, meshed: Meshed | None, labels: FaceLabels | None) -> dict[int, Mesh] | None:
     """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none.
 
-    Parameters
-    ----------
-    face : TopoDS_Face
-    surface : Surface
-        That it lies on.
-    meshed : Meshed, optional
-        Its triangles, of the kernel.
-    labels : FaceLabels, optional
+    `meshed` are its triangles, of the kernel; `surface` is what it lies on.
     """
     if meshed is None:
         return None

@@ -1,27 +1,36 @@
 """A split part as STEP: the input's products, every piece a face with its own name, colour and layers.
 
-The same input gives the same bytes. Two instances of one product differ in their verdicts, so each is a product.
-Solids, shells and sheets are put into products so that FreeCAD shows their colours, too.
+The same input gives the same bytes. The kernel keeps the groups of styles, one a product, in a map by address and writes them
+in the map's order (OCCT 7.9), which differs from run to run: here they follow the order of the products, and are numbered anew.
+Two instances of one product differ in their verdicts, so each is a product. Solids, shells and sheets are put into products so
+that FreeCAD shows their colours, too. Some surfaces of revolution that cross their axis come back from STEP as another part of
+it.
 """
 
+import contextlib
+import json
+import os
 import pickle
 import re
+import tempfile
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepGProp import BRepGProp
 from OCP.BRepTools import BRepTools_Modifier
+from OCP.GeomAbs import GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
+from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.ShapeCustom import ShapeCustom, ShapeCustom_DirectModification
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
-from OCP.STEPControl import STEPControl_AsIs
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
@@ -33,12 +42,10 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
-from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.bodies import placed
-from cad_io.kernel.components import children, compound, flat
+from cad_io.kernel import edges_of, explore, faces, may_refuse, shape_map, silence, translated
+from cad_io.kernel.shapes import Node, children, compound, flat, placed
+from cad_io.part import Part
 from cad_io.split.pieces import Piece, Split
-from cad_io.write.canonical import canonical
 from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 from plan_cutters_base.whole import whole
 
@@ -72,32 +79,13 @@ def write_step(
 ) -> None:
     """Write all pieces, coloured and named, in the products that they belong to.
 
-    Parameters
-    ----------
-    split : Split
-    path : path-like
-        Appears whole or not at all.
-    style : callable
-        Name and colour of a piece. Names become ASCII.
-    product : str
-        Name of products that have none.
-    tree : sequence of Node
-        Products of the part, which hold all its faces; default a single one.
-    layers : mapping, optional
-        Face number -> layers of the face.
-    schema : str
-        The kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`.
-    others : sequence of Other
-        Bodies beside the part, a product each.
+    path: appears whole or not at all. style: name and colour of a piece; names become ASCII. product: name of products that have
+    none. tree: products of the part, which hold all its faces; default a single one. layers: face number -> layers of the face.
+    schema: the kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`. others: bodies beside the part, a
+    product each.
 
-    Raises
-    ------
-    WriteError
-        The file cannot be written, or the kernel lost a face, name or colour on the way, or does not come to an end.
-
-    Notes
-    -----
-    A copy of the process writes, which is ended where it takes longer than so many faces explain.
+    A copy of the process writes, which is ended where it takes longer than so many faces explain. Raises WriteError where the
+    file cannot be written, or the kernel lost a face, name or colour on the way, or does not come to an end.
     """
     silence()
     file = str(path)
@@ -142,15 +130,30 @@ def _write(
         writer.SetLayerMode(True)
         if not writer.Transfer(document, STEPControl_AsIs):
             raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
-        _head(writer.ChangeWriter().Model(), product)
+        header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+        header.SetName(TCollection_HAsciiString(f"{_ascii(product)}.step"))
+        header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
+        header.SetAuthorValue(1, TCollection_HAsciiString(ORIGIN))
+        header.SetOrganizationValue(1, TCollection_HAsciiString(ORIGIN))
+        header.SetOriginatingSystem(TCollection_HAsciiString(ORIGIN))
+        header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
         if writer.Write(str(temporary)) != IFSelect_RetDone:
             raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
     text = temporary.read_bytes()
-    _recount(text, filled, file)
+    # Faces, names and styles in the written text are counted: the kernel is known to lose some in silence.
+    written = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
+    styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
+    if written < filled.faces or styles < filled.styles:
+        raise WriteError(
+            f"of {filled.faces} faces the CAD kernel wrote {written}, of {filled.styles} colours {styles}", file=file
+        )
+    named = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(\s*'[^']", text))
+    if named < filled.named:
+        raise WriteError(f"of {filled.named} names of faces the CAD kernel wrote {named}", file=file)
     temporary.write_bytes(canonical(text))
 
 
-@contextmanager
+@contextlib.contextmanager
 def _settings(schema: str, file: str) -> Iterator[None]:
     """The kernel's settings are global: they are put back for the host's own exports."""
     STEPCAFControl_Controller.Init_s()  # before it, settings are ignored
@@ -368,30 +371,129 @@ def _name(label: Any, name: str) -> None:
     TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
 
 
-def _head(model: Any, product: str) -> None:
-    header = APIHeaderSection_MakeHeader(model)
-    header.SetName(TCollection_HAsciiString(f"{_ascii(product)}.step"))
-    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
-    header.SetAuthorValue(1, TCollection_HAsciiString(ORIGIN))
-    header.SetOrganizationValue(1, TCollection_HAsciiString(ORIGIN))
-    header.SetOriginatingSystem(TCollection_HAsciiString(ORIGIN))
-    header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
-
-
-def _recount(text: bytes, document: _Document, file: str) -> None:
-    """Count faces, names and styles in the written text: the kernel is known to lose some in silence."""
-    faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
-    styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
-    if faces < document.faces or styles < document.styles:
-        raise WriteError(
-            f"of {document.faces} faces the CAD kernel wrote {faces}, of {document.styles} colours {styles}", file=file
-        )
-    named = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(\s*'[^']", text))
-    if named < document.named:
-        raise WriteError(f"of {document.named} names of faces the CAD kernel wrote {named}", file=file)
-
-
 def _ascii(name: str) -> str:
     """Accents dropped, other foreign characters as `?`: names stay readable in any viewer."""
     bare = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
     return bare.encode("ascii", "replace").decode()
+
+
+_GROUP = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+_STRING = rb"'(?:[^']|'')*'"
+_ENTITY = re.compile(rb"#(\d+)\s*=\s*((?:" + _STRING + rb"|[^';])*);")
+_TOKEN = re.compile(rb"\s*(" + _STRING + rb"|#(\d+)|,|[^',#\s]+)")
+_WIDTH = 72
+
+
+def canonical(text: bytes) -> bytes:
+    """The text with its groups of styles in the order of what they style.
+
+    Entities before the first group do not refer to later ones, and their order is that of the shapes written.
+    """
+    first = re.search(rb"^#(\d+)\s*=\s*" + _GROUP, text, re.MULTILINE)
+    if first is None:
+        return text
+    begin, end = first.start(), text.rindex(b"ENDSEC;")
+    entities = {int(m[1]): m[2].strip() for m in _ENTITY.finditer(text, begin, end)}
+    below = {number: [r for r in _references(entity) if r in entities] for number, entity in entities.items()}
+    inner = {r for references in below.values() for r in references}
+    roots = [number for number in entities if number not in inner]
+    # Numbers of what was written before are the same in every run.
+    groups = sorted(
+        (number for number in roots if entities[number].startswith(_GROUP)),
+        key=lambda n: [r for e in _walk(n, below) for r in _references(entities[e]) if r not in entities],
+    )
+    following = iter(groups)
+    ordered = [next(following) if entities[n].startswith(_GROUP) else n for n in roots]
+    new: dict[int, int] = {}
+    for root in ordered:
+        for number in _walk(root, below, new):
+            new[number] = int(first[1]) + len(new)
+    lines = [_wrapped(number, entities[old], new) for old, number in new.items()]
+    return text[:begin] + b"".join(lines) + text[end:]
+
+
+def _references(entity: bytes) -> Iterator[int]:
+    return (int(m[2]) for m in _TOKEN.finditer(entity) if m[2])
+
+
+def _walk(root: int, below: dict[int, list[int]], known: dict[int, int] | None = None) -> Iterator[int]:
+    """An entity and all that it refers to, each once, in the kernel's order; what is `known` when its turn comes is left out."""
+    seen: set[int] = set()
+    stack = [root]
+    while stack:
+        number = stack.pop()
+        if number not in seen and number not in (known or {}):
+            seen.add(number)
+            yield number
+            stack += reversed(below[number])
+
+
+def _wrapped(number: int, entity: bytes, new: dict[int, int]) -> bytes:
+    """The entity on lines as long as the kernel's, with its references renumbered."""
+    lines, line = [], b"#%d = " % number
+    for match in _TOKEN.finditer(entity):
+        token = b"#%d" % new.get(int(match[2]), int(match[2])) if match[2] else match[1]
+        if len(line) + len(token) > _WIDTH and token != b",":
+            lines.append(line)
+            line = b"  "
+        line += token
+    return b"\n".join([*lines, line]) + b";\n"
+
+
+#: Processor seconds that it may take, and more for each face.
+_BACK, _BACK_A_FACE = 20.0, 0.2
+#: Areas that differ by a smaller share are one.
+_SAME = 0.01
+
+
+def changed_by_step(part: Part) -> Mapping[int, float]:
+    """Faces whose area is another one once they were written as STEP and read again, with that area, mm2; it is looked for once.
+
+    Only surfaces of revolution and tori are looked at: planes, quadrics and splines come back as they are. A face that does not
+    come back at all has the area 0.
+    """
+    if part.changed_by_step is not None:
+        return part.changed_by_step
+    numbers = [
+        f.number for f in part.faces if f.area > 0.0 and f.surface in ("revolution", "torus") and _doubtful(part, f.number)
+    ]
+    part.changed_by_step = {}
+    if numbers:
+        with contextlib.suppress(TimeLimit, ChildDied):
+            areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _BACK + _BACK_A_FACE * len(numbers)))
+            pairs = zip(numbers, areas, strict=True)
+            part.changed_by_step = {n: there for n, (here, there) in pairs if abs(there - here) > _SAME * here}
+    return part.changed_by_step
+
+
+def _doubtful(part: Part, number: int) -> bool:
+    """Whether the whole surface may cross its axis: a torus does where its tube is wider than the circle about which it lies."""
+    adaptor = part.adaptor(number)
+    if adaptor.GetType() == GeomAbs_Torus:
+        torus = adaptor.Torus()
+        return bool(torus.MinorRadius() >= torus.MajorRadius())
+    return bool(adaptor.GetType() == GeomAbs_SurfaceOfRevolution)
+
+
+def _areas(part: Part, numbers: list[int]) -> list[tuple[float, float]]:
+    """Areas of faces by the kernel, as they are and as they come back."""
+    silence()
+    pairs = list[tuple[float, float]]()
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "face.step")
+        for number in numbers:
+            here, there = _area(part.face(number)), 0.0
+            with may_refuse():
+                writer, reader = STEPControl_Writer(), STEPControl_Reader()
+                writer.Transfer(part.face(number), STEPControl_AsIs)
+                if writer.Write(file) == IFSelect_RetDone and reader.ReadFile(file) == IFSelect_RetDone:
+                    reader.TransferRoots()
+                    there = _area(reader.OneShape())
+            pairs.append((here, there))
+    return pairs
+
+
+def _area(shape: object) -> float:
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties)
+    return float(properties.Mass())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from cad_io.part.inside_edges import InsideEdge, inside_edges
+from cad_io.part.edges import InsideEdge, inside_edges
 from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock

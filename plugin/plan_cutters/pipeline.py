@@ -397,7 +397,7 @@ def prepare(
 
 
 def _is_whole(sewn: SewnForm) -> bool:
-    return sewn.stopped is None
+    return sewn.rest.stopped is None
 
 
 def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:

@@ -33,8 +33,8 @@ def question_of(
     OptionError
         The plan is of another part or of other options, or has no operations.
     """
-    from cad_io.part.orient import orient
-    from cad_io.part.repeats import repeated_faces
+    from cad_io.part.bodies import orient
+    from cad_io.part.patterns import repeated_faces
     from plan_cutters.scene.faces import ignored_faces, ignored_words
     from plan_cutters_check.question import Question, require_operations
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from cad_io.kernel.inside import within
+from cad_io.kernel.shapes import within
 from plan_cutters_check.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
 from plan_cutters_check.fixtures import PlacedFixture, rotation_of
 from plan_cutters_check.places import Places, across, reach_at

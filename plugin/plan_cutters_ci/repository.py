@@ -8,7 +8,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from cad_io.read import references
+from cad_io.read import step_text
 from plan_cutters.errors import PlanError
 
 #: Suffixes of parts, in lower case.
@@ -93,13 +93,13 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
     """STEP files of a commit that refer to some files, or to others that do: assemblies."""
     if not files:
         return set()
-    words = [part for word in references.WORDS for part in ("-e", word.decode())]
+    words = [part for word in step_text.WORDS for part in ("-e", word.decode())]
     output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
     paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
     refers = {
         path: {
             posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
-            for name in references.names(git("cat-file", "--filters", f"{at}:{path}"))
+            for name in step_text.names(git("cat-file", "--filters", f"{at}:{path}"))
         }
         for path in paths
     }

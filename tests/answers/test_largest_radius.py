@@ -12,7 +12,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from cad_io import read_part
-from cad_io.kernel.components import corner
+from cad_io.kernel.shapes import corner
 from plan_cutters import Cutter, Machine
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.domain.answers import PERCENTILES, RadiusMap

@@ -209,7 +209,7 @@ def test_the_kernels_import_no_module_by_a_computed_name():
     script = (
         "from plan_cutters_base import fingerprint as f\n"
         "import plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
-        "import plan_cutters.kernels.area.cover, cad_io.tessellate.refine, cad_io.surface.net_bends, cad_io.tessellate.flips\n"
+        "import plan_cutters.kernels.area.cover, cad_io.tessellate.refine, cad_io.surface.bspline, cad_io.tessellate.planar\n"
         "import cad_io.surface.differential, inspect\n"
         "from plan_cutters_base.jit import cache_folder\n"
         "seen, ahead = set(), [n for n, m in __import__('sys').modules.items() if hasattr(m, 'kernel') and hasattr(m, 'entry')]\n"

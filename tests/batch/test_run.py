@@ -153,7 +153,7 @@ def test_the_memory_of_one_process_is_refused(client):
 
 @pytest.mark.slow("starts servers or clusters")
 def test_plan_many_gives_plans_of_shapes_and_paths(client):
-    from cad_io.kernel.components import corner
+    from cad_io.kernel.shapes import corner
 
     parts = [("corner", corner(20.0, 0.2)), "none.step"]
     found = {each.row.name: each for each in plan_many(parts, client, faces=[1], **QUICK)}

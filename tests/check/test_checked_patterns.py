@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cad_io import Part, read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.part.patterns import patterns
 from plan_cutters.document.features import pattern_entries
 from plan_cutters_check.patterns import Patterns

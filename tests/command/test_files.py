@@ -17,11 +17,11 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 from cad_io.arrays import FaceLabels, Style
 from cad_io.errors import WriteError
 from cad_io.part import Part
-from cad_io.split import attempt
+from cad_io.split import cut_faces
 from cad_io.split.border import CannotSplit
 from cad_io.split.pieces import MIXED, split
 from cad_io.write import write_gltf
-from cad_io.write.canonical import canonical
+from cad_io.write.step import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
 from plan_cutters_base.copies import TimeLimit, limited
@@ -47,8 +47,8 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from cad_io.arrays import Style
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import Node
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
 from cad_io.split import split
 from cad_io.write import write_gltf
@@ -130,7 +130,7 @@ def test_triangles_of_a_face_left_whole_have_the_label_of_the_nearest_node(tmp_p
     def refused(*_):
         raise CannotSplit("forced")
 
-    monkeypatch.setattr(attempt, "pieces", refused)
+    monkeypatch.setattr(cut_faces, "pieces", refused)
     part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
     top = next(f.number for f in part.faces if abs(f.area - 600) < 1e-6)
     field = labels(
@@ -381,7 +381,7 @@ def test_the_summary_names_faces_that_were_not_split(result, monkeypatch):
     def refused(*_):
         raise CannotSplit("forced")
 
-    monkeypatch.setattr(attempt, "pieces", refused)
+    monkeypatch.setattr(cut_faces, "pieces", refused)
     found = models.split_result(result)
     document = result.plan.model_copy(update={"split": models.rungs(found)})
     (line,) = [x for x in written(document, Path("missing"), (), verbose=True) if "could not be split" in x]

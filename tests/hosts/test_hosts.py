@@ -10,7 +10,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import ReadError, read_part
 from cad_io.kernel import explore, shape_map
-from cad_io.kernel.assembly import component_of
+from cad_io.kernel.shapes import component_of
 from plan_cutters import Cutter, OptionError, plan, posture_map
 from plan_cutters.hosts.cadquery import register
 from plan_cutters.plan_file.reasons import rgb

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cad_io import read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.posture import PostureRange

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cad_io.face.evaluate import evaluate
+from cad_io.face.curvature import evaluate
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement

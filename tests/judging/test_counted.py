@@ -18,12 +18,12 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Vertex, TopoDS_W
 from scipy.spatial import cKDTree
 
 from cad_io import read_part
-from cad_io.face.clip import clipped, inside
-from cad_io.face.evaluate import density
+from cad_io.face.curvature import density
+from cad_io.face.trim import clipped, inside
 from cad_io.kernel import edges_of, first_derivatives
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
-from cad_io.sample.gap import border_probes
+from cad_io.sample.grid_lines import border_probes
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.mesh import folded, upright
 from plan_cutters import Cutter, Machine, plan

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from cad_io.part.inside_edges import inside_edges
+from cad_io.part.edges import inside_edges
 from plan_cutters import Cutter, Options
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from cad_io import Part
-from cad_io.part.inside_edges import inside_edges
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
+from cad_io.part.edges import inside_edges
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.document.features import sharp_edge_entries

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy import ndimage
 
 from cad_io import SurfaceSamples, Triangles, read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, REASONS, SADDLE, UNDECIDED, UNJUDGED, blank

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cad_io import read_part
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from plan_cutters import plan
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.judging.judge import judge

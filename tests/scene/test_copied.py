@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cad_io.arrays import Triangles
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from plan_cutters import Fixture, Machine, Options, PostureRange
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Conditions

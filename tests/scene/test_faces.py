@@ -12,7 +12,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
 from cad_io.arrays import FaceInfo
-from cad_io.kernel.assembly import Node
+from cad_io.kernel.shapes import Node
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
 from tests.support.cad_parts import box

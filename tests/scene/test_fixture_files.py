@@ -7,8 +7,7 @@ import pytest
 import trimesh
 
 from cad_io import ReadError, read_part
-from cad_io.read.mesh import read_mesh
-from cad_io.read.shells import shells
+from cad_io.read.mesh import read_mesh, shells
 from plan_cutters import Fixture, plan
 from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.report.to_json import schema

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from plan_cutters import Machine, Options
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement

@@ -9,7 +9,7 @@ import pytest
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from plan_cutters import Scene
 from plan_cutters.domain.clamping import Chuck, Vise, requested
 from plan_cutters.domain.fixture import Fixture

@@ -12,8 +12,8 @@ from cad_io import read_part
 from cad_io.arrays import Triangles
 from cad_io.errors import CadIoError
 from cad_io.kernel import faces
-from cad_io.kernel.assembly import Node
-from cad_io.part.orient import orient
+from cad_io.kernel.shapes import Node
+from cad_io.part.bodies import orient
 from plan_cutters import Cutter, Machine, Scene
 from plan_cutters.document.notes import notes_of
 from plan_cutters.domain.assembly import assembly

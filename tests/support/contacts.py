@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from cad_io.face.evaluate import evaluate
-from cad_io.part.orient import orient
+from cad_io.face.curvature import evaluate
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, Options

@@ -32,7 +32,7 @@ import numpy as np
 
 from cad_io import Part
 from cad_io.kernel import silence
-from cad_io.read.face_comparison import edge_count
+from cad_io.read.faults import edge_count
 from plan_cutters import pipeline
 from plan_cutters.command import cli, codes, terminal
 from plan_cutters.document import plan as plan_module

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cad_io.face.evaluate import evaluate
-from cad_io.part.orient import orient
+from cad_io.face.curvature import evaluate
+from cad_io.part.bodies import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, plan
 from plan_cutters.judging.axis_field import AxisField

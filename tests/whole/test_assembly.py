@@ -13,7 +13,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io import read_part
 from cad_io.kernel import faces
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from plan_cutters import Cutter, plan
 from plan_cutters.plan_file.reasons import rgb
 from tests.support.places import SAMPLES

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from cad_io import read_part
 from cad_io.tessellate.start import starts
 from cad_io.write import render_mesh as drawing
-from cad_io.write.net import Net, cut
+from cad_io.write.render_mesh import Net, cut
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.judging import witness
 from plan_cutters.judging.access import access

@@ -48,7 +48,7 @@ def compile_all(maps: bool) -> None:
     import numpy as np
 
     from cad_io.arrays import Triangles
-    from cad_io.kernel.components import corner
+    from cad_io.kernel.shapes import corner
     from plan_cutters import Cutter, plan
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange

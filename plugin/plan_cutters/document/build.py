@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cad_io import FaceInfo, Orientation, Part
 from cad_io.arrays import SurfaceSamples
-from cad_io.kernel.assembly import component_of
+from cad_io.kernel.shapes import component_of
 from cad_io.read.mesh import Mesh
 from plan_cutters import __version__
 from plan_cutters.domain.answers import weights

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from cad_io.part.inside_edges import InsideEdge
+from cad_io.part.edges import InsideEdge
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import largest_fitting, least_radius

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from cad_io import Part
-from cad_io.part.inside_edges import folded_faces
-from cad_io.part.unjudged import CROSSES
-from cad_io.write.back import changed_by_step
+from cad_io.part.edges import folded_faces
+from cad_io.part.part import CROSSES
+from cad_io.write.step import changed_by_step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture

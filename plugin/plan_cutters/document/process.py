@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.document.setups import OverSetups

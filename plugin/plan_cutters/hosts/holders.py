@@ -48,7 +48,7 @@ def holder(
     >>> holder(cadquery.Workplane().circle(15).extrude(30).faces(">Z").circle(20).extrude(40)).id
     'R15L30+R20L40'
     """
-    from cad_io.read.profile import turned_part
+    from cad_io.read.objects import turned_part
     from cad_io.tessellate.meridian import meridian
 
     origin, direction = _axis(axis)

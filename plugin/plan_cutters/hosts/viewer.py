@@ -8,7 +8,7 @@ import numpy as np
 
 from cad_io import Part
 from cad_io.arrays import Floats
-from cad_io.kernel.bodies import Side, of_triangles, placed, revolved
+from cad_io.kernel.shapes import Side, of_triangles, placed, revolved
 from plan_cutters.domain.checks import shown as written
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import outline

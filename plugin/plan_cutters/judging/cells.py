@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
-from cad_io.face.clip import Clipped, clipped
-from cad_io.face.evaluate import density, evaluate
-from cad_io.face.trim import Trim
+from cad_io.face.curvature import density, evaluate
+from cad_io.face.trim import Clipped, Trim, clipped
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts, not_reached
 from plan_cutters.judging.nodes import WIDER, WILDER, from_neighbours, steepest, tensors

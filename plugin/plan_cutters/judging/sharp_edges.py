@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from cad_io.part.inside_edges import InsideEdge
+from cad_io.part.edges import InsideEdge
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import least_radius
 from plan_cutters.domain.verdicts import COLLISION, INACCESSIBLE, REAR_GOUGE, SHARP_EDGE, Verdicts

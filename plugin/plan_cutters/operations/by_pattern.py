@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
+from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.figures import count, duration
 from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.at_once import few_enough, fewer, recommended

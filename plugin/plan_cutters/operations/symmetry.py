@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.candidates import Orientations

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.scene.conditions import Conditions, rotations_of

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Record
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 
 Rows = NDArray[np.int64]
 

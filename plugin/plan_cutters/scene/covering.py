@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Record
-from cad_io.kernel.assembly import component_of, faces_of
+from cad_io.kernel.shapes import component_of, faces_of
 from cad_io.part import Part
 from cad_io.part.bodies import Body
 from plan_cutters.scene.inside_material import balls_inside

@@ -16,7 +16,7 @@ from plan_cutters.errors import OptionError
 
 if TYPE_CHECKING:
     from cad_io import Part
-    from cad_io.kernel.assembly import Node
+    from cad_io.kernel.shapes import Node
 
 #: The faces that a finisher would finish: what is judged where nobody says more.
 DEFAULT = "sculptured,blends"
@@ -126,7 +126,7 @@ def repeated_groups(
     faces : frozenset of int
         Faces of none of these bodies.
     """
-    from cad_io.part.repeats import repeats
+    from cad_io.part.patterns import repeats
 
     out, groups = set(repeated), []
     for each in repeats(part):
@@ -317,7 +317,7 @@ def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
 
 
 def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
-    from cad_io.kernel.assembly import component_of, faces_of
+    from cad_io.kernel.shapes import component_of, faces_of
 
     known = sorted({path for path in component_of(tree).values() if path})
     numbers = faces_of(tree, name.strip("/")) if name.strip("/") else set()
@@ -344,8 +344,8 @@ def _words(part: "Part", value: Any, option: str) -> list[str]:
 def _word(part: "Part", value: Any, option: str) -> str:
     """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
-    from cad_io.read.encodings import typed
     from cad_io.read.objects import face_numbers
+    from cad_io.read.step_text import typed
 
     if isinstance(value, str):
         return typed(value, part.encoding) if part.encoding else value

@@ -8,8 +8,8 @@ import numpy as np
 
 from cad_io import Orientation, Part, read_part
 from cad_io.arrays import Record
-from cad_io.part.orient import orient
-from cad_io.part.repeats import repeated_faces, repeats
+from cad_io.part.bodies import orient
+from cad_io.part.patterns import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number, spelled_out
 from plan_cutters.domain.clamping import Clamping

@@ -9,8 +9,7 @@ import numpy as np
 from cad_io import Part
 from cad_io.arrays import Floats, LostFace, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body, bodies
-from cad_io.part.boxes import face_box
-from cad_io.part.unjudged import CROSSES
+from cad_io.part.part import CROSSES, face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins

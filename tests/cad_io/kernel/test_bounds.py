@@ -16,9 +16,9 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from cad_io import read_part
 from cad_io.errors import SampleError, WriteError
 from cad_io.kernel import faces
-from cad_io.part import coincide, curves, sew
+from cad_io.part import coincide, sew
+from cad_io.part.bodies import orient
 from cad_io.part.coincide import TooMany
-from cad_io.part.orient import orient
 from cad_io.part.sew import edge_uses
 from cad_io.sample import at_point, locate, nearest
 from cad_io.split import split
@@ -93,7 +93,7 @@ def crowded(*_):
 
 @pytest.mark.parametrize(
     ("where", "name", "fault"),
-    [(curves._Kernel, "at", noise), (curves._Kernel, "at", lambda *_: None), (sew, "coinciding", crowded)],
+    [(coincide._Kernel, "at", noise), (coincide._Kernel, "at", lambda *_: None), (sew, "coinciding", crowded)],
 )
 def test_a_shell_that_cannot_be_sewn_stays_as_it_is_and_the_plan_says_so(monkeypatch, where, name, fault):
     monkeypatch.setattr(where, name, fault)
@@ -108,9 +108,9 @@ def test_a_shell_that_cannot_be_sewn_stays_as_it_is_and_the_plan_says_so(monkeyp
 
 def test_a_curve_that_is_never_followed_costs_a_number_of_points(monkeypatch):
     asked = []
-    monkeypatch.setattr(curves._Kernel, "at", lambda self, t: (asked.append(len(t)), noise(self, t))[1])
-    assert not curves.Curves([edge for edge, _ in edge_uses(faces(box()))[:1]], 1e-9).drawn.any()
-    assert 0 < sum(asked) <= 2 * curves.MOST_PIECES
+    monkeypatch.setattr(coincide._Kernel, "at", lambda self, t: (asked.append(len(t)), noise(self, t))[1])
+    assert not coincide.Curves([edge for edge, _ in edge_uses(faces(box()))[:1]], 1e-9).drawn.any()
+    assert 0 < sum(asked) <= 2 * coincide.MOST_PIECES
 
 
 def test_ends_next_to_each_other_are_counted_before_they_are_compared(monkeypatch):

@@ -7,7 +7,7 @@ from OCP.BRep import BRep_Builder
 from OCP.TopoDS import TopoDS_Compound
 
 from cad_io.part import Part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.read import read_part
 from cad_io.sample import sample
 

@@ -11,8 +11,8 @@ from OCP.TopoDS import TopoDS
 
 from cad_io import Part
 from cad_io.kernel import explore
-from cad_io.part.inside_edges import inside_edges
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
+from cad_io.part.edges import inside_edges
 from tests.support.cad_parts import ball, box, cut, drilled, mirror, moved, pocketed, rod
 from tests.support.profiles import grooved, slotted
 

@@ -11,7 +11,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
 from cad_io.kernel import faces, first_derivatives
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from tests.support.cad_parts import ball, box, compound, cut, drilled, mirror, moved, patch, pocketed, real, ring
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cad_io import read_part
-from cad_io.part.motion import Motion
+from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern, patterns
 from tests.support.patterns import impeller, plate
 

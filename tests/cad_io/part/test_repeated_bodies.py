@@ -13,8 +13,8 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL
 
 from cad_io import read_part
 from cad_io.kernel import explore
-from cad_io.part.orient import orient
-from cad_io.part.repeats import repeated_faces, repeats
+from cad_io.part.bodies import orient
+from cad_io.part.patterns import repeated_faces, repeats
 from tests.support.cad_parts import as_nurbs, ball, box, compound, cone, cut, drilled, loose, mirror, moved, ring, rod, write_step
 
 BODIES = {"box": box, "drilled": drilled, "ball": ball, "ring": ring, "cone": cone, "nurbs": lambda: as_nurbs(drilled())}

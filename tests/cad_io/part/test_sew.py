@@ -23,8 +23,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cad_io import read_part
 from cad_io.kernel import explore, faces
-from cad_io.part.curves import Curves
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
+from cad_io.part.coincide import Curves
 from cad_io.part.sew import MOST, RUNGS, edge_uses, join, sew
 from cad_io.sample import sample
 from tests.support.cad_parts import as_nurbs, box, compound, drilled, loose, moved, patch, pocketed, real, rod

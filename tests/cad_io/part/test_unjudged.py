@@ -11,10 +11,9 @@ from OCP.Geom import Geom_ConicalSurface, Geom_Line, Geom_SurfaceOfRevolution
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Circ, gp_Dir, gp_Pln, gp_Pnt
 
 from cad_io import read_part
-from cad_io.part.bodies import bodies
-from cad_io.part.inside_edges import folded_faces
-from cad_io.part.orient import orient
-from cad_io.part.unjudged import CROSSES, ROUND_TWICE
+from cad_io.part.bodies import bodies, orient
+from cad_io.part.edges import folded_faces
+from cad_io.part.part import CROSSES, ROUND_TWICE
 from cad_io.sample import sample
 from tests.support.cad_parts import ball, box, compound, cone, ring
 from tests.support.turned import elbow, from_step, revolved_arc

@@ -10,9 +10,8 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
-from cad_io.kernel.assembly import component_of
-from cad_io.read.encodings import CALLED, decoded, encoding_of, typed
-from cad_io.read.step_text import readable
+from cad_io.kernel.shapes import component_of
+from cad_io.read.step_text import CALLED, decoded, encoding_of, readable, typed
 from plan_cutters import plan
 from tests.support.cad_parts import box, compound, moved
 from tests.support.places import real_file

@@ -11,7 +11,7 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Wr
 
 from cad_io import LostFace, Part, ReadError, read_part
 from cad_io.read import read
-from cad_io.read.face_comparison import misfit, open_border
+from cad_io.read.faults import misfit, open_border
 from cad_io.tessellate import start, tessellate
 from plan_cutters_base.workers.supervise import _Watch
 from tests.support.cad_parts import as_nurbs, ball, compound, drilled, rod

@@ -6,7 +6,7 @@ import pytest
 from OCP.IGESControl import IGESControl_Writer
 
 from cad_io import read_part
-from cad_io.read.iges_units import FLAGS, unit_of
+from cad_io.read.iges import FLAGS, unit_of
 from cad_io.units import UNITS
 from plan_cutters import plan
 from plan_cutters.plan_file.words.text import text_of

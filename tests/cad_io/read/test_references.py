@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from cad_io import ReadError, read_part
-from cad_io.read.references import followed, in_folder_of, names
+from cad_io.read.step_text import followed, in_folder_of, names
 from plan_cutters_base.user_files import WITHIN, checksum, checksums, fingerprint, noted
 from tests.support.step_references import BALL, BOX, write_assembly
 
@@ -194,7 +194,7 @@ def test_short_names_of_entities_are_known(whole):
 
 def test_what_only_the_kernel_would_open_is_refused(whole, monkeypatch, tmp_path):
     """Whatever form of a reference the text is not searched for: the kernel opens no file that nobody noted or permitted."""
-    monkeypatch.setattr("cad_io.read.references.WORDS", (b"NONE",))
+    monkeypatch.setattr("cad_io.read.step_text.WORDS", (b"NONE",))
     with pytest.raises(ReadError, match=f"refers to {BOX} in a form that is not known here"):
         read_part(whole)
     for name in (BOX, BALL):

@@ -15,7 +15,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io import read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from tests.support.cad_parts import ball, box, compound, triangulated
 from tests.support.commands import assert_one_line, in_lines
 from tests.support.forked import run

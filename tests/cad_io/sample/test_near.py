@@ -14,7 +14,7 @@ from OCP.TopLoc import TopLoc_Location
 from scipy.spatial import cKDTree
 
 from cad_io import read_part
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from tests.support.cad_parts import ball, box, compound, cone, cut, drilled, holed_patch, moved, patch, pocketed, real, ring, rod
 

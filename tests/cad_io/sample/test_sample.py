@@ -21,7 +21,7 @@ from cad_io import read_part
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.kernel import second_derivatives
-from cad_io.part.orient import orient
+from cad_io.part.bodies import orient
 from cad_io.sample.on_grids import locate, sample
 from tests.support.cad_parts import (
     as_nurbs,

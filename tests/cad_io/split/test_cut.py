@@ -22,10 +22,9 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 from scipy.interpolate import make_interp_spline
 
-from cad_io.face.uv_region import uv_areas
-from cad_io.kernel import edges_of, explore, faces
-from cad_io.kernel.components import children
-from cad_io.kernel.splines import cubic
+from cad_io.face.trim import uv_areas
+from cad_io.kernel import cubic, edges_of, explore, faces
+from cad_io.kernel.shapes import children
 from cad_io.part import Part
 from cad_io.split.border import parameter_curve
 from cad_io.split.contour import LabelGrid, smoothed

@@ -25,9 +25,9 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io import read_part
 from cad_io.kernel import faces
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import compound
 from cad_io.part import Part
-from cad_io.split import attempt, cut_faces, drawing
+from cad_io.split import cut_faces
 from cad_io.split.border import CannotSplit
 from cad_io.split.cut_faces import TOO_LONG
 from cad_io.split.pieces import MIXED, UNKNOWN, split
@@ -230,7 +230,7 @@ def centre(face):
 
 def spoilt(monkeypatch, part, number, how):
     """Have the pieces of one face made by `how(make)`, where `make()` makes them."""
-    real, place = attempt.pieces, centre(part.face(number))
+    real, place = cut_faces.pieces, centre(part.face(number))
 
     def pieces(net, face, surface, found, regions):
         def make():
@@ -238,7 +238,7 @@ def spoilt(monkeypatch, part, number, how):
 
         return how(make) if centre(face) == pytest.approx(place) else make()
 
-    monkeypatch.setattr(attempt, "pieces", pieces)
+    monkeypatch.setattr(cut_faces, "pieces", pieces)
 
 
 def three_sides():
@@ -290,7 +290,7 @@ def test_a_face_that_never_splits_ends_within_its_bound_and_costs_itself_alone(h
 @pytest.mark.slow("works on many faces")
 def test_where_all_faces_hang_a_few_are_tried(monkeypatch):
     part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
-    monkeypatch.setattr(attempt, "pieces", lambda *_: spin(None))
+    monkeypatch.setattr(cut_faces, "pieces", lambda *_: spin(None))
     monkeypatch.setattr(cut_faces, "_HANGS", 2)
     found = split(part, [labels(part, f.number, lambda x, y: x > 0.5) for f in part.faces], seconds=0.5)
     assert sorted(found.whole) == [1, 2, 3, 4, 5, 6]
@@ -300,16 +300,16 @@ def test_where_all_faces_hang_a_few_are_tried(monkeypatch):
 
 def test_an_invalid_neighbour_is_the_fault_of_the_face_that_cuts_its_edge(monkeypatch):
     part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
-    real, others = attempt.valid, {f.number: f.area for f in part.faces}
+    real, others = cut_faces.valid, {f.number: f.area for f in part.faces}
     first = labels(part, 1, lambda x, y: x > 0.5)
 
     def valid(shape):
         # Only the neighbours of F1 are looked at; with five edges they are those that F1 cuts.
-        cut = len(list(attempt.edges_of(shape))) == 5
+        cut = len(list(cut_faces.edges_of(shape))) == 5
         return not cut and real(shape)
 
-    monkeypatch.setattr(attempt, "valid", valid)
-    monkeypatch.setattr(attempt, "wrong_whole", lambda before, after: "forced")
+    monkeypatch.setattr(cut_faces, "valid", valid)
+    monkeypatch.setattr(cut_faces, "wrong_whole", lambda before, after: "forced")
     found = split(part, [first])
     assert list(found.whole) == [1]
     assert "next to it is not valid" in found.whole[1]
@@ -330,7 +330,7 @@ def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
 
     def twice(make):
         tried.append(1)
-        if len(tried) < len(drawing.FITS):
+        if len(tried) < len(cut_faces.FITS):
             raise CannotSplit("forced")
         return make()
 
@@ -342,7 +342,7 @@ def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
 
 def test_pieces_that_do_not_follow_the_labels_are_refused(monkeypatch):
     part = Part(patch())
-    monkeypatch.setattr(drawing, "curves", lambda *_: [])
+    monkeypatch.setattr(cut_faces, "curves", lambda *_: [])
     found = split(part, [labels(part, 1, lambda x, y: x > 0.5)])
     assert "piece of another label" in found.whole[1]
 

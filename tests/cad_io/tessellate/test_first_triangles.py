@@ -28,8 +28,8 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
 from cad_io import read_part
-from cad_io.kernel import faces, mesher, values
-from cad_io.tessellate import start, tessellate
+from cad_io.kernel import faces, values
+from cad_io.tessellate import mesh, start, tessellate
 from cad_io.tessellate.planar import bounded_by, odd, triangulated
 from tests.support.cad_parts import SHAPES, as_nurbs, ball, box, compound, patch, pocketed, real, ring, spring
 from tests.support.distances import ROUNDING, farthest, farthest_from
@@ -312,7 +312,7 @@ def test_the_second_way_keeps_the_promise_too(make, monkeypatch):
 def test_what_never_meshes_costs_its_own_faces_only(monkeypatch):
     own = start.own_start
     monkeypatch.setattr(start, "own_start", lambda part, n, chord: None if n < 5 else own(part, n, chord))
-    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
+    monkeypatch.setattr(mesh, "BRepMesh_IncrementalMesh", never)
     monkeypatch.setattr(start, "_SECONDS", 0.3)
     monkeypatch.setattr(start, "_TOTAL", 0.6)
     began = time.process_time()
@@ -328,7 +328,7 @@ def test_what_crashes_the_mesher_is_missing(monkeypatch):
     import os
 
     monkeypatch.setattr(start, "own_start", lambda *_: None)
-    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", lambda *_: os.abort())
+    monkeypatch.setattr(mesh, "BRepMesh_IncrementalMesh", lambda *_: os.abort())
     triangles = tessellate(read_part(box()), 0.1)
     assert [why for _, why in triangles.missing] == ["the kernel's mesher fails on it"] * 6
 
@@ -349,28 +349,28 @@ def test_what_the_mesher_failed_on_is_not_tried_again_to_be_drawn(monkeypatch):
 def test_a_face_that_never_meshes_is_not_drawn_and_others_are(monkeypatch):
     shape = compound(ring(), box())
     bad = faces(shape)[0]
-    kernel = mesher.BRepMesh_IncrementalMesh
+    kernel = mesh.BRepMesh_IncrementalMesh
 
     def asked(given, *more):
         while given.IsSame(bad):
             pass
         return kernel(given, *more)
 
-    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", asked)
-    monkeypatch.setattr(mesher, "FACE", 0.4)
+    monkeypatch.setattr(mesh, "BRepMesh_IncrementalMesh", asked)
+    monkeypatch.setattr(mesh, "FACE", 0.4)
     began = time.monotonic()
-    drawn = [found is not None for found in mesher.meshed(faces(shape), 0.1, 0.3)]
+    drawn = [found is not None for found in mesh.meshed(faces(shape), 0.1, 0.3)]
     assert drawn == [False] + [True] * 6
     assert time.monotonic() - began < 20
 
 
 @pytest.mark.slow("works on many faces")
 def test_many_faces_that_never_mesh_end_in_time(monkeypatch):
-    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
-    monkeypatch.setattr(mesher, "HANGS", 2)
-    monkeypatch.setattr(mesher, "FACE", 0.4)
+    monkeypatch.setattr(mesh, "BRepMesh_IncrementalMesh", never)
+    monkeypatch.setattr(mesh, "HANGS", 2)
+    monkeypatch.setattr(mesh, "FACE", 0.4)
     began = time.monotonic()
-    assert list(mesher.meshed(faces(compound(*[box()] * 20)), 0.1, 0.3)) == [None] * 6
+    assert list(mesh.meshed(faces(compound(*[box()] * 20)), 0.1, 0.3)) == [None] * 6
     assert time.monotonic() - began < 20
 
 

@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
-from cad_io.tessellate.flips import delaunay
-from cad_io.tessellate.planar import triangulated
+from cad_io.tessellate.planar import delaunay, triangulated
 
 
 def areas(point, corner):

@@ -11,12 +11,11 @@ from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pnt2d
 
 from cad_io import read_part
 from cad_io.arrays import LostFace
-from cad_io.part.part import Part
-from cad_io.part.unjudged import NO_AREA
+from cad_io.part.part import NO_AREA, Part
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.curves import farthest, packed, point, workspace
-from cad_io.tessellate.flips import delaunay
 from cad_io.tessellate.meridian import meridian
+from cad_io.tessellate.planar import delaunay
 from cad_io.tessellate.proxies import stand_ins
 from cad_io.tessellate.start import expected
 from tests.support.cad_parts import (

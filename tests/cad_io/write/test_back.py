@@ -5,7 +5,7 @@ import math
 import pytest
 
 from cad_io import read_part
-from cad_io.write.back import changed_by_step
+from cad_io.write.step import changed_by_step
 from tests.support.cad_parts import ball, box, compound, cone, drilled, ring
 from tests.support.turned import elbow, revolved_arc
 

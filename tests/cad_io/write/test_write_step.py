@@ -27,8 +27,7 @@ from cad_io import read_part
 from cad_io.arrays import Style
 from cad_io.errors import WriteError
 from cad_io.kernel import explore, faces
-from cad_io.kernel.assembly import Node
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import Node, compound
 from cad_io.part import Part
 from cad_io.split.pieces import Split, split
 from cad_io.write import write_step
