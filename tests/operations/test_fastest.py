@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import bounded, cheap, exchanged, fastest, lagrange, promising
-from plan_cutters.operations.problem import Costs, Problem, Turning
+from plan_cutters.operations.fastest import Costs, Problem, Turning, bounded, cheap, exchanged, fastest, lagrange, promising
 
 
 def problem_of(seed, n, m, cutters=3, setups=2):

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, plan
-from plan_cutters.operations.fastest import fastest
-from plan_cutters.operations.problem import Costs, Problem
-from plan_cutters.operations.rest_areas import largest_first, with_and_without, worths
+from plan_cutters.operations.choices import largest_first, with_and_without, worths
+from plan_cutters.operations.fastest import Costs, Problem, fastest
 from tests.support.shapes import trough
 
 LARGE, SMALL = Cutter.parse("R8L80rc8"), Cutter.parse("R3L80rc3")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters import Cutter
-from plan_cutters.operations.strips import strips
+from plan_cutters.operations.passes import strips
 from tests.support.moved_tool import width_left
 
 NORMAL, X, Y = np.eye(3)[[2, 0, 1]]

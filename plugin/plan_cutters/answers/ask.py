@@ -1,31 +1,175 @@
-"""All answers that the options of a plan ask for, one after the other."""
+"""All answers that the options of a plan ask for, one after the other: stick-outs and radii over several setups, and what to do
+next with cutters that do not finish the part, or why no change is sought.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from typing import Literal
+from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Ints
 from plan_cutters.answers.areas import Finished
-from plan_cutters.answers.in_setups import radius_in_any, stick_out_in_each
-from plan_cutters.answers.mend import mend
+from plan_cutters.answers.largest_radius import largest_radius
+from plan_cutters.answers.state import OtherSetups
+from plan_cutters.answers.steps import steps, worth
+from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.domain.change import Advice
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts
 from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
+from plan_cutters.plan_file.words.next_steps import samples
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress, part_of
-from plan_cutters.scene.work import Budget
+from plan_cutters.scene.work import Budget, Progress, part_of
 
-Axis = tuple[float, float, float]
-OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
+
+def stick_out_in_each(
+    ready: Prepared, cutter: Cutter, verdicts: Sequence[Verdicts], which: Ints, *, progress: Progress | None = None
+) -> StickOut:
+    """The least stick-out with which each setup still reaches all samples that it serves.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    verdicts : sequence of Verdicts
+        In each setup.
+    which : (n,) int32
+        The setup that serves each sample, -1 for none.
+    progress
+        As for `least_stick_out`.
+
+    Returns
+    -------
+    StickOut
+        Of the setup that needs most. With another division of the samples among the setups, less might do.
+    """
+    if len(verdicts) == 1:
+        return least_stick_out(ready, cutter, verdicts[0], progress=progress)
+    tell = progress or (lambda done, total: None)
+    results = list[StickOut]()
+    for k, there in enumerate(verdicts):
+        mine = replace(there, verdict=np.where(there.reached & (which != k), UNJUDGED, there.verdict).astype(np.uint8))
+        part = part_of(tell, k, len(verdicts))
+        results.append(replace(least_stick_out(ready.alone(k), cutter, mine, progress=part), setup=k))
+    # A setup that serves nothing asks for nothing.
+    most = max(results, key=lambda each: -np.inf if np.isnan(each.least) else each.least)
+    return replace(most, served=sum(each.served for each in results))
+
+
+def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Progress | None = None) -> RadiusMap:
+    """Find the largest radius that reaches each sample in one setup or another, as `largest_radius` does in one."""
+    number, tell = len(ready.setups), progress or (lambda done, total: None)
+    best, *others = [largest_radius(ready.alone(k), shape, ratio=ratio, progress=part_of(tell, k, number)) for k in range(number)]
+    for other in others:
+        larger = other.radius > best.radius
+        taken: dict[str, Any] = {
+            name: np.where(larger if column.ndim == 1 else larger[:, None], getattr(other, name), column)
+            for name in ("radius", "beyond", "reason", "axis", "tilt_direction", "tilt", "rotation")
+            if isinstance(column := getattr(best, name), np.ndarray)
+        }
+        # What is undecided in either setup may serve there.
+        unsure = (taken["beyond"] == INACCESSIBLE) & ((best.beyond == UNDECIDED) | (other.beyond == UNDECIDED))
+        source = np.where(best.beyond == UNDECIDED, best.reason, other.reason)
+        taken["beyond"] = np.where(unsure, UNDECIDED, taken["beyond"]).astype(np.uint8)
+        taken["reason"] = np.where(unsure, source, taken["reason"]).astype(np.uint8)
+        best = replace(best, **taken)
+    return best
+
+
+#: A tolerance that is larger than asked by more than rounding was raised.
+_RAISED = 1.001
+
+
+def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
+    """Say why no change is sought; empty where a sample is inaccessible for sure, or a finer tolerance might decide.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    verdicts : Verdicts
+        Of all samples.
+    """
+    not_reached = verdicts.not_reached & ready.finished
+    if not not_reached.any() or (verdicts.verdict[not_reached] != UNDECIDED).any():
+        return ""
+    conditions, number = ready.conditions, int(np.count_nonzero(not_reached))
+    raised = conditions.tolerance > _RAISED * ready.scene.asked
+    if raised and not conditions.judges(cutter):
+        cause = f"the tolerance that can be kept, {mm(conditions.tolerance)}, is too coarse for the cutter"
+    elif set(faces := np.unique(ready.samples.face[not_reached]).tolist()) <= set(conditions.surroundings.loose):
+        cause = f"they lie on {', '.join(f'F{face}' for face in faces)}, which triangles follow too loosely"
+    else:
+        return ""
+    what = "the only sample that it leaves is" if number == 1 else f"all {number:,} samples that it leaves are"
+    return f"it was not asked, because {what} undecided: {cause}; rebuild the model there in CAD"
+
+
+def mend(
+    ready: Prepared,
+    cutter: Cutter,
+    over: Verdicts,
+    reaches: Mapping[Cutter, Verdicts],
+    other_setups: OtherSetups = (),
+    *,
+    progress: Progress | None = None,
+    budget: Budget | None = None,
+) -> Advice:
+    """Find what to do next with one cutter.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+        One of `reaches`.
+    over : Verdicts
+        What it reaches, of all samples, in all setups together.
+    reaches : mapping
+        What each given cutter reaches in the plan's first setup.
+    other_setups : sequence
+        Of each other setup its axis, and what each cutter reaches there by its id.
+    progress : callable, optional
+        Called with the number of cases judged, and the largest number there can be.
+    budget : Budget, optional
+        As for `steps`.
+
+    Returns
+    -------
+    Advice
+        Without steps where none was looked for: `why` says why.
+    """
+    finished, missed = Finished.of(ready), over.not_reached
+    unfinished = np.flatnonzero(missed & ready.finished)
+    within, share = int((ready.inside_bodies & missed).sum()), finished.of_rows(unfinished)
+    why = undecidable(ready, cutter, over) if len(unfinished) else _why_nothing(ready, within)
+    if not why and len(unfinished) and not worth(finished, share):
+        why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
+    found = Advice(cutter.id, len(unfinished) + within, within, why, share)
+    if why or not len(unfinished):
+        return found
+    return steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)
+
+
+def _why_nothing(ready: Prepared, within: int) -> str:
+    """What is to be said where no sample of the finished surface is lost; `within`: samples within other bodies."""
+    inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
+    missing = (
+        f"no {'other ' * bool(within)}sample is lost, but faces are missing from what is in the way: no change of the cutter "
+        "mends that"
+    )
+    rest = missing if ready.conditions.surroundings.doubtful else inside and "nothing else is lost"
+    return "; ".join(filter(None, (inside, rest)))
+
 
 _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 #: Cutters that are mended: those that come nearest.

@@ -7,8 +7,7 @@ import numpy as np
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.answers.areas import Rows
-from plan_cutters.answers.scan import HALF, NEARLY
-from plan_cutters.answers.trial import Case
+from plan_cutters.answers.state import HALF, NEARLY, Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.standard_tools import MOST, smaller

@@ -18,7 +18,7 @@ from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, INSIDE, UNJUDGED
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Progress, in_chunks
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.search.radius import Ladder

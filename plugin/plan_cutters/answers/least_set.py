@@ -11,10 +11,8 @@ from plan_cutters.domain.least_set import LeastSet, Run
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.set_cover import essential_rows
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
-from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.setups import stood_on
+from plan_cutters.scene.preparation import Axis, Prepared, stood_on
 
-Axis = tuple[float, float, float]
 #: Seconds that the proof may take; then the best set found so far is told as such.
 _SECONDS = 10.0
 

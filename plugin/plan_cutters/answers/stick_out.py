@@ -18,10 +18,9 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, bl
 from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
-from plan_cutters.scene.deepest import deepest_on
+from plan_cutters.scene.distances import deepest_on
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import CHUNK, in_chunks
-from plan_cutters.scene.work import METER
+from plan_cutters.scene.work import CHUNK, METER, in_chunks
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
 EXACT, BEYOND = 0.005, 0.01

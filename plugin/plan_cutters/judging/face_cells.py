@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.judging.axis_field import AxisField, angle_between, held_within
+from plan_cutters.judging.axes import AxisField, angle_between, held_within, roomiest
 from plan_cutters.judging.cells import CellContacts, Field, quartered, tensors
-from plan_cutters.judging.margin import roomiest
 from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, search_postures
-from plan_cutters.scene.threads import CHUNK, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import CHUNK, Work, in_chunks
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.area.cover import Sweeping

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
-from plan_cutters.operations.candidates import Orientations, face_directions
+from plan_cutters.operations.orientations import Orientations, face_directions
 from plan_cutters.operations.plans import clearance_of, costs_with
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation
-from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.work import Progress
 
 Served = NDArray[np.bool_]
 Rows = NDArray[np.int64]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
-from plan_cutters.operations.rest_areas import Worth
+from plan_cutters.operations.choices import Worth
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import FaceGrid, Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, Verdicts
-from plan_cutters.judging.axis_field import AxisField, angle_between
-from plan_cutters.judging.margin import margin
-from plan_cutters.judging.nodes import tensors
+from plan_cutters.judging.axes import AxisField, angle_between, margin
+from plan_cutters.judging.cells import tensors
 from plan_cutters.operations.passes import Paths, cut_by_tip
 from plan_cutters.scene.conditions import Conditions, Context
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 Rows = NDArray[np.int64]
 #: How often axes are drawn to their neighbours', at most, and which shares of the way are tried in turn.

@@ -13,12 +13,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
 from plan_cutters.domain.own_results import Nearest, OwnResult
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
-from plan_cutters.operations.candidates import DIGITS, Orientations, apart, directions, neighbours
+from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
-from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import Problems
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.task import Problems, Task
 from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]

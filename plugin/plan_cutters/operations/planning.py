@@ -1,4 +1,4 @@
-"""The plan of operations of a part that was judged: the order of its steps."""
+"""The plan of operations of a part that was judged: its cutters, and the order of its steps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -15,45 +15,70 @@ from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
-from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker, served
-from plan_cutters.operations.companions import accompanied
+from plan_cutters.operations.choices import (
+    COARSE,
+    accompanied,
+    fastest_choice,
+    largest_first_choice,
+    one_more,
+    quicker,
+    served,
+    with_and_without,
+    worths,
+)
 from plan_cutters.operations.entries import operations_entry
-from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
-from plan_cutters.operations.fewer_steps import WHOLE_FACE
 from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
-from plan_cutters.operations.flow_faces import chosen_for_others, flowing, with_moved
-from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.labels import WHOLE_FACE, Seams
+from plan_cutters.operations.motion import chosen_for_others, few_enough, flowing, recommended, with_moved
 from plan_cutters.operations.moving_axes import MovingAxes
-from plan_cutters.operations.one_more import one_more
+from plan_cutters.operations.orientations import STEP, Indexing, apart, candidates
 from plan_cutters.operations.own_steps import own_plan
-from plan_cutters.operations.passes import Paths
+from plan_cutters.operations.passes import Extents, Paths
 from plan_cutters.operations.plans import (
     MINOR_AREA,
     best_area,
     considered,
     costs_with,
+    of_wanted_kinds,
     orientations_of,
     plan_with,
     small_pieces,
     worth_their_turn,
 )
-from plan_cutters.operations.priced import comparable, feeds, without_feed
-from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.probes import Probes, Walls
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import with_and_without, worths
-from plan_cutters.operations.seams import Seams
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.thinned import at_some, thinned
-from plan_cutters.operations.timing import Problems
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.task import Problems, Task, at_some, thinned
+from plan_cutters.options import Options
 from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress, part_of
+from plan_cutters.scene.work import Progress, part_of
+
+
+def comparable(ready: Prepared, least: LeastSet | None) -> list[Cutter]:
+    """The cutters with a feed, without kinds that come after all that are needed, if these have feeds."""
+    unpriced = without_feed(ready)
+    priced, needed = [each for each in ready.cutters if each not in unpriced], [run.cutter for run in least.runs] if least else []
+    if not needed or any(each in unpriced for each in needed):
+        return priced
+    return of_wanted_kinds(priced, needed, ready.chosen.free_form)
+
+
+def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
+    """The feed of each cutter, mm/min; None where one has none."""
+    stated = options.feeds if options.feed is None else dict.fromkeys(cutters, options.feed)
+    return {each: stated[each] for each in cutters} if all(each in stated for each in cutters) else None
+
+
+def without_feed(ready: Prepared) -> tuple[Cutter, ...]:
+    """The cutters that no operation is planned with, for times are requested and they have no feed."""
+    if ready.options.operations not in ("fastest", "both"):
+        return ()
+    stated = ready.options.feeds
+    return tuple(each for each in ready.cutters if each not in stated)
+
 
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.

@@ -1,4 +1,4 @@
-"""A plan made of chosen columns: what each sample goes with, region by region."""
+"""A plan made of chosen columns: what each sample goes with, region by region, and the tilted plane of each operation."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -14,20 +14,59 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, strategy_of
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.fewer_steps import MINOR_SECONDS, MINOR_SHARE, Steps, in_one_step, without_minor_steps
-from plan_cutters.operations.labels import joined, labelled, regions_of
+from plan_cutters.operations.labels import (
+    MINOR_SECONDS,
+    MINOR_SHARE,
+    Steps,
+    in_one_step,
+    joined,
+    labelled,
+    regions_of,
+    without_minor_steps,
+)
+from plan_cutters.operations.orientations import Indexing, Orientations
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import costs_of, paces
-from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
-from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.operations import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 from plan_cutters.scene.preparation import Prepared
+
+
+def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Indexing) -> list[Operation]:
+    """Operations with the tilted plane of each one with a fixed axis: the plane that a control turns to, and what that takes.
+
+    Operations of one cutter in one setup follow each other, in the order in which the rotary axes need least time; the first one
+    starts with these at zero.
+    """
+    options = ready.options
+    placements = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
+    planned = list(operations)
+    groups: dict[tuple[int, str], list[int]] = {}
+    for i, each in enumerate(operations):
+        if each.axis is not None:
+            groups.setdefault((each.setup, each.cutter.id), []).append(i)
+    for (s, _), mine in groups.items():
+        where = indexing.orientations[s]
+        conditions, moved = where.conditions, where.kinematics
+        known = [[each for each in (operations[i].angle, operations[i].other_angle) if each is not None] for i in mine]
+        origin = np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
+        across = conditions.frame[0]
+        for i, seconds in zip(mine, indexing.times(s, known).tolist(), strict=True):
+            axis, angle = operations[i].axis, operations[i].angle
+            assert axis is not None, "a group holds fixed axes"
+            assert angle is not None, "a fixed axis has angles"
+            x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
+            frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
+            planned[i] = operations[i].with_fields(frame=frame, index_s=seconds, index_from=indexing.source)
+    return planned
+
 
 Rows = NDArray[np.int64]
 #: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.

@@ -17,7 +17,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from cad_io.part.motion import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.columns import Columns
-from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.orientations import Orientations
 
 #: Orders of a symmetry that are looked for, the share of the area that must agree, how well normals must, rad, and how many
 #: samples near to a place are looked at.

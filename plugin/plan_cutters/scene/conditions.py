@@ -20,8 +20,7 @@ from plan_cutters.kernels.codes import BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.scene.threads import Progress, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, in_chunks
 
 #: Where material over a contact proves that it is blocked: shares of the length that the tool holds of the normal, and no nearer
 #: than so many blocked depths, for there is the contact's own surface.

@@ -14,8 +14,7 @@ from cad_io.part.motion import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.scene.conditions import Conditions, rotations_of
-from plan_cutters.scene.copies import Copies, Rows
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Copies, Prepared, Rows
 
 #: Samples correspond within this share of the part's size, cosines of their normals within this, and rotations within this, rad.
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
-from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Progress, in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9

@@ -20,8 +20,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, I
 from plan_cutters.kernels.codes import BEYOND, PARALLEL
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Conditions, Context, rotations_of, search_postures
-from plan_cutters.scene.threads import Progress, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, in_chunks
 
 Rows = NDArray[np.int64]
 #: Tilts and rotations this close to an end of a range are on it, rad.

@@ -17,7 +17,7 @@ from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
 from plan_cutters.kernels.codes import AWAY, BALL
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -22,12 +22,10 @@ from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
-from plan_cutters.scene.overlap import entered, overlaps, refuse_overlaps
+from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
-from plan_cutters.setups.clamping import Workpiece, held
-from plan_cutters.setups.gripped import material_bodies
-from plan_cutters.setups.holds import Hold
+from plan_cutters.setups.clamping import Hold, Workpiece, held
+from plan_cutters.setups.workpiece import material_bodies
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.

@@ -20,8 +20,8 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
-from plan_cutters.scene.thickened import boxed, thickened
-from plan_cutters.setups.holds import Hold
+from plan_cutters.scene.triangles import boxed, thickened
+from plan_cutters.setups.clamping import Hold
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.

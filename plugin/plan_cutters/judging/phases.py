@@ -1,17 +1,24 @@
-"""Is the cutter accessible? The seed's second phase: a posture, or why there is none, at every prone sample."""
+"""The seed's steps: convex, concave or saddle, by the kernel's curvature; interference-free or interference-prone, by the dummy
+cutter; and a posture, or why there is none, at every prone sample.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
+    CONCAVE,
+    CONVEX,
     FIXTURE,
     INACCESSIBLE,
     INSIDE,
     LOCAL_GOUGE,
+    SADDLE,
     TOLERANCE,
     UNDECIDED,
     UNJUDGED,
@@ -21,8 +28,123 @@ from plan_cutters.domain.verdicts import (
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture
 from plan_cutters.scene.flats_and_flanks import search
-from plan_cutters.scene.threads import Progress, in_chunks, part_of
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, in_chunks, part_of
+
+#: Curvature times part diagonal below which a curvature is zero: planes and cylinders come out convex, not as noise.
+FLAT = 1e-6
+
+
+def classify(samples: SurfaceSamples, diagonal: float) -> NDArray[np.uint8]:
+    """Class of each sample.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    diagonal : float
+        Of the part's box, mm.
+
+    Returns
+    -------
+    (n,) uint8
+        CONVEX where both curvatures are zero or negative, CONCAVE where both are zero or positive (not both zero),
+        SADDLE where they differ in sign, UNJUDGED where the kernel gave none.
+    """
+    kappa = np.where(np.abs(samples.curvature) * diagonal < FLAT, 0.0, samples.curvature)
+    most, least = kappa[:, 0], kappa[:, 1]
+    result = np.full(len(samples), SADDLE, np.uint8)
+    result[least >= 0] = CONCAVE
+    result[most <= 0] = CONVEX
+    result[samples.unjudged >= 0] = UNJUDGED
+    return result
+
+
+def regions(samples: SurfaceSamples, surface_class: NDArray[np.uint8]) -> Ints:
+    """Number the connected regions of equal class, across smooth face joints.
+
+    Returns
+    -------
+    (n,) int32
+        Region of each sample, from 0.
+    """
+    a, b = samples.neighbours.T
+    same = surface_class[a] == surface_class[b]
+    n = len(samples)
+    graph = coo_array((np.ones(int(same.sum()), np.int8), (a[same], b[same])), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
+
+
+def decompose(
+    samples: SurfaceSamples, convex: NDArray[np.bool_], context: Context,
+    *, inside: Ints | None = None, rows: NDArray[np.int64] | None = None, work: Work | None = None,
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Test convex samples with the dummy cutter: which need no posture search?
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    convex : (n,) bool
+    context : Context
+    inside : (n,) int32, optional
+        The body that each sample lies within, -1 for none (default): none of those within is free.
+    rows : (m,) int64, optional
+        The samples to test, all by default.
+    work : Work, optional
+        Where what is looked at is counted.
+
+    Returns
+    -------
+    (n,) bool
+        Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
+    """
+    from plan_cutters.kernels.search.search import dummy_clear
+
+    conditions, interference_free = context.conditions, np.zeros(len(samples), bool)
+    allowed = convex & conditions.upright(samples.normal)
+    if inside is not None:
+        allowed &= inside < 0
+    selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
+    if not len(context.dummy):
+        return interference_free
+    shape, solids, contacts = (context.dummy, context.outer), conditions.obstacles.solids, contacts_of(samples)
+
+    def tested(piece: NDArray[np.int64]) -> int:
+        return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
+
+    # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
+    looked = in_chunks(tested, selected, conditions.jobs, fixed=True)
+    if work is not None:
+        work.add(looked)
+    return interference_free
+
+
+def march_differs(samples: SurfaceSamples, convex: NDArray[np.bool_], region: Ints, interference_free: NDArray[np.bool_]) -> int:
+    """Convex samples that the seed's march over boundaries would have put on the other side; `region` as in `regions`."""
+    marched = _march(samples, convex, region, interference_free)
+    return int((marched[convex] != interference_free[convex]).sum())
+
+
+def _march(
+    samples: SurfaceSamples, convex: NDArray[np.bool_], region: NDArray[np.int32], free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """The seed's march: from each region's boundary inwards, past every point that is not free.
+
+    What it reaches through points that are not free is prone; a pocket of such points inside is never looked at.
+    """
+    a, b = samples.neighbours.T
+    n = len(samples)
+    inside = region[a] == region[b]
+    # The boundary: next to another region, or at the rim of the sampled surface (fewer than four neighbours).
+    degree = np.bincount(a, minlength=n) + np.bincount(b, minlength=n)
+    rim = degree < 4
+    rim[a[~inside]] = rim[b[~inside]] = True
+    blocked = convex & ~free
+    both = inside & blocked[a] & blocked[b]
+    graph = coo_array((np.ones(int(both.sum()), np.int8), (a[both], b[both])), shape=(n, n))
+    count, island = connected_components(graph, directed=False)
+    reached = np.zeros(count, bool)
+    reached[island[blocked & rim]] = True
+    return np.asarray(convex & ~(blocked & reached[island]))
+
 
 #: A face that triangles follow only within so many tolerances is not searched: all of it is undecided.
 _HOPELESS = 10.0
