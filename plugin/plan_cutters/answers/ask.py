@@ -37,21 +37,8 @@ def stick_out_in_each(
 ) -> StickOut:
     """The least stick-out with which each setup still reaches all samples that it serves.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    verdicts : sequence of Verdicts
-        In each setup.
-    which : (n,) int32
-        The setup that serves each sample, -1 for none.
-    progress
-        As for `least_stick_out`.
-
-    Returns
-    -------
-    StickOut
-        Of the setup that needs most. With another division of the samples among the setups, less might do.
+    `verdicts`: in each setup. `which` (n,) int32: the setup that serves each sample, -1 for none. The result is that of the setup
+    that needs most: with another division of the samples among the setups, less might do.
     """
     if len(verdicts) == 1:
         return least_stick_out(ready, cutter, verdicts[0], progress=progress)
@@ -93,12 +80,7 @@ _RAISED = 1.001
 def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
     """Say why no change is sought; empty where a sample is inaccessible for sure, or a finer tolerance might decide.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    verdicts : Verdicts
-        Of all samples.
+    `verdicts`: of all samples.
     """
     not_reached = verdicts.not_reached & ready.finished
     if not not_reached.any() or (verdicts.verdict[not_reached] != UNDECIDED).any():
@@ -127,9 +109,10 @@ def mend(
 ) -> Advice:
     """Find what to do next with one cutter.
 
+    It has no steps where none was looked for: `why` says why.
+
     Parameters
     ----------
-    ready : Prepared
     cutter : Cutter
         One of `reaches`.
     over : Verdicts
@@ -138,15 +121,8 @@ def mend(
         What each given cutter reaches in the plan's first setup.
     other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
-    progress : callable, optional
-        Called with the number of cases judged, and the largest number there can be.
     budget : Budget, optional
         As for `steps`.
-
-    Returns
-    -------
-    Advice
-        Without steps where none was looked for: `why` says why.
     """
     finished, missed = Finished.of(ready), over.not_reached
     unfinished = np.flatnonzero(missed & ready.finished)
@@ -193,7 +169,6 @@ def ask(
 
     Parameters
     ----------
-    ready : Prepared
     reaches : mapping
         What each cutter reaches.
     stage : callable

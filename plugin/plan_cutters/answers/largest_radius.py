@@ -38,6 +38,8 @@ def largest_radius(
 ) -> RadiusMap:  # fmt: skip
     """Find the largest radius that reaches each sample, under the conditions of a plan.
 
+    Raises OptionError: an argument has no meaning, or the tolerance is too coarse for every radius asked for.
+
     Parameters
     ----------
     ready : Prepared
@@ -51,13 +53,6 @@ def largest_radius(
     least, most : float, optional
         Radii to try, from and to, mm. The most is half the longest side of the part's box by default; the least is 0.1, or a
         hundredth of the most if that is less, or what the tolerance lets be judged if that is more.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-
-    Raises
-    ------
-    OptionError
-        An argument has no meaning, or the tolerance is too coarse for every radius asked for.
     """
     from plan_cutters.kernels.search.radius import largest
 

@@ -76,18 +76,8 @@ class Held:
 def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]]) -> Held:
     """Hold a part along an axis by a table, vise or chuck, and find where a posture is among it.
 
-    Parameters
-    ----------
-    ready : Prepared
-    axis : (float, float, float)
-    word : str
-        `table`, or the word of a vise or chuck.
-    among : callable
-        Where any cutter has a posture among some obstacles, (r,).
-
-    Raises
-    ------
-    NothingToGripError
+    `axis` (float, float, float). `word`: `table`, or the word of a vise or chuck. `among`: where any cutter has a posture among
+    some obstacles, (r,). Raises NothingToGripError.
     """
     surroundings = ready.scene.surround_held(axis, word)
     (placed,) = surroundings.fixtures
@@ -100,14 +90,8 @@ def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surrounding
 def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
     """Take what holds a part best, and say why.
 
-    Parameters
-    ----------
-    tried : list of Held
-        At least one.
-    refused : dict of str
-        Of each kind that cannot hold it, why not.
-    weight : (r,) float
-        The area that each sample stands for.
+    `tried`: at least one. `refused`: of each kind that cannot hold it, why not. `weight` (r,) float: the area that each sample
+    stands for.
     """
     whole = max(1e-300, float(weight.sum()))
     share = {each.kind: float(weight @ each.served) / whole for each in tried}
@@ -151,8 +135,6 @@ def holdable(
 
     Parameters
     ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
     conditions : Conditions
         Machine and posture range.
     axis : (3,) float
@@ -191,7 +173,6 @@ class Ranking:
     ----------
     ready : Prepared
         In any setup, without fixtures.
-    candidates : Candidates
     rows : (r,) int64
         Samples on which directions are compared.
     free : (r,) bool
@@ -227,10 +208,7 @@ class Ranking:
     def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,)) -> "Ranking":
         """Rank the directions of a part by the bound; `words` as the attribute.
 
-        Raises
-        ------
-        OptionError
-            In no direction does the machine hold any axis at which a cutter touches.
+        Raises OptionError: in no direction does the machine hold any axis at which a cutter touches.
         """
         candidates = Candidates.of(ready)
         open_ = np.flatnonzero(ready.somewhere)
@@ -347,16 +325,7 @@ class Ranking:
 
         Of as many that serve as much, those are taken in which the part lies lower.
 
-        Parameters
-        ----------
-        most : int
-        without : set of int
-            Directions that failed.
-
-        Returns
-        -------
-        tuple of int
-            Candidates, that with the most area first; none where none serves anything.
+        `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
         every = self._lowest_first([k for k, held in self.held.items() if held is not None and k not in without])
         flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
@@ -437,19 +406,8 @@ def _reached(
 def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,)) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
-    Parameters
-    ----------
-    ready : Prepared
-        In any setup, without fixtures.
-    most : int
-        Setups that may be proposed together.
-    words : tuple of str
-        What may hold the part: as the attribute of `Ranking`.
-
-    Raises
-    ------
-    OptionError
-        As for `Ranking.of`.
+    `ready`: in any setup, without fixtures. `most`: setups that may be proposed together. `words`: what may hold the part: as the
+    attribute of `Ranking`. Raises OptionError: as for `Ranking.of`.
     """
     ranking = Ranking.of(ready, words)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)

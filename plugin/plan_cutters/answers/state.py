@@ -122,14 +122,8 @@ class SetupOf(NamedTuple):
 class State:
     """Cutters that share a part: what counts is what none of them reaches in any of its setups.
 
-    Attributes
-    ----------
-    ready : Prepared
-    cutters : tuple of Cutter
-        The one that is mended, or what became of it, first.
-    setups : tuple of SetupOf
-    tables : dict
-        What setups that are not planned yet see, by axis and tolerance, those that were looked at last.
+    `cutters`: the one that is mended, or what became of it, first. `tables`: what setups that are not planned yet see, by axis
+    and tolerance, those that were looked at last.
     """
 
     ready: Prepared
@@ -223,12 +217,8 @@ def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
 class Judgements:
     """Keep all that was judged so far, so that nothing is judged twice.
 
-    Attributes
-    ----------
-    looked, missed : mapping
-        By key: samples (n,) that were judged, and those of them that are not reached.
-    tell : callable
-        Called whenever a case was judged.
+    `looked`, `missed`: by key: samples (n,) that were judged, and those of them that are not reached. `tell`: called whenever a
+    case was judged.
     """
 
     looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
@@ -288,7 +278,6 @@ class Candidate:
 
     Attributes
     ----------
-    moves : tuple of Move
     state : State
         After it.
     estimate : float

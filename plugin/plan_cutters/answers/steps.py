@@ -181,9 +181,10 @@ def steps(
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
     where it may lose others, on all. Then a second change is looked for after the best ones.
 
+    It has `share`, `steps` and `areas` then.
+
     Parameters
     ----------
-    ready : Prepared
     advice : Advice
         What was found of the cutter so far.
     cutter : Cutter
@@ -192,15 +193,8 @@ def steps(
         What each given cutter reaches in the plan's first setup.
     other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
-    progress : callable, optional
-        Called with the number of cases judged, and the largest number there can be.
     budget : Budget, optional
         The work that it may take; what promises most is judged in any case. None: as much as it takes.
-
-    Returns
-    -------
-    Advice
-        With `share`, `steps` and `areas`.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
     state = State.of(ready, cutter)

@@ -35,19 +35,7 @@ Progress = Callable[[int, int], None]
 def least_stick_out(ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Progress | None = None) -> StickOut:
     """The least stick-out with which a cutter in its holder reaches every sample that it reaches now.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    verdicts : Verdicts
-        What `judge` found for it.
-    progress : callable, optional
-        Called with the number of samples done, and the number of all.
-
-    Returns
-    -------
-    StickOut
-        `least` is exact to `EXACT` for the rotations of the plan's posture range.
+    `verdicts`: what `judge` found for it. `least` is exact to `EXACT` for the rotations of the plan's posture range.
     """
     rows = np.flatnonzero(verdicts.reached)
     longest = cutter.length
@@ -92,13 +80,9 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: Stic
 class _Search:
     """Searches of one cutter at any stick-out.
 
-    Attributes
-    ----------
-    found : VerdictBuffer
-        A posture of each sample, the shortest one that was looked for.
-    sure : (n,) float
-        From this stick-out on a posture that was found stays free, with what a cover piece may hold too much and `BEYOND` to
-        spare, mm: so that a judgement finds it, or another one. With that or more no search is made. Infinite: none is known.
+    `found`: a posture of each sample, the shortest one that was looked for. `sure` (n,) float: from this stick-out on a posture
+    that was found stays free, with what a cover piece may hold too much and `BEYOND` to spare, mm: so that a judgement finds it,
+    or another one. With that or more no search is made. Infinite: none is known.
     """
 
     def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:

@@ -26,12 +26,8 @@ class AxisField:
 
     Beyond the grid the field stays as at its rim.
 
-    Attributes
-    ----------
-    u, v : (nu,), (nv,) float
-        Grid lines; those of a closed direction have the first one again, a period later.
-    axis : (nu, nv, 3) float
-        Unit, part coordinates; nan where a node has none, and then in all that is next to it.
+    `u`, `v` (nu,), (nv,) float: grid lines; those of a closed direction have the first one again, a period later. `axis` (nu, nv,
+    3) float: unit, part coordinates; nan where a node has none, and then in all that is next to it.
     """
 
     u: Floats
@@ -124,13 +120,8 @@ _WORTH = 3.0
 def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> NDArray[np.float64]:
     """Room (n,) to the local gouging bound across the lean, in sines of the tilt of a flat end; -inf where it does not touch.
 
-    Parameters
-    ----------
-    axis, normal : (n, 3) float
-        Unit.
-    tensor : (n, 3, 3) float
-        Second fundamental form in part coordinates, 1/mm, concave positive.
-    context : Context
+    `axis`, `normal` (n, 3) float: unit. `tensor` (n, 3, 3) float: second fundamental form in part coordinates, 1/mm, concave
+    positive.
     """
     mode = context.outer_tool.mode[0]
     cosine = (axis * normal).sum(axis=1)
@@ -147,18 +138,8 @@ def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> ND
 def roomiest(normal: Floats, direction: Floats, tensor: Floats, axis: Floats, context: Context) -> tuple[Floats, Floats]:
     """Of some postures the one with most room that is not far from a known one; that one where there is none.
 
-    Parameters
-    ----------
-    normal, direction : (n, 3) float
-        Unit normals and larger principal directions.
-    tensor : (n, 3, 3) float
-    axis : (n, 3) float
-        Of the postures that are known.
-    context : Context
-
-    Returns
-    -------
-    axis, tilt_direction : (n, 3) float
+    `normal`, `direction` (n, 3) float: unit normals and larger principal directions. `tensor` (n, 3, 3) float. `axis` (n, 3)
+    float: of the postures that are known. Returns `axis, tilt_direction` (n, 3) float.
     """
     (low, high), other = context.conditions.postures.tilt, np.cross(normal, direction)
     best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)

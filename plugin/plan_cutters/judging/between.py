@@ -37,19 +37,8 @@ def connected(field: Field, cells: CellContacts, level: Indices, *, turning: boo
     Cells that lie in the trim altogether are joined across a common side if they have the same axis, and where that is the normal
     in both, the same side. One that the border cuts may fall apart: it goes with one whole neighbour and joins no others.
 
-    Parameters
-    ----------
-    field : Field
-    cells : CellContacts
-        Served, none of them within another.
-    level : (m,) int64
-        How often each was cut into four.
-    turning : bool
-        Both sides of a common side have the axes of one field.
-
-    Returns
-    -------
-    (m,) int64
+    `cells`: served, none of them within another. `level` (m,) int64: how often each was cut into four. `turning`: both sides of a
+    common side have the axes of one field. Returns (m,) int64.
     """
     m = len(cells)
     tiles, which = np.array(field.index.shape) << _MOST_LEVELS, np.arange(m)
@@ -153,7 +142,6 @@ class Between(Record):
         Those of them that were not looked at more closely since too little was to be gained.
     unknown : tuple of int
         Target faces whose area is not known: none of them is proved, and they are not in `share`.
-    cells : Cells
     around : (n,) float
         Area of all cells about each sample, served or not, mm2.
     """
@@ -203,15 +191,10 @@ def between(
         The faces in them, `empty` ones included, are the target.
     verdicts : Verdicts
         Of the cutter.
-    context : Context
-    part : Part
-    orientation : Orientation
     budget : int
         Most contacts to add to the samples.
     most : float
         Most work to do, counted as `Work` does.
-    work : Work, optional
-        Where it is counted.
     covered_samples : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     axes : Fixed or mapping of int to AxisField, optional
@@ -221,8 +204,6 @@ def between(
     own : (n + 1,) bool, optional
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
-    progress : callable, optional
-        Called with how much is done of the most that may be.
     """
     whole, unknown = _areas(samples, part)
     fixed, turning = (axes, None) if axes is None or isinstance(axes, Fixed) else (None, axes)
@@ -320,14 +301,9 @@ def in_each(
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
-    Parameters
-    ----------
-    samples, verdicts, part, orientation, budget, most, covered_samples, progress
-        As for `between`; the verdicts are those over all setups.
-    which : (n,) int32
-        The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
-    contexts : sequence of Context
-        Of the cutter in each setup, the first one first.
+    `samples`, `verdicts`, `part`, `orientation`, `budget`, `most`, `covered_samples`, `progress`: as for `between`; the verdicts
+    are those over all setups. `which` (n,) int32: the setup that serves each sample, -1 for none: its cells go with the first
+    setup, as those about no sample do. `contexts`: of the cutter in each setup, the first one first.
     """
     place = np.append(np.maximum(which, 0), 0)
     cells = []

@@ -43,18 +43,8 @@ def steepest(tensor: Floats, variation: Floats) -> tuple[Floats, Floats]:
 def from_neighbours(point: Floats, tensor: Floats, grid: FaceGrid, index: NDArray[np.integer]) -> tuple[Floats, Floats]:
     """How far curvature may differ in each sample's cell, 1/mm, and how far the cell reaches, mm.
 
-    Parameters
-    ----------
-    point, tensor : (n, 3), (n, 3, 3) float
-        The samples of the face.
-    grid : FaceGrid
-    index : (nu, nv) int
-        Row of the sample at each node, negative where there is none.
-
-    Returns
-    -------
-    wobble, radius : (n,) float
-        nan where no neighbour tells them.
+    `point`, `tensor` (n, 3), (n, 3, 3) float: the samples of the face. `index` (nu, nv) int: row of the sample at each node,
+    negative where there is none. Returns `wobble, radius` (n,) float: nan where no neighbour tells them.
     """
     on = index >= 0
     at = np.where(on[..., None], point[index], np.nan)
@@ -206,11 +196,7 @@ def laid(
 ) -> tuple[Field, CellContacts, CellContacts]:
     """The cells of a face.
 
-    Returns
-    -------
-    field : Field
-    contacts, strips : CellContacts
-        At the samples, and of tiles whose node lies outside the trim.
+    Returns the field, the contacts at the samples, and those of tiles whose node lies outside the trim.
     """
     trim = part.trim(grid.face)
     assert trim is not None, "a face without a border has no samples"

@@ -48,12 +48,8 @@ _UNTOLD = 2
 class Fixed:
     """Tool axes that stay as they are: no other posture is tried.
 
-    Attributes
-    ----------
-    axis : (k, 3) float
-        Unit.
-    serves : (n, k) bool
-        At which samples each of them is tried, where the sample's own does not serve its cell.
+    `axis` (k, 3) float: unit. `serves` (n, k) bool: at which samples each of them is tried, where the sample's own does not serve
+    its cell.
     """
 
     axis: Floats
@@ -66,8 +62,6 @@ class FaceCells:
 
     Attributes
     ----------
-    field : Field
-    context : Context
     work : Work
         What was looked at, for this face and others.
     fixed : Fixed, optional

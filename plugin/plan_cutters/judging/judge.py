@@ -91,24 +91,9 @@ def judge(
 ) -> Verdicts:
     """Find the verdicts of a cutter on some samples, or on all; nothing else is looked at or changed.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    rows : (m,) int64, optional
-        Samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its neighbours is
-        repeated.
-    known : Verdicts, optional
-        Verdicts that follow from other cutters (`nesting.handed`), for all samples.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-    work : Work, optional
-        Counter of the work done.
-
-    Returns
-    -------
-    Verdicts
-        Of the m samples.
+    `rows` (m,) int64: samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its
+    neighbours is repeated. `known`: verdicts that follow from other cutters (`nesting.handed`), for all samples. The result is
+    that of the m samples.
     """
     samples, context = ready.samples, Context.of(cutter, ready.conditions)
     whole = None if rows is None else with_company(rows, len(samples))
@@ -155,18 +140,9 @@ _FLAT = 1e-6
 class JudgeOnce:
     """Judge as `judge` does, but for samples that are images of others; verdicts are the same, postures may be others.
 
-    Parameters
-    ----------
-    judged : Judge, optional
-        Judges what does not follow.
-    motions : int
-        How many motions of the whole part there are.
-
-    Attributes
-    ----------
-    carried : (motions, 3) int64
-        Of each motion the images at which the posture of the sample was tested and taken, those called not reached without a
-        search, and those that were judged by themselves to verify that: of all cutters and setups so far.
+    `judged`: judges what does not follow. `motions`: how many motions of the whole part there are. `carried` (motions, 3) int64:
+    of each motion the images at which the posture of the sample was tested and taken, those called not reached without a search,
+    and those that were judged by themselves to verify that: of all cutters and setups so far.
     """
 
     def __init__(self, judged: Judge = judge, motions: int = 0) -> None:
@@ -274,18 +250,8 @@ def in_setup(
 ) -> Verdicts:
     """Find the verdicts of a cutter in another setup.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    setup : int
-        Its number, from 1. The side of open faces stays as it is.
-    verdicts : Verdicts
-        Its verdicts in the setup of `ready`.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-    judged : callable, optional
-        Gives verdicts as `judge` does.
+    `setup`: its number, from 1. The side of open faces stays as it is. `verdicts`: its verdicts in the setup of `ready`.
+    `judged`: gives verdicts as `judge` does.
     """
     there = ready.there(setup)
     conditions, known = there.conditions, blank(len(ready.samples))
@@ -330,15 +296,8 @@ class FirstLook:
 def first_look(ready: Prepared) -> FirstLook | None:
     """Judge all cutters at some samples of the first setup; None where all samples are hardly more work.
 
-    Parameters
-    ----------
-    ready : Prepared
-
-    Returns
-    -------
-    FirstLook or None
-        Its verdicts are those of the plan in this setup, but for what is nothing beside the whole: copies, and cutters that
-        others decide.
+    Its verdicts are those of the plan in this setup, but for what is nothing beside the whole: copies, and cutters that
+    others decide.
     """
     every = np.flatnonzero(ready.finished)
     if len(every) * len(ready.cutters) < _WORTH:

@@ -30,14 +30,8 @@ def within_limits(
 ) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine can hold some tool axis at which any of the cutters touches.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters, conditions
-    setup : (float, float, float), optional
-        Another setup axis than that of the conditions, a unit direction.
-    rows : (m,) int64, optional
-        The samples to look at, all by default.
+    `setup` (float, float, float): another setup axis than that of the conditions, a unit direction. `rows` (m,) int64: the
+    samples to look at, all by default.
     """
     if setup is not None:
         conditions = replace(conditions, setup=np.array(setup), x=None)

@@ -37,17 +37,8 @@ FLAT = 1e-6
 def classify(samples: SurfaceSamples, diagonal: float) -> NDArray[np.uint8]:
     """Class of each sample.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    diagonal : float
-        Of the part's box, mm.
-
-    Returns
-    -------
-    (n,) uint8
-        CONVEX where both curvatures are zero or negative, CONCAVE where both are zero or positive (not both zero),
-        SADDLE where they differ in sign, UNJUDGED where the kernel gave none.
+    `diagonal`: of the part's box, mm. Returns (n,) uint8: CONVEX where both curvatures are zero or negative, CONCAVE where both
+    are zero or positive (not both zero), SADDLE where they differ in sign, UNJUDGED where the kernel gave none.
     """
     kappa = np.where(np.abs(samples.curvature) * diagonal < FLAT, 0.0, samples.curvature)
     most, least = kappa[:, 0], kappa[:, 1]
@@ -61,10 +52,7 @@ def classify(samples: SurfaceSamples, diagonal: float) -> NDArray[np.uint8]:
 def regions(samples: SurfaceSamples, surface_class: NDArray[np.uint8]) -> Ints:
     """Number the connected regions of equal class, across smooth face joints.
 
-    Returns
-    -------
-    (n,) int32
-        Region of each sample, from 0.
+    Returns (n,) int32: region of each sample, from 0.
     """
     a, b = samples.neighbours.T
     same = surface_class[a] == surface_class[b]
@@ -79,22 +67,9 @@ def decompose(
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Test convex samples with the dummy cutter: which need no posture search?
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    convex : (n,) bool
-    context : Context
-    inside : (n,) int32, optional
-        The body that each sample lies within, -1 for none (default): none of those within is free.
-    rows : (m,) int64, optional
-        The samples to test, all by default.
-    work : Work, optional
-        Where what is looked at is counted.
-
-    Returns
-    -------
-    (n,) bool
-        Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
+    `convex` (n,) bool. `inside` (n,) int32: the body that each sample lies within, -1 for none (default): none of those within is
+    free. `rows` (m,) int64: the samples to test, all by default. Returns (n,) bool: convex samples at which the dummy cutter, the
+    axis limit and the posture range leave tilt 0 in every rotation.
     """
     from plan_cutters.kernels.search.search import dummy_clear
 
@@ -165,21 +140,15 @@ def access(
 
     Parameters
     ----------
-    samples : SurfaceSamples
     interference_free : (n,) bool
         As `decompose` gives them.
-    context : Context
     inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Verdicts, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
     rows : (m,) int64, optional
-        The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else
-        other postures may be found for the same sample.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-    work : Work, optional
-        Where what is looked at is counted.
+        The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else other
+        postures may be found for the same sample.
     """
     n, conditions = len(samples), context.conditions
     verdicts = blank(n)

@@ -429,7 +429,6 @@ def posture_maps(
 
     Parameters
     ----------
-    samples : SurfaceSamples
     context : Context
         The machine is not looked at.
     verdicts : Verdicts
@@ -444,8 +443,6 @@ def posture_maps(
         Obstacles that are missing or only guessed.
     most : int, optional
         Samples to map, at most. None: as many as take `WORK`.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
     """
     from plan_cutters.kernels.maps.free_map import free_map
 

@@ -59,12 +59,8 @@ _PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
 class Explained:
     """The reach of a cutter with the reasons that can be acted on.
 
-    Attributes
-    ----------
-    verdicts : Verdicts
-        Verdicts and postures as they were.
-    besides : (n,) uint8
-        Where the reason is the axis limit: what else is in the way within it, index into REASONS; else NO_REASON.
+    `verdicts`: verdicts and postures as they were. `besides` (n,) uint8: where the reason is the axis limit: what else is in the
+    way within it, index into REASONS; else NO_REASON.
     """
 
     verdicts: Verdicts
@@ -82,7 +78,6 @@ class Reasons:
 
     Attributes
     ----------
-    samples : SurfaceSamples
     conditions : sequence of Conditions
         Of each setup.
     asked : (n,) bool
@@ -100,13 +95,7 @@ class Reasons:
     def of(self, cutter: Cutter, verdicts: Verdicts, progress: Progress | None = None) -> Explained:
         """Find the reasons of what a cutter loses.
 
-        Parameters
-        ----------
-        cutter : Cutter
-        verdicts : Verdicts
-            What it reaches over all setups, with the reasons that its search found.
-        progress : callable, optional
-            Called with the number of searches done, and the number of all.
+        `verdicts`: what it reaches over all setups, with the reasons that its search found.
         """
         tell = progress or (lambda done, total: None)
         first, n = self.conditions[0], len(verdicts.verdict)
@@ -231,17 +220,7 @@ def may_be_at_edge(verdicts: Verdicts, cutter: Cutter) -> bool:
 def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: Sequence[InsideEdge]) -> Ints:
     """Find the sharp inside edge that loses each sample.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    verdicts : Verdicts
-    cutter : Cutter
-    edges : sequence of InsideEdge
-
-    Returns
-    -------
-    (n,) int32
-        Place in `edges`, -1 where it is none of them.
+    Returns (n,) int32: place in `edges`, -1 where it is none of them.
     """
     result = np.full(len(samples), -1, np.int32)
     radius, losses, reached = least_radius(cutter), _losses(verdicts), np.flatnonzero(verdicts.reached)
@@ -292,12 +271,8 @@ def exempt(reaches: Mapping[Cutter, Verdicts], inside: NDArray[np.bool_]) -> NDA
 
     What is undecided of any cutter is not among them: it may be reached.
 
-    Parameters
-    ----------
-    reaches : dict
-        Of each cutter the verdicts over all setups, with the reason SHARP_EDGE where it applies.
-    inside : (n,) bool
-        Samples inside other bodies of the part: they are none of these.
+    `reaches`: of each cutter the verdicts over all setups, with the reason SHARP_EDGE where it applies. `inside` (n,) bool:
+    samples inside other bodies of the part: they are none of these.
     """
     finest = min(reaches, key=lambda cutter: (least_radius(cutter) or np.inf, cutter.radius))
     blocked = np.logical_and.reduce([verdicts.verdict == INACCESSIBLE for verdicts in reaches.values()])

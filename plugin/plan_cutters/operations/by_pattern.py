@@ -85,21 +85,8 @@ class Copied:
 def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns], tell: Progress) -> Copied | None:
     """Choose orientations that take little time with their images, each counted as often as it is set.
 
-    Parameters
-    ----------
-    task : Task
-        With its symmetry; of an exact pattern the samples may be those of one copy.
-    candidates : Columns
-        Those in the first sector are compared.
-    stored : callable
-        Gives columns for samples that no candidate serves: their own postures.
-    tell : callable
-        Told the progress.
-
-    Returns
-    -------
-    Copied or None
-        None where nothing serves.
+    `task`: with its symmetry; of an exact pattern the samples may be those of one copy. `candidates`: those in the first sector
+    are compared. `stored`: gives columns for samples that no candidate serves: their own postures. None where nothing serves.
     """
     symmetry = task.symmetry
     assert symmetry is not None
@@ -247,15 +234,8 @@ def repeated_orientations(
 ) -> Repeated | None:
     """Choose orientations for one copy of a part; None where it is no pattern, or one copy is not served.
 
-    Parameters
-    ----------
-    task : Task
-    candidates : callable
-        Gives the columns that are compared.
-    stored : callable
-        Gives columns for samples that none of these serves: their own postures.
-    tell : callable
-        Told the progress.
+    `candidates`: gives the columns that are compared. `stored`: gives columns for samples that none of these serves: their own
+    postures.
     """
     own = symmetric(task)
     if own is None or own.symmetry is None:

@@ -103,17 +103,7 @@ def canonical(task: Task, columns: Columns, *, progress: Progress | None = None)
     0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken.
     What lies within the accuracy of the axes is one orientation then, and is written as short as serves.
 
-    Parameters
-    ----------
-    task : Task
-    columns : Columns
-    progress : callable, optional
-        Called with how much is done, of how much.
-
-    Returns
-    -------
-    Columns
-        At most as many, in their order: the same where rotary axes lock at whole multiples of an angle alone.
+    Returns at most as many, in their order: the same where rotary axes lock at whole multiples of an angle alone.
     """
     if not len(columns) or task.ready.options.index_step is not None:
         return columns

@@ -29,12 +29,11 @@ class Worth(NamedTuple):
 
     Attributes
     ----------
-    cutter : Cutter
     only : (n,) int64
         Samples that none of the others reaches.
     saves : float, optional
-        Seconds by which the fastest plan found with it is below the fastest one without it, before its own change; None where
-        no plan without it was found.
+        Seconds by which the fastest plan found with it is below the fastest one without it, before its own change; None where no
+        plan without it was found.
     change : float
         Seconds that its change costs: 0 where it is the only one then.
     """
@@ -56,16 +55,7 @@ def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
     Crumbs are what a cutter cuts in one orientation in less time than that takes to turn to, if a smaller cutter serves it:
     nobody turns a large cutter there.
 
-    Parameters
-    ----------
-    problem : Problem
-    order : sequence of int
-        Numbers of the cutters, the largest first.
-
-    Returns
-    -------
-    (k,) int64
-        Candidates, ascending, that serve all samples.
+    `order`: numbers of the cutters, the largest first. Returns (k,) int64: candidates, ascending, that serve all samples.
     """
     open_columns, picked = np.ones(len(problem.cost), bool), list[int]()
     for place, cutter in enumerate(order):
@@ -305,11 +295,6 @@ def accompanied(task: Task, columns: Columns) -> Columns:
     """Columns with those of other cutters at the same orientations that save more time than they take.
 
     What is not worth its turn any more is left out. Without feeds, or with a most number of operations, all stays.
-
-    Parameters
-    ----------
-    task : Task
-    columns : Columns
     """
     options = task.ready.options
     if task.paths.feed is None or options.most_operations is not None:
@@ -356,21 +341,9 @@ _SECONDS, _SHARE, _TRIED_MORE = 60.0, 0.1, 5
 def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, columns: Columns) -> OneMoreEntry | None:
     """The orientation that saves most beside those of a plan, by plans with it and without it.
 
-    Parameters
-    ----------
-    task, some : Task
-        Of all samples, and of some, by which candidates are compared.
-    search : Search
-        Its candidates that are known whole are tried.
-    plan : OperationPlan
-    columns : Columns
-        Those of its fixed operations.
-
-    Returns
-    -------
-    OneMoreEntry or None
-        None where it would save no more than a minute, or a tenth of the time, or times are not known, or
-        a number of orientations was requested.
+    `task`, `some`: of all samples, and of some, by which candidates are compared. `search`: its candidates that are known whole
+    are tried. `columns`: those of its fixed operations. None where it would save no more than a minute, or a tenth of the time,
+    or times are not known, or a number of orientations was requested.
     """
     least = max(_SECONDS, _SHARE * plan.total)
     options = task.ready.options

@@ -40,17 +40,8 @@ def operations_entry(
 ) -> OperationsEntry:  # fmt: skip
     """Make the entry of plans.
 
-    Parameters
-    ----------
-    task : Task
-    plans : sequence of OperationPlan
-    reason : (n,) uint8
-        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
-    notes : sequence of str
-    fewest : FewestEntry, optional
-    timed : (FastestEntry, float), optional
-    worth : sequence of Worth
-        Of each cutter, the largest first.
+    `reason` (n,) uint8: why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON. `worth`: of
+    each cutter, the largest first.
     """
     options, feed = task.ready.options, task.paths.feed
     area = np.where(task.ready.finished, np.nan_to_num(task.ready.samples.area), 0.0)

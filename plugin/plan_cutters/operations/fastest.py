@@ -37,12 +37,8 @@ class Costs:
 class Turning:
     """Operations of a choice cost what the rotary axes take from one to the next.
 
-    Attributes
-    ----------
-    together : callable
-        What the operations (k,) of a choice cost together.
-    reach : (m,) float
-        Whatever else is chosen, those of the same cutter and setup cost at least this together with a candidate.
+    `together`: what the operations (k,) of a choice cost together. `reach` (m,) float: whatever else is chosen, those of the same
+    cutter and setup cost at least this together with a candidate.
     """
 
     together: Callable[[Which], float]
@@ -52,14 +48,8 @@ class Turning:
 class Problem:
     """Samples and candidates, with what each costs.
 
-    Parameters
-    ----------
-    cost : (n, m) float
-        Of each sample with each candidate; infinite where the candidate does not serve it. Each row has a finite one.
-    cutter, setup : (m,) int
-    costs : Costs
-    turning : Turning, optional
-        None: each operation costs the same.
+    `cost` (n, m) float: of each sample with each candidate; infinite where the candidate does not serve it. Each row has a finite
+    one. `cutter`, `setup` (m,) int. Without `turning` each operation costs the same.
     """
 
     def __init__(self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None) -> None:
@@ -268,12 +258,8 @@ def _improved(problem: Problem, chosen: Which) -> Which:
 class _Without:
     """What samples (n,) cost without one of a choice.
 
-    Attributes
-    ----------
-    best : (n,) int64
-        The candidate of the choice that is the best for each.
-    first, second : (n,) float
-        What it costs, and the next best one; infinite where there is none.
+    `best` (n,) int64: the candidate of the choice that is the best for each. `first`, `second` (n,) float: what it costs, and the
+    next best one; infinite where there is none.
     """
 
     best: Which
@@ -317,12 +303,7 @@ def exchanged(problem: Problem, chosen: Which) -> Which:
 class Reach:
     """The operations of one cutter in one setup cost at least as much together as the candidate that costs most.
 
-    Attributes
-    ----------
-    least : (m,) float
-        By candidate, ascending in each group.
-    first : (g,) int64
-        Of each group, its first candidate.
+    `least` (m,) float: by candidate, ascending in each group. `first` (g,) int64: of each group, its first candidate.
     """
 
     least: Floats
@@ -351,6 +332,9 @@ def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None 
     Whatever the prices, a choice pays for each sample its price, less what its candidates gain on that: what they can gain at
     most leaves the bound.
 
+    Returns the bound; (m,) float: reduced costs of the candidates: those below 0 gain something; (n,) float: how much more often
+    than once the candidates that gain serve each sample, below 0 where none does.
+
     Parameters
     ----------
     cost : (m, n) float
@@ -360,15 +344,6 @@ def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None 
     price : (n,) float
     reach : Reach, optional
         What some candidates cost together at least, beside.
-
-    Returns
-    -------
-    float
-        The bound.
-    (m,) float
-        Reduced costs of the candidates: those below 0 gain something.
-    (n,) float
-        How much more often than once the candidates that gain serve each sample, below 0 where none does.
     """
     gain = np.subtract(cost, price)
     np.minimum(gain, 0.0, out=gain)
@@ -388,12 +363,7 @@ class _Ascent:
     Each step raises prices of samples that the candidates taken do not serve, and lowers those that several of them serve; its
     length follows from how far the bound is from a choice that is known.
 
-    Attributes
-    ----------
-    bound : float
-        Of choices with all these cutters and setups.
-    work : int
-        Costs looked at.
+    `bound`: of choices with all these cutters and setups. `work`: costs looked at.
     """
 
     def __init__(self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which) -> None:

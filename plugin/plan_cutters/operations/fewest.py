@@ -317,15 +317,12 @@ class Search:
 
     Parameters
     ----------
-    probes : Probes
     columns : Columns
         The first candidates.
     rows : (n,) int64
         Samples to serve.
     stored : callable
         Gives columns for samples that no candidate serves: their own postures.
-    progress : callable, optional
-        Called with how much of the first table is done, of how much.
     first : int
         Samples that the first table holds.
 
@@ -534,15 +531,8 @@ def search_fewest(
 ) -> Fewest:
     """Find the fewest orientations, with candidates that are refined down to a spacing.
 
-    Parameters
-    ----------
-    search : Search
-    orientations : sequence of Orientations
-        Of each setup.
-    spacing, finest : float
-        Of the first candidates, and the least, rad; equal: none are added.
-    tell : callable
-        Told the number of levels done and of all.
+    `orientations`: of each setup. `spacing`, `finest`: of the first candidates, and the least, rad; equal: none are added.
+    `tell`: told the number of levels done and of all.
     """
     levels = max(0, math.ceil(math.log2(spacing / finest) - 0.5))
     best = search.solve(prove=not levels)

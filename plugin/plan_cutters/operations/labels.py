@@ -83,19 +83,9 @@ _ROUNDS = 5
 def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
     """Choose an operation for each sample.
 
-    Parameters
-    ----------
-    cost : (n, k) float
-        Of cutting each sample with each operation; infinite where the operation does not serve it.
-    edge : (e, 2) int
-        Pairs of neighbouring samples.
-    border : (e,) float
-        What it costs if the two have different operations, in the same unit.
-
-    Returns
-    -------
-    (n,) int32
-        Index of the operation, -1 where none serves the sample: never one that does not serve it.
+    `cost` (n, k) float: of cutting each sample with each operation; infinite where the operation does not serve it. `edge` (e, 2)
+    int: pairs of neighbouring samples. `border` (e,) float: what it costs if the two have different operations, in the same unit.
+    Returns (n,) int32: index of the operation, -1 where none serves the sample: never one that does not serve it.
     """
     served = np.isfinite(cost).any(axis=1)
     label = np.full(len(cost), -1, np.int32)
@@ -310,20 +300,8 @@ class Steps:
 def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]) -> Ints:
     """Let faces of free form go into one step each, where one serves nearly all of what is cut of it at little more time.
 
-    Parameters
-    ----------
-    steps : Steps
-    number : (n,) int32
-        The step that each sample goes with, -1 for none.
-    face : (n,) int
-        The face of each sample.
-    free_form : sequence of int
-        Numbers of the faces of free form.
-
-    Returns
-    -------
-    (n,) int32
-        As `number`.
+    `number` (n,) int32: the step that each sample goes with, -1 for none. `face` (n,) int: the face of each sample. `free_form`:
+    numbers of the faces of free form. Returns (n,) int32: as `number`.
     """
     for each in free_form:
         rows = np.flatnonzero((face == each) & (number >= 0))
@@ -345,18 +323,9 @@ def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]
 def without_minor_steps(steps: Steps, number: Ints, *, incomplete: bool) -> Ints:
     """Join minor steps to others that serve their samples, where the plan takes no more time then.
 
-    Parameters
-    ----------
-    steps : Steps
-    number : (n,) int32
-        The step that each sample goes with, -1 for none.
-    incomplete : bool
-        Whether the plan leaves something anyway: then what is hardly anything, and no other step serves, is left as well.
-
-    Returns
-    -------
-    (n,) int32
-        As `number`; -1 as well where a sample is left.
+    `number` (n,) int32: the step that each sample goes with, -1 for none. `incomplete`: whether the plan leaves something anyway:
+    then what is hardly anything, and no other step serves, is left as well. Returns (n,) int32: as `number`; -1 as well where a
+    sample is left.
     """
     before, again = number, True
     while again:

@@ -94,16 +94,8 @@ class _Times:
 def recommended(task: Task, columns: Columns) -> Columns:
     """The columns of a plan that stay where simultaneous motion takes the area of the others.
 
-    Parameters
-    ----------
-    task : Task
-    columns : Columns
-
-    Returns
-    -------
-    Columns
-        All of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
-        orientations were requested otherwise.
+    Returns all of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
+    orientations were requested otherwise.
     """
     options = task.ready.options
     if not len(columns) or options.most_operations is not None or options.index_step is not None:
@@ -148,13 +140,7 @@ def with_moved(task: Task, faces: Sequence[int]) -> Task:
 def flowing(task: Task, others: Callable[[Task], Columns], plan: OperationPlan) -> tuple[list[int], OperationPlan] | None:
     """The faces that simultaneous motion takes as a whole, and the plan that follows; None where no such plan costs less.
 
-    Parameters
-    ----------
-    task : Task
-    others : callable
-        Gives fixed orientations for the samples that are not moved in a task.
-    plan : OperationPlan
-        The best one without.
+    `others`: gives fixed orientations for the samples that are not moved in a task. `plan`: the best one without.
     """
     options = task.ready.options
     if options.most_operations is not None or options.index_step is not None or task.paths.feed is None:

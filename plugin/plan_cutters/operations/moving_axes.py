@@ -80,14 +80,7 @@ class _Test:
 class MovingAxes:
     """Axes for simultaneous motion of each cutter in each setup, found once for all plans of a part.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
-    setups : sequence of Conditions
-    everywhere : sequence of mapping
-        Of each setup the verdicts by cutter.
-    paths : Paths
+    `everywhere`: of each setup the verdicts by cutter.
     """
 
     def __init__(
@@ -121,10 +114,7 @@ class MovingAxes:
     def smooth(self, cutter: int, setup: int, rows: Rows) -> Floats:
         """The same, drawn to the mean of those around them as far as the tool stays free and the passes wide.
 
-        Returns
-        -------
-        (n, 3) float
-            Unit; nan at other samples.
+        Returns (n, 3) float: unit; nan at other samples.
         """
         axis, pace = np.full((len(self._samples), 3), np.nan), np.full(len(self._samples), np.nan)
         axis[rows], pace[rows] = self.widest(cutter, setup, rows)

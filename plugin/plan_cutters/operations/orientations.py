@@ -37,13 +37,8 @@ _FACES, _EVEN = 200, 1e-9
 class Orientations:
     """The orientations that a machine can be set to in one setup.
 
-    Attributes
-    ----------
-    conditions : Conditions
-    kinematics : Kinematics
-        The machine's; one that turns about the setup axis and across it where the machine names none.
-    names : tuple of str
-        Of its two axes.
+    `kinematics`: the machine's; one that turns about the setup axis and across it where the machine names none. `names`: of its
+    two axes.
     """
 
     conditions: Conditions
@@ -183,21 +178,8 @@ def neighbours(axis: Floats, spacing: float) -> Floats:
 def candidates(where: Orientations, samples: SurfaceSamples, step: float | None, spacing: float = STEP) -> tuple[Floats, Floats]:
     """The first candidates of one setup.
 
-    Parameters
-    ----------
-    where : Orientations
-    samples : SurfaceSamples
-    step : float, optional
-        Angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid, and the
-        directions of the part.
-    spacing : float
-        Of that grid, rad.
-
-    Returns
-    -------
-    angle : (m, 2) float
-        deg.
-    axis : (m, 3) float
+    `step`: angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid, and the
+    directions of the part. `spacing`: of that grid, rad. Returns `angle` (m, 2) float: deg; `axis` (m, 3) float.
     """
     angle, axis = where.grid(math.degrees(spacing if step is None else step))
     if step is None:
@@ -227,12 +209,7 @@ MOST = 12
 class Indexing:
     """Another orientation takes the time that was given, else that of the rotary axes by their rates, else 5 s.
 
-    Attributes
-    ----------
-    orientations : tuple of Orientations
-        Of each setup.
-    given : float, optional
-        Seconds.
+    `orientations`: of each setup. `given`: seconds.
     """
 
     orientations: tuple[Orientations, ...]
@@ -304,14 +281,8 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
     The slowest axis counts. An axis without a limit on one side takes the shorter way round; of one with limits, all turns within
     them count, up to one from zero. Up to `MOST` positions all orders are compared; of more, the nearest one comes next.
 
-    Parameters
-    ----------
-    positions : sequence of (s, 2) float
-        The solutions of each position, rad.
-    limit : (2, 2) float
-        Least and largest angle of each axis, rad; infinite: none.
-    rate : (2,) float
-        rad/s.
+    `positions` (sequence of (s, 2) float): the solutions of each position, rad. `limit` (2, 2) float: least and largest angle of
+    each axis, rad; infinite: none. `rate` (2,) float: rad/s.
     """
     endless: NDArray[np.bool_] = np.asarray(~np.isfinite(limit).all(axis=1))
     turned = [_turns(np.atleast_2d(each), limit, endless) for each in positions]

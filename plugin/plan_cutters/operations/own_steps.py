@@ -36,12 +36,8 @@ _SHARED = -1
 class _Judged:
     """Steps as far as they were judged.
 
-    Attributes
-    ----------
-    outcome : tuple of OwnResult
-        In their order; of those that share, with all that they could take.
-    owner : (n,) int64
-        The number of the step that each sample goes with, `_SHARED`, or 0 for none.
+    `outcome`: in their order; of those that share, with all that they could take. `owner` (n,) int64: the number of the step that
+    each sample goes with, `_SHARED`, or 0 for none.
     """
 
     outcome: tuple[OwnResult, ...]
@@ -51,20 +47,9 @@ class _Judged:
 def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]) -> tuple[OperationPlan, tuple[OwnResult, ...]]:
     """Make the plan of a process that a person wrote.
 
-    Parameters
-    ----------
-    task : Task
-        Its cutters are all that the steps name, and others.
-    process : OwnProcess
-    planned : callable
-        Gives the fixed orientations of what the steps leave, as a task of its own.
-
-    Returns
-    -------
-    OperationPlan
-        Called `process`; its operations know their steps.
-    tuple of OwnResult
-        What each step does, in their order.
+    `task`: its cutters are all that the steps name, and others. `planned`: gives the fixed orientations of what the steps leave,
+    as a task of its own. The plan is called `process`, and its
+    operations know their steps; behind it is what each step does, in their order.
     """
     judged = _judged(task, process)
     barred = {

@@ -33,12 +33,7 @@ _OF_A_FACE, _AT_LEAST, _TOGETHER = 100, 16, 60_000
 class Extents:
     """Lengths of faces through samples, measured when they are requested first.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-        n of them.
-    obstacles : Obstacles
-        With the triangles of the part.
+    `samples`: n of them. `obstacles`: with the triangles of the part.
 
     Notes
     -----
@@ -149,7 +144,6 @@ def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float
 
     Parameters
     ----------
-    cutter : Cutter
     samples : SurfaceSamples
         n of them.
     axis : (n, 3) float
@@ -222,7 +216,6 @@ def centre_path(
 
     Parameters
     ----------
-    cutter : Cutter
     normal, direction, axis, feed : (n, 3) float
         Unit normals, directions of the larger curvature, tool axes, and feed directions in the surface.
     curvature : (n, 2) float
@@ -266,17 +259,8 @@ def _touching(cutter: Cutter, tilt: Floats) -> tuple[Floats, Floats]:
 def _section(width: Floats, curvature: Floats, offset: Floats, radius: Floats, sine: Floats, scallop: float) -> Floats:
     """Widths (n,) of passes that are wide for the tool, by its section across the feed.
 
-    Parameters
-    ----------
-    width : (n,) float
-        By the second order, mm.
-    curvature : (n, 2) float
-        Of the surface, the larger first.
-    offset, radius : (n,) float
-        Of the part that touches, mm.
-    sine : (n,) float
-        Of the tilt.
-    scallop : float
+    `width` (n,) float: by the second order, mm. `curvature` (n, 2) float: of the surface, the larger first. `offset`, `radius`
+    (n,) float: of the part that touches, mm. `sine` (n,) float: of the tilt.
     """
     # The ellipse of the largest half width: w^2 = w2^2 - (w2 / 2)^4 / a^2, until its sides are reached.
     half = np.maximum(np.abs(radius + offset), radius)

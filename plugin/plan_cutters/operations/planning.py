@@ -108,7 +108,6 @@ def plan_operations(
 
     Parameters
     ----------
-    ready : Prepared
     everywhere : sequence of mapping
         Of each setup, the first one first, the verdicts by cutter.
     least : LeastSet, optional

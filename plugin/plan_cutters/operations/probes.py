@@ -24,16 +24,9 @@ Rows = NDArray[np.int64]
 class Probes:
     """The test of columns at samples, and how often it was made.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
-    setups : sequence of Conditions
-        Of each setup, with its own machine frame, fixtures and obstacles.
-    outside : sequence of (n,) bool
-        Of each setup the samples that can be machined there: not clamped faces, not inside material.
-    barred : mapping, optional
-        Index of a cutter -> samples (n,) at which it is not to be planned.
+    `setups`: of each setup, with its own machine frame, fixtures and obstacles. `outside` (sequence of (n,) bool): of each setup
+    the samples that can be machined there: not clamped faces, not inside material. `barred`: index of a cutter -> samples (n,) at
+    which it is not to be planned.
 
     Attributes
     ----------
@@ -132,13 +125,7 @@ class Passes(Record):
 class Walls:
     """The passes along walls.
 
-    Parameters
-    ----------
-    probes : Probes
-    obstacles : Obstacles
-        With the triangles of the part.
-    paths : Paths
-        An axis may be off the ruling by the accuracy of the rotary axes.
+    `obstacles`: with the triangles of the part. `paths`: an axis may be off the ruling by the accuracy of the rotary axes.
     """
 
     def __init__(self, probes: Probes, obstacles: Obstacles, paths: Paths) -> None:

@@ -43,20 +43,8 @@ def proved_moving(
     A cell counts if every axis that the field has in it, and every other one as near to the cell's, serves every contact of the
     cell: so any path inside a piece is safe with the axes of the field (`docs/between_samples.md`, lemma B16).
 
-    Parameters
-    ----------
-    ready : Prepared
-    operation : Operation
-    verdicts : Verdicts
-        Of its cutter in its setup.
-    budget, most
-        Contacts and work, as of `between`.
-    progress : callable, optional
-
-    Returns
-    -------
-    Operation
-        Unchanged where the rotations are limited, or the machine cannot turn a tool in all directions.
+    `verdicts`: of its cutter in its setup. `budget`, `most`: contacts and work, as of `between`. It is unchanged where the
+    rotations are limited, or the machine cannot turn a tool in all directions.
     """
     samples, context = ready.samples, Context.of(operation.cutter, ready.setups[operation.setup])
     first, last = context.conditions.postures.rotation
@@ -212,20 +200,8 @@ def proved(
     and counts for the operation of its sample. A simultaneous operation is proved with a field of axes. Where no area between
     samples was requested, nothing is looked at and nothing is written.
 
-    Parameters
-    ----------
-    ready : Prepared
-    everywhere : sequence of mapping
-        Of each setup the verdicts by cutter.
-    plan : OperationPlan
-    searched : int
-        Boxes that the searches for verdicts looked at: unless a budget was requested, the proof takes a share of them.
-    progress : callable, optional
-        Called with how much is done of the most that may be.
-
-    Returns
-    -------
-    OperationPlan
+    `everywhere`: of each setup the verdicts by cutter. `searched`: boxes that the searches for verdicts looked at: unless a
+    budget was requested, the proof takes a share of them.
     """
     options, n = ready.options, len(ready.samples)
     budget = options.contacts_between(n)

@@ -78,16 +78,7 @@ def nearest(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> NDArray[np.i
 
 
 class Problems:
-    """Say what samples cost with candidates, as both become more: paces that were found once are kept.
-
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
-    paths : Paths
-    indexing : Indexing
-    walls : Walls
-    """
+    """Say what samples cost with candidates, as both become more: paces that were found once are kept."""
 
     def __init__(
         self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing, walls: Walls
@@ -104,7 +95,6 @@ class Problems:
 
         Parameters
         ----------
-        columns : Columns
         active : (m,) int64
             Their numbers, ascending: what had one keeps it.
         table : (r, m) bool
@@ -113,7 +103,6 @@ class Problems:
             Those of the time before come first.
         area : (r,) float
             That each of `rows` stands for, mm2.
-        costs : Costs
         """
         pace, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
         if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():
@@ -137,7 +126,6 @@ class Task:
 
     Attributes
     ----------
-    ready : Prepared
     cutters : tuple of Cutter
         Those that are compared; columns count in them.
     orientations : tuple of Orientations
@@ -146,13 +134,6 @@ class Task:
         Of each setup, the verdicts by cutter.
     rows : (r,) int64
         Samples that are reached by one of the cutters in one of the setups.
-    probes : Probes
-    paths : Paths
-    indexing : Indexing
-    problems : Problems
-    walls : Walls
-    moving : MovingAxes
-    seams : Seams
     symmetry : Symmetry, optional
         Under which each column stands for itself and its images; None: for itself alone.
     copies : int
@@ -204,16 +185,8 @@ SOME = 2500
 def thinned(task: Task, most: int = SOME) -> Task:
     """The same task for some of its samples, evenly taken, each with the area of those that it stands for.
 
-    Parameters
-    ----------
-    task : Task
-    most : int
-        About how many samples; where the task has no more, it is the task itself.
-
-    Returns
-    -------
-    Task
-        Its plans reckon what the plans of all samples take; where it is served, others need not be.
+    `most`: about how many samples; where the task has no more, it is the task itself. Its plans reckon what the plans of
+    all samples take; where it is served, others need not be.
     """
     every = len(task.rows) // most
     return task if every < 2 else at_some(task, task.rows[::every])

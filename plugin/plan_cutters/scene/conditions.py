@@ -33,10 +33,8 @@ class Conditions(Record):
 
     Attributes
     ----------
-    machine : Machine
     setup : (3,) float
         Unit setup axis.
-    postures : PostureRange
     surroundings : Surroundings
         What is, and what may be, in the way.
     tolerance : float
@@ -101,8 +99,6 @@ class Context(Record):
 
     Attributes
     ----------
-    cutter : Cutter
-    conditions : Conditions
     outer_tool : Assembly
         A triangle that does not reach into it lets the surface come no deeper than allowed.
     inner_tool : Assembly
@@ -217,9 +213,7 @@ def verdict_arrays_of(verdicts: VerdictBuffer) -> VerdictArrays:
 def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
     """Refuse contacts that are no points with a normal, a direction and curvatures: kernels say nothing of them.
 
-    Raises
-    ------
-    ValueError
+    Raises ValueError.
     """
     if not all(np.isfinite(column[rows]).all() for column in contacts):
         raise ValueError("contacts to search a posture for must be finite")
@@ -231,28 +225,18 @@ def search_postures(
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
+    Raises ValueError: a contact is not a point with a normal and a curvature: nothing can be said of it.
+
     Parameters
     ----------
-    contacts : Contacts
     rows : (m,) int64
         Contacts to decide.
-    context : Context
-    verdicts : VerdictBuffer
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
     strict : bool
         Only postures that curvature at the contact allows, as if there were no tolerance.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-    work : Work, optional
-        Where what is looked at is counted.
     brief : bool
         What takes long is left undecided: enough for a reason, not for a verdict.
-
-    Raises
-    ------
-    ValueError
-        A contact is not a point with a normal and a curvature: nothing can be said of it.
     """
     from plan_cutters.kernels.search.search import search
 
@@ -276,15 +260,7 @@ def free_in_posture(
 ) -> NDArray[np.bool_]:
     """Contacts (n,) of some rows (m,) at which the tool stands free in a posture that is known from elsewhere.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Contacts with a posture: its axis is one that the machine holds.
-    axis, tilt_direction : (n, 3) float
-    context : Context
-    work : Work, optional
-        Where what is looked at is counted.
+    `rows` (m,) int64: contacts with a posture: its axis is one that the machine holds. `axis`, `tilt_direction` (n, 3) float.
     """
     from plan_cutters.kernels.search.postures import free
 

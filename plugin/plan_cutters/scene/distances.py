@@ -75,19 +75,8 @@ def clearances_over(
 def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions) -> Clearances:
     """Clearance at every posture found.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutter : Cutter
-    verdicts : Verdicts
-        What was found for it.
-    conditions : Conditions
-
-    Returns
-    -------
-    Clearances
-        Unknown at all samples where an obstacle is missing or only guessed, for nothing could be proved, and of a bare cutter
-        that is no longer than it is wide.
+    `verdicts`: what was found for it. All is unknown where an obstacle is missing or only guessed, for nothing
+    could be proved, and of a bare cutter that is no longer than it is wide.
     """
     n, obstacles, steps = len(samples), conditions.obstacles, rungs(cutter)
     result = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
@@ -217,8 +206,6 @@ def deepest(
     ----------
     part : Part, optional
         Whose faces the obstacles are; without it the depth is that of triangles.
-    obstacles : Obstacles
-    cutter : Cutter
     contact, normal : (3,) float
     posture : Verdicts
         Of length one.

@@ -82,9 +82,11 @@ def choose(
 ) -> Chosen:
     """Target and ignored faces of a part.
 
+    Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all
+    setups.
+
     Parameters
     ----------
-    part : Part
     faces : str, objects or None
         None: the faces picked on the host's object, else `DEFAULT`.
     ignored : collection of int
@@ -97,11 +99,6 @@ def choose(
         Of other setups: only what is clamped in all of them, too, is left.
     repeated : mapping of int to int
         Faces, ignored too, that lie where others lie: which face stands for each.
-
-    Raises
-    ------
-    OptionError
-        A choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
@@ -119,12 +116,8 @@ def repeated_groups(
 ) -> tuple[list[tuple[int, tuple[int, ...], int, tuple[int, ...]]], frozenset[int]]:
     """What is left out because it lies where others of the part lie.
 
-    Returns
-    -------
-    bodies : list of (int, tuple of int, int, tuple of int)
-        A body and its faces, and the body that stands for it and its faces.
-    faces : frozenset of int
-        Faces of none of these bodies.
+    Returns `bodies` list of (int, tuple of int, int, tuple of int): a body and its faces, and the body that stands for it and its
+    faces; `faces`: faces of none of these bodies.
     """
     from cad_io.part.repeats import repeats
 
@@ -143,10 +136,7 @@ def repeated_groups(
 def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
     """Numbers of the faces that are held in a setup; of what is `repeated`, those that stand for it.
 
-    Raises
-    ------
-    OptionError
-        A word selects no face of the part.
+    Raises OptionError: a word selects no face of the part.
     """
     if placed is None:
         return frozenset()
@@ -167,10 +157,7 @@ def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
 def face_numbers(part: "Part", value: Any) -> tuple[int, ...]:
     """Numbers of faces, ascending, from a number, a face's name, the words of `--faces`, or objects of a kernel or CAD host.
 
-    Raises
-    ------
-    OptionError
-        It selects no face of the part.
+    Raises OptionError: it selects no face of the part.
     """
     text = _word(part, value, "faces")
     if named := tuple(f.number for f in part.faces if f.name and f.name == text):
@@ -189,14 +176,15 @@ def select_faces(
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
+    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
+
     Parameters
     ----------
     faces : sequence of FaceInfo
         All faces of the part.
     text : str
-        `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
-        `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
-        sculptured.
+        `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or `color:#RRGGBB`;
+        after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is sculptured.
     tree : sequence of Node
         Components of the part.
     ignored : iterable of int
@@ -205,11 +193,6 @@ def select_faces(
         Numbers of the faces that are fillets and rounds.
     repeated : mapping of int to int
         Faces that lie where others lie, and which one is taken for each.
-
-    Raises
-    ------
-    OptionError
-        The text is not of that form, selects nothing, or names an ignored face by its number.
     """
     out = frozenset(ignored)
     remaining = [f for f in faces if f.number not in out]

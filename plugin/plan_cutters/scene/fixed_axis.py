@@ -42,11 +42,7 @@ def served_by(
 ) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
-    Returns
-    -------
-    free : (k, m) bool
-    made : int
-        How many times the tool was put down.
+    Returns `free` (k, m) bool; `made`: how many times the tool was put down.
     """
     way, made, _ = _tested(rows, axes, samples, context, progress)
     return way >= 0, made

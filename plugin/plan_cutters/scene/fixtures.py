@@ -54,10 +54,7 @@ class _Body(Record):
 def read(fixture: Fixture, cache: FixtureCache, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
     """Read the source of a fixture; the result is None where words describe the fixture.
 
-    Raises
-    ------
-    ReadError
-        It cannot be read, or holds nothing that could be in the way.
+    Raises ReadError: it cannot be read, or holds nothing that could be in the way.
     """
     if fixture.kind:
         return None
@@ -105,11 +102,13 @@ def joined(
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
+    Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has nothing
+    to grip.
+
     Parameters
     ----------
     surroundings : Surroundings
         Of the part alone.
-    fixtures : sequence of Fixture
     chord : float
         Chord error to ask for, mm.
     cache : mapping, changed
@@ -122,11 +121,6 @@ def joined(
         Places a vise or chuck for a unit setup axis. None: there is none to be placed.
     sign : (faces,) float, optional
         Side of each face of the part that is out of the material. None: nobody asks which bodies a vise or chuck holds.
-
-    Raises
-    ------
-    ReadError, UnjudgeableError, FixtureError
-        A fixture cannot be read, or has no triangles; a vise or chuck has nothing to grip.
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
@@ -310,11 +304,7 @@ _PRECISION, _FEW = 0.002, 400
 class Overlap(Record):
     """Where a fixture and the part are deepest in each other, of the points looked at.
 
-    Attributes
-    ----------
-    depth : float
-        mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface.
-    point : (3,) float
+    `depth`, mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface. `point` (3,) float.
     """
 
     depth: float
@@ -324,10 +314,7 @@ class Overlap(Record):
 def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
     """Refuse fixtures that stand in the part.
 
-    Raises
-    ------
-    FixtureError
-        It names the fixture, the depth and the place.
+    Raises FixtureError: it names the fixture, the depth and the place.
     """
     part = (surroundings.alone or surroundings).certain
     for each in surroundings.fixtures:
@@ -348,14 +335,8 @@ def overlap(part: Obstacles, fixture: Obstacles, tolerance: float) -> Overlap | 
 
     Only what is closed has an inside: two surfaces that enclose nothing are not compared.
 
-    Parameters
-    ----------
-    part : Obstacles
-        The part alone, with what it surely encloses.
-    fixture : Obstacles
-        In its place.
-    tolerance : float
-        Depth that is no fault, mm, beside the chord errors of both.
+    `part`: the part alone, with what it surely encloses. `fixture`: in its place. `tolerance`: depth that is no fault, mm, beside
+    the chord errors of both.
     """
     deep, pairs = _compared(part, fixture, tolerance)
     overlaps = [_deepest(points, other, deep) for points, other in pairs]

@@ -42,13 +42,8 @@ def search(
 ) -> None:  # fmt: skip
     """Search a posture for contacts as `search_postures` does, and then with a flat or a flank of the tool on them.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    face : (n,) int32
-        Numbers of the faces that they lie on.
-    rows, context, verdicts, progress, fixed, work, brief
-        As for `search_postures`.
+    `face` (n,) int32: numbers of the faces that they lie on. `rows`, `context`, `verdicts`, `progress`, `fixed`, `work`, `brief`:
+    as for `search_postures`.
     """
     search_postures(contacts, rows, context, verdicts, progress, fixed=fixed, work=work, brief=brief)
     on_the_flat(contacts, rows[verdicts.not_reached[rows]], context, verdicts)
@@ -61,14 +56,7 @@ def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: Verd
     Its edge need not touch there: what the flat lies on is cut as well. Where that is not found, a contact is inaccessible only
     if it is proved that there is no place for the axis.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Those for which `search_postures` has found no posture.
-    context : Context
-    verdicts : VerdictBuffer
-        Read and written.
+    `rows` (m,) int64: those for which `search_postures` has found no posture. `verdicts`: read and written.
     """
     conditions = context.conditions
     if not conditions.postures.full_turn:
@@ -125,16 +113,8 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
 
     Of a contact that only the axis limit seemed to lose, the reason becomes that of the flank.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    face : (n,) int32
-        Numbers of the faces that they lie on.
-    rows : (m,) int64
-        Those for which neither `search_postures` nor `on_the_flat` has found a posture.
-    context : Context
-    verdicts : VerdictBuffer
-        Read and written.
+    `face` (n,) int32: numbers of the faces that they lie on. `rows` (m,) int64: those for which neither `search_postures` nor
+    `on_the_flat` has found a posture. `verdicts`: read and written.
     """
     conditions = context.conditions
     rows = rows[verdicts.reason[rows] != INSIDE]

@@ -41,6 +41,8 @@ _MARGIN = 0.5
 class Obstacles(Record):
     """Triangles with their bounding tree.
 
+    Raises UnjudgeableError: there are no triangles, or one has a corner that is no point: nothing could be called safe.
+
     Attributes
     ----------
     triangles : Triangles
@@ -55,11 +57,6 @@ class Obstacles(Record):
         Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
     first : int, optional
         So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
-
-    Raises
-    ------
-    UnjudgeableError
-        There are no triangles, or one has a corner that is no point: nothing could be called safe.
     """
 
     triangles: Triangles
@@ -349,14 +346,7 @@ class Obstacles(Record):
     ) -> NDArray[np.bool_]:
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
-        Parameters
-        ----------
-        tool : Assembly
-        contact, normal, tilt_direction : (n, 3) float
-        tilt : (n,) float
-            rad.
-        certain : bool
-            Only those of which it is sure.
+        `contact`, `normal`, `tilt_direction` (n, 3) float. `tilt` (n,) float: rad. `certain`: only those of which it is sure.
         """
         from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
 

@@ -39,7 +39,6 @@ class Copies(Record):
         The sample whose image each one is; itself where it is none.
     motion : (n,) int32
         Which motion carries the master onto it, -1 for none.
-    motions : tuple of Motion
     unchanged : tuple of tuple of bool
         Of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is ignored.
     frames : (n,) bool
@@ -203,13 +202,10 @@ class Prepared(Record):
 
     Attributes
     ----------
-    scene : Scene
-    options : Options
     chosen : Chosen
         Target and ignored faces.
     spacing : float, dict or None
         Of the samples: one, by face number, or none where they were taken on a grid.
-    samples : SurfaceSamples
     surface_class : (n,) uint8
     region : (n,) int32
         Connected samples of one class.
@@ -217,7 +213,6 @@ class Prepared(Record):
         The body that each sample lies within in the first setup, -1 for none.
     inside_bodies : (n,) bool
         Samples that lie inside another body of the part (`inside_material.inside_bodies`).
-    conditions : Conditions
     cutters : tuple of Cutter
         From the most wanted down.
     coarser : float
@@ -338,10 +333,7 @@ def fixtures_of(options: Options) -> list[Fixture]:
 def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
     """The conditions of each setup, the first one first: with the obstacles of each, and one tolerance that all of them keep.
 
-    Raises
-    ------
-    FixtureError
-        A fixture stands in the part, or faces of one of another setup could not be read.
+    Raises FixtureError: a fixture stands in the part, or faces of one of another setup could not be read.
     """
     first, shared = scene.surround(), options.shared_fixtures
     axes = (scene.setup, *options.other_setups)

@@ -36,7 +36,6 @@ class PlacedFixture(Record):
     ----------
     number : int
         Face number of all its triangles, negative.
-    fixture : Fixture
     source : Part or Mesh, optional
         What was read of it; None for words.
     obstacles : Obstacles
@@ -172,9 +171,10 @@ def surroundings(
 ) -> Surroundings:
     """Gather all that stands in a cutter's way.
 
+    Raises UnjudgeableError: no face has triangles.
+
     Parameters
     ----------
-    part : Part
     chord : float
         Chord error to ask for, mm.
     ignored : collection of int
@@ -183,11 +183,6 @@ def surroundings(
         Faces that are worked on at a time.
     at : callable, optional
         Told whose work is under way and at which face, as in `tessellate`.
-
-    Raises
-    ------
-    UnjudgeableError
-        No face has triangles.
     """
     faces = [f.number for f in part.faces if f.number not in ignored]
     triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)

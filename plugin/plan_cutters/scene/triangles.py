@@ -12,13 +12,8 @@ from cad_io.arrays import Floats, Ints, Triangles
 class AddedTriangles(Triangles):
     """Triangles, of which the first ones are shared and the others are added. `vertex` is put together where it is asked for.
 
-    Parameters
-    ----------
-    shared, added : (n, 3, 3), (m, 3, 3) float
-        mm.
-    face : (n + m,) int32
-    chord_error, missing, measured, loose, errors
-        As of `Triangles`.
+    `shared`, `added` (n, 3, 3), (m, 3, 3) float: mm. `face` (n + m,) int32. `chord_error`, `missing`, `measured`, `loose`,
+    `errors`: as of `Triangles`.
     """
 
     __slots__ = ("added", "shared")
@@ -95,17 +90,8 @@ def thickened(vertex: Floats, error: float) -> Floats:
     Around each triangle stands a prism: above and below at that distance, its sides along the triangle's sides and across its
     corners. That for an error encloses those for smaller ones. A needle has the box around it.
 
-    Parameters
-    ----------
-    vertex : (n, 3, 3) float
-        mm.
-    error : float
-        mm, not negative.
-
-    Returns
-    -------
-    (t, 3, 3) float
-        Triangles, counter-clockwise seen from outside; none where there are none.
+    `vertex` (n, 3, 3) float: mm. `error`: mm, not negative. Returns (t, 3, 3) float: triangles, counter-clockwise seen from
+    outside; none where there are none.
     """
     # What rounding takes from a skin is given back.
     error += 1e-12 * float(np.abs(vertex).max(initial=0.0)) + np.finfo(float).tiny

@@ -16,10 +16,7 @@ from numpy.typing import NDArray
 class Work:
     """Count the work that kernels have done.
 
-    Attributes
-    ----------
-    looked : int
-        Boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
+    `looked`: boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
     """
 
     looked: int = 0
@@ -53,10 +50,7 @@ METER = Meter()
 class Budget:
     """So much work from now on, of this process.
 
-    Parameters
-    ----------
-    most : float
-        Boxes.
+    `most`: boxes.
     """
 
     def __init__(self, most: float) -> None:

@@ -63,20 +63,9 @@ Overlaps = Callable[[Fixture, Clamping], bool]
 def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0) -> Hold:
     """Place a vise or chuck.
 
-    Parameters
-    ----------
-    fixture : Fixture
-        With `to_place`.
-    part : Workpiece
-    plainly, overlaps : callable
-        Whether a fixture in its place, a vise or chuck, stands in the part: where that is seen at once, and by a search.
-    slack : float, optional
-        How far the part's triangles may be off, mm.
-
-    Raises
-    ------
-    NothingToGripError
-        There is nothing that it can grip, in a line that says why and what to try.
+    `fixture`: with `to_place`. `plainly`, `overlaps`: whether a fixture in its place, a vise or chuck, stands in the part: where
+    that is seen at once, and by a search. `slack`: how far the part's triangles may be off, mm. Raises NothingToGripError: there
+    is nothing that it can grip, in a line that says why and what to try.
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"

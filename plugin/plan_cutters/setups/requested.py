@@ -43,17 +43,8 @@ def setups_requested(
 ) -> dict[str, Any]:
     """Give the values of the options about setups by their names.
 
-    Parameters
-    ----------
-    setup, placement, others, other_placements, fixtures
-        As `Options` takes them.
-    propose : bool
-        Setups are to be proposed.
-
-    Raises
-    ------
-    OptionError
-        A value has no meaning, or setups are to be proposed beside some that are given.
+    `setup`, `placement`, `others`, `other_placements`, `fixtures`: as `Options` takes them. `propose`: setups are to be proposed.
+    Raises OptionError: a value has no meaning, or setups are to be proposed beside some that are given.
     """
     common = Fixture.each_of(fixtures)
     if is_auto(setup):

@@ -21,6 +21,8 @@ def sides_of(radius: float, chord: float) -> int:
 def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above: float = -math.inf) -> tuple[Floats, float]:
     """Triangles of a vise or chuck in its own frame, each body closed by itself.
 
+    Returns `vertex` (n, 3, 3) float: mm, counter-clockwise from outside; `error`: how far they are from what they stand for, mm.
+
     Parameters
     ----------
     clamping : Vise or Chuck
@@ -31,13 +33,6 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above
         Of the table, what is drawn alone.
     above : float
         Bodies that end below this height, mm, are left out, unless all do.
-
-    Returns
-    -------
-    vertex : (n, 3, 3) float
-        mm, counter-clockwise from outside.
-    error : float
-        How far they are from what they stand for, mm.
     """
     every = clamping.solids(chord, shown=shown)
     solids = [each for each in every if each.high > above] or every

@@ -138,7 +138,6 @@ class Place:
 
     Attributes
     ----------
-    clamping : Vise or Chuck
     x, origin : (3,) float
         Its x axis and its origin.
     grips : tuple of int
@@ -253,6 +252,9 @@ def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: fl
     """Cut triangles to what lies between the jaws, before each of them and between two heights: their faces, and how far each of
     them reaches towards it.
 
+    Yields `face` (k,) int: of the triangles that lie there at least in part; `reach` (k,) float: how far they are from the middle
+    at most: in a vise across the jaws, in a chuck from its axis; mm. Jaws grip at `0.5 * gap` or `0.5 * diameter`.
+
     Parameters
     ----------
     clamping : Vise or Chuck
@@ -263,14 +265,6 @@ def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: fl
         Face numbers of them.
     low, high : float
         mm.
-
-    Yields
-    ------
-    face : (k,) int
-        Of the triangles that lie there at least in part.
-    reach : (k,) float
-        How far they are from the middle at most: in a vise across the jaws, in a chuck from its axis; mm. Jaws grip at
-        `0.5 * gap` or `0.5 * diameter`.
     """
     vertex, face = clipped(vertex, face, _UP, low, high)
     for turn in clamping.turns:
@@ -301,14 +295,7 @@ def held_bodies(clamping: Clamping, vertex: Floats, face: Ints, bodies: Sequence
     Where no body has all jaws on it, those are held that lie one against the other from jaw to jaw; none where there is a gap
     between them.
 
-    Parameters
-    ----------
-    clamping, vertex, face
-        As for `at_jaws`.
-    bodies : sequence of frozenset of int
-        The faces of each.
-    slack : float
-        How far triangles may be off, mm.
+    `clamping`, `vertex`, `face`: as for `at_jaws`. `bodies`: the faces of each. `slack`: how far triangles may be off, mm.
     """
     owner = {number: k for k, faces in enumerate(bodies) for number in faces}
     inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
