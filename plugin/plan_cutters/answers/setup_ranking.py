@@ -133,17 +133,9 @@ def holdable(
 ) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
 
-    Parameters
-    ----------
-    conditions : Conditions
-        Machine and posture range.
-    axis : (3,) float
-        Unit direction of the part along the spindle.
-    table : float, optional
-        Height along `axis` below which nothing of a tool may be, mm: axes are left out at which the upper end of every cutter
-        would be there. None: no table.
-    rows : (m,) int64, optional
-        The samples to look at, all by default.
+    `conditions`: machine and posture range. `axis` (3,) float: unit direction of the part along the spindle. `table`: height
+    along `axis` below which nothing of a tool may be, mm: axes are left out at which the upper end of every cutter would be
+    there. None: no table. `rows` (m,) int64: the samples to look at, all by default.
     """
     setup: Axis = (float(axis[0]), float(axis[1]), float(axis[2]))
     if table is None:

@@ -276,14 +276,8 @@ NEARLY, HALF = 0.95, 0.5
 class Candidate:
     """A step that may be worth judging.
 
-    Attributes
-    ----------
-    state : State
-        After it.
-    estimate : float
-        Share of the finished area that it may leave.
-    nested : bool
-        Whether it surely reaches all that is reached now.
+    `state`: after it. `estimate`: share of the finished area that it may leave. `nested`: whether it surely reaches all that is
+    reached now.
     """
 
     moves: tuple[Move, ...]

@@ -138,17 +138,10 @@ def access(
 ) -> Verdicts:
     """Search a posture for every judged sample that is not interference-free.
 
-    Parameters
-    ----------
-    interference_free : (n,) bool
-        As `decompose` gives them.
-    inside : (n,) int32, optional
-        The body that each sample lies within, -1 for none (default): none of those within is accessible.
-    known : Verdicts, optional
-        What follows from other cutters (`nesting.handed`): those samples are not searched again.
-    rows : (m,) int64, optional
-        The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else other
-        postures may be found for the same sample.
+    `interference_free` (n,) bool: as `decompose` gives them. `inside` (n,) int32: the body that each sample lies within, -1 for
+    none (default): none of those within is accessible. `known`: what follows from other cutters (`nesting.handed`): those samples
+    are not searched again. `rows` (m,) int64: the samples to search, all by default; the others stay unjudged. Whole pieces of
+    them (`with_company`), or else other postures may be found for the same sample.
     """
     n, conditions = len(samples), context.conditions
     verdicts = blank(n)

@@ -129,16 +129,8 @@ class PostureMap(Record):
 def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context, narrowest: float) -> PostureMap:
     """The map of one contact.
 
-    Parameters
-    ----------
-    contact : SurfaceSamples
-        One sample.
-    rotations : (k,) float
-        rad.
-    context : Context
-        Tilts are looked at in its posture range. Its tolerance 0 stands for the nominal answer.
-    narrowest : float
-        Width below which a range of tilts stays undecided, rad.
+    `contact`: one sample. `rotations` (k,) float: rad. `context`: tilts are looked at in its posture range. Its tolerance 0
+    stands for the nominal answer. `narrowest`: width below which a range of tilts stays undecided, rad.
     """
     from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
     from plan_cutters.kernels.maps.points import axis_intervals
@@ -332,16 +324,8 @@ Rows = NDArray[np.int64]
 def chosen(judged: Rows, most: int | None, looked: Callable[[Rows], int], jobs: int) -> Rows:
     """The samples to map.
 
-    Parameters
-    ----------
-    judged : (n,) int64
-        Samples that could be mapped, ascending.
-    most : int, optional
-        At most so many. None: as many as take about `WORK`.
-    looked : callable
-        Maps some samples and tells at how much it looked: the same for the same samples.
-    jobs : int
-        Threads.
+    `judged` (n,) int64: samples that could be mapped, ascending. `most`: at most so many. None: as many as take about `WORK`.
+    `looked`: maps some samples and tells at how much it looked: the same for the same samples. `jobs`: threads.
     """
     if most is None:
         if len(judged) <= PROBED:

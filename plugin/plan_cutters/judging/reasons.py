@@ -76,14 +76,8 @@ class Explained:
 class Reasons:
     """Finds reasons, cutter after cutter; what was found for one spares another some of the search.
 
-    Attributes
-    ----------
-    conditions : sequence of Conditions
-        Of each setup.
-    asked : (n,) bool
-        Samples that have a reason to be looked for.
-    machinable : sequence of (n,) bool
-        Of each setup, the samples that are neither clamped nor inside material there.
+    `conditions`: of each setup. `asked` (n,) bool: samples that have a reason to be looked for. `machinable` (sequence of (n,)
+    bool): of each setup, the samples that are neither clamped nor inside material there.
     """
 
     samples: SurfaceSamples

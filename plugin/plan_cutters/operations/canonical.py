@@ -35,16 +35,8 @@ _FIRST, _COMPARED = 48, 3
 class _Choice:
     """Columns with what each sample of a task costs with each: made by `_choice`.
 
-    Attributes
-    ----------
-    cost : (r, k) float
-        Infinite where a column does not serve.
-    best : (r,) int
-        The cheapest column of each sample.
-    served : (r,) bool
-        Samples that some column serves.
-    cutting : float
-        The cost of all samples that are served, each with its best column.
+    `cost` (r, k) float: infinite where a column does not serve. `best` (r,) int: the cheapest column of each sample. `served`
+    (r,) bool: samples that some column serves. `cutting`: the cost of all samples that are served, each with its best column.
     """
 
     task: Task

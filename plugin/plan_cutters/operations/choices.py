@@ -27,15 +27,9 @@ Rows = NDArray[np.int64]
 class Worth(NamedTuple):
     """A cutter is worth this beside the others that were compared.
 
-    Attributes
-    ----------
-    only : (n,) int64
-        Samples that none of the others reaches.
-    saves : float, optional
-        Seconds by which the fastest plan found with it is below the fastest one without it, before its own change; None where no
-        plan without it was found.
-    change : float
-        Seconds that its change costs: 0 where it is the only one then.
+    `only` (n,) int64: samples that none of the others reaches. `saves`: seconds by which the fastest plan found with it is below
+    the fastest one without it, before its own change; None where no plan without it was found. `change`: seconds that its change
+    costs: 0 where it is the only one then.
     """
 
     cutter: Cutter

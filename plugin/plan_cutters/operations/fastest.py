@@ -143,14 +143,8 @@ def against_bound(seconds: float, bound: float, at_best: float, samples: int, ca
 class Location:
     """A choice of operations.
 
-    Attributes
-    ----------
-    chosen : (k,) int64
-        Ascending.
-    cost : float
-        Of all samples, each with the best of the chosen, of operations, and of cutters and setups after the first.
-    bound : float
-        No choice costs less.
+    `chosen` (k,) int64: ascending. `cost`: of all samples, each with the best of the chosen, of operations, and of cutters and
+    setups after the first. `bound`: no choice costs less.
     """
 
     chosen: Which
@@ -335,15 +329,8 @@ def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None 
     Returns the bound; (m,) float: reduced costs of the candidates: those below 0 gain something; (n,) float: how much more often
     than once the candidates that gain serve each sample, below 0 where none does.
 
-    Parameters
-    ----------
-    cost : (m, n) float
-        Of each sample with each candidate.
-    operation : float
-        What each candidate costs beside.
-    price : (n,) float
-    reach : Reach, optional
-        What some candidates cost together at least, beside.
+    `cost` (m, n) float: of each sample with each candidate. `operation`: what each candidate costs beside. `price` (n,) float.
+    `reach`: what some candidates cost together at least, beside.
     """
     gain = np.subtract(cost, price)
     np.minimum(gain, 0.0, out=gain)

@@ -315,25 +315,9 @@ class Search:
     the table whole. Of the others no more is known than that the weights do not load them too much, which is all that the
     bound needs.
 
-    Parameters
-    ----------
-    columns : Columns
-        The first candidates.
-    rows : (n,) int64
-        Samples to serve.
-    stored : callable
-        Gives columns for samples that no candidate serves: their own postures.
-    first : int
-        Samples that the first table holds.
-
-    Attributes
-    ----------
-    columns : Columns
-        All candidates.
-    rows : (r,) int64
-        Samples in the table.
-    alone : (s,) int64
-        Samples that no candidate serves.
+    `columns`: all candidates, the first ones to begin with. `rows` (n,) int64: samples to serve, and then those (r,) in the table.
+    `stored`: gives columns for samples that no candidate serves: their own postures. `first`: samples that the first table holds.
+    `alone` (s,) int64: samples that no candidate serves.
     """
 
     def __init__(

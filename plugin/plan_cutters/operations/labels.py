@@ -31,13 +31,8 @@ Rows = NDArray[np.int64]
 class Seams:
     """Pairs of neighbouring samples, and the border between the areas of each two.
 
-    Attributes
-    ----------
-    edge : (e, 2) int
-    length : (e,) float
-        mm: about the side of the areas of the two.
-    shows : (e,) bool
-        Both lie on one face that is bent in both directions: two operations leave a mark there.
+    `edge` (e, 2) int. `length` (e,) float, mm: about the side of the areas of the two. `shows` (e,) bool: both lie on one face
+    that is bent in both directions: two operations leave a mark there.
     """
 
     edge: Ints

@@ -31,15 +31,8 @@ _TRIED = 12
 class _Times:
     """What samples of a task (r,) take with columns and with simultaneous motion.
 
-    Attributes
-    ----------
-    cost : (r, k) float
-        s, or mm without a feed; infinite where a column does not serve.
-    moving : (r,) float
-        The same with simultaneous motion.
-    cutter : (r,) int
-        Of that motion, counted as in the task.
-    setup : (r,) int
+    `cost` (r, k) float: s, or mm without a feed; infinite where a column does not serve. `moving` (r,) float: the same with
+    simultaneous motion. `cutter` (r,) int: of that motion, counted as in the task. `setup` (r,) int.
     """
 
     task: Task

@@ -142,16 +142,8 @@ class Strips(Record):
 def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float, stepover: float) -> Strips:
     """Find the widest strips of a cutter at samples.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-        n of them.
-    axis : (n, 3) float
-        Unit tool axis at each; nan where there is none.
-    scallop : float
-        Height of the cusps between passes, mm.
-    stepover : float
-        Widest distance of passes, in diameters.
+    `samples`: n of them. `axis` (n, 3) float: unit tool axis at each; nan where there is none. `scallop`: height of the cusps
+    between passes, mm. `stepover`: widest distance of passes, in diameters.
     """
     return strips_at(cutter, samples.normal, samples.direction_max, samples.curvature, axis, scallop, stepover)
 
@@ -214,16 +206,10 @@ def centre_path(
     with n; where the tool turns with the surface, both turn by n x dn, and with them the way from the centre of the tip to the
     contact. `docs/operations_proof.md`, lemma O11.
 
-    Parameters
-    ----------
-    normal, direction, axis, feed : (n, 3) float
-        Unit normals, directions of the larger curvature, tool axes, and feed directions in the surface.
-    curvature : (n, 2) float
-        Of the surface, the larger first, concave positive, 1/mm.
-    mode : ((n,) float, (n,) float), optional
-        o and r, mm; None: those of the part of the tip that touches.
-    turning : bool
-        Whether the tool turns with the surface: simultaneous motion.
+    `normal`, `direction`, `axis`, `feed` (n, 3) float: unit normals, directions of the larger curvature, tool axes, and feed
+    directions in the surface. `curvature` (n, 2) float: of the surface, the larger first, concave positive, 1/mm. `mode` ((n,)
+    float, (n,) float): o and r, mm; None: those of the part of the tip that touches. `turning`: whether the tool turns with the
+    surface: simultaneous motion.
     """
     cosine = (normal * axis).sum(axis=1)[:, None]
     across = normal - cosine * axis

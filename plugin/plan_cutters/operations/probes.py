@@ -28,14 +28,7 @@ class Probes:
     the samples that can be machined there: not clamped faces, not inside material. `barred`: index of a cutter -> samples (n,) at
     which it is not to be planned.
 
-    Attributes
-    ----------
-    barred : mapping
-        As above.
-    contexts : list of list of Context
-        Of each cutter in each setup.
-    made : int
-        Times that the tool was put down.
+    `contexts`: of each cutter in each setup. `made`: times that the tool was put down.
     """
 
     def __init__(
@@ -94,14 +87,9 @@ _STANDS_STILL = 0.01
 class Passes(Record):
     """Passes along walls, of m samples; nan where no pass cuts the sample.
 
-    Attributes
-    ----------
-    strip : (m,) float
-        Height of the strip that the pass cuts, mm: that of the wall over the number of its passes.
-    path, links : (m,) float
-        As of `Cut`, 1/mm and 1/mm2.
-    point, normal : (m, 3) float
-        Contact at which the tool stands, at the lower end of its strip, mm, and unit normal there: that of the flutes.
+    `strip` (m,) float: height of the strip that the pass cuts, mm: that of the wall over the number of its passes. `path`,
+    `links` (m,) float: as of `Cut`, 1/mm and 1/mm2. `point`, `normal` (m, 3) float: contact at which the tool stands, at the
+    lower end of its strip, mm, and unit normal there: that of the flutes.
     """
 
     strip: Floats

@@ -93,16 +93,8 @@ class Problems:
     def of(self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs) -> Problem:
         """Say what some samples, weighted by area, cost with columns.
 
-        Parameters
-        ----------
-        active : (m,) int64
-            Their numbers, ascending: what had one keeps it.
-        table : (r, m) bool
-            Where they serve.
-        rows : (r,) int64
-            Those of the time before come first.
-        area : (r,) float
-            That each of `rows` stands for, mm2.
+        `active` (m,) int64: their numbers, ascending: what had one keeps it. `table` (r, m) bool: where they serve. `rows` (r,)
+        int64: those of the time before come first. `area` (r,) float: that each of `rows` stands for, mm2.
         """
         pace, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
         if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():

@@ -227,16 +227,9 @@ def search_postures(
 
     Raises ValueError: a contact is not a point with a normal and a curvature: nothing can be said of it.
 
-    Parameters
-    ----------
-    rows : (m,) int64
-        Contacts to decide.
-    fixed : bool
-        As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
-    strict : bool
-        Only postures that curvature at the contact allows, as if there were no tolerance.
-    brief : bool
-        What takes long is left undecided: enough for a reason, not for a verdict.
+    `rows` (m,) int64: contacts to decide. `fixed`: as for `in_chunks`: each contact starts from what was found at the one before
+    it in its piece. `strict`: only postures that curvature at the contact allows, as if there were no tolerance. `brief`: what
+    takes long is left undecided: enough for a reason, not for a verdict.
     """
     from plan_cutters.kernels.search.search import search
 

@@ -35,15 +35,10 @@ _ROUNDING = 1e-9
 class Clearances(Record):
     """Of n samples at the postures found; where there is no posture nan and -1.
 
-    Attributes
-    ----------
-    distance : (n,) float
-        No more than the true clearance, mm, and within 2 % or 0.005 mm of it, unless the flutes' edges are nearest. At
-        `domain.clearance.MOST` it is that or more.
-    part : (n,) int8
-        Of the tool what is nearest: FLUTES, NECK, SHANK or HOLDER; -1 where nothing is near.
-    face : (n,) int32
-        The face in the way if that part were a little larger, negative for a fixture (`Surroundings.called`); 0 for none.
+    `distance` (n,) float: no more than the true clearance, mm, and within 2 % or 0.005 mm of it, unless the flutes' edges are
+    nearest. At `domain.clearance.MOST` it is that or more. `part` (n,) int8: of the tool what is nearest: FLUTES, NECK, SHANK or
+    HOLDER; -1 where nothing is near. `face` (n,) int32: the face in the way if that part were a little larger, negative for a
+    fixture (`Surroundings.called`); 0 for none.
     """
 
     distance: Floats
@@ -202,15 +197,8 @@ def deepest(
 ) -> Deepest | None:
     """Find the deepest point of the obstacles in a cutter at a contact; None if nothing is in it.
 
-    Parameters
-    ----------
-    part : Part, optional
-        Whose faces the obstacles are; without it the depth is that of triangles.
-    contact, normal : (3,) float
-    posture : Verdicts
-        Of length one.
-    guess : float
-        A depth, mm, that something surely has, or nearly.
+    `part`: whose faces the obstacles are; without it the depth is that of triangles. `contact`, `normal` (3,) float. `posture`:
+    of length one. `guess`: a depth, mm, that something surely has, or nearly.
     """
     from plan_cutters.kernels.search.search import probe
 

@@ -40,16 +40,8 @@ def inside_material(
     Returns (n,) int32: index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material
     besides, that void (`voids`).
 
-    Parameters
-    ----------
-    orientation : Orientation
-        Side of each face.
-    tolerance : float
-        Gouge tolerance that is kept, mm.
-    jobs : int, optional
-        Threads.
-    known : (n,) int32, optional
-        The same of another setup: the part has the same bodies there, the first of all, and fixtures alone are looked at again.
+    `orientation`: side of each face. `tolerance`: gouge tolerance that is kept, mm. `jobs`: threads. `known` (n,) int32: the same
+    of another setup: the part has the same bodies there, the first of all, and fixtures alone are looked at again.
     """
     _, deep = certain.depths(tolerance)
     point = samples.point + AWAY * deep * samples.normal

@@ -181,14 +181,8 @@ Axis = tuple[float, float, float]
 class OtherSetup(Record):
     """Another setup than the first has its own conditions, and its own samples that no cutter gets to.
 
-    Attributes
-    ----------
-    conditions : Conditions
-        With the obstacles of that setup.
-    inside : (n,) int32
-        The body that each sample lies within there, -1 for none.
-    clamped : (n,) bool
-        Samples of faces that are held there.
+    `conditions`: with the obstacles of that setup. `inside` (n,) int32: the body that each sample lies within there, -1 for none.
+    `clamped` (n,) bool: samples of faces that are held there.
     """
 
     conditions: Conditions

@@ -173,16 +173,8 @@ def surroundings(
 
     Raises UnjudgeableError: no face has triangles.
 
-    Parameters
-    ----------
-    chord : float
-        Chord error to ask for, mm.
-    ignored : collection of int
-        Numbers of faces to leave out.
-    jobs : int, optional
-        Faces that are worked on at a time.
-    at : callable, optional
-        Told whose work is under way and at which face, as in `tessellate`.
+    `chord`: chord error to ask for, mm. `ignored`: numbers of faces to leave out. `jobs`: faces that are worked on at a time.
+    `at`: told whose work is under way and at which face, as in `tessellate`.
     """
     faces = [f.number for f in part.faces if f.number not in ignored]
     triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)

@@ -23,16 +23,8 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above
 
     Returns `vertex` (n, 3, 3) float: mm, counter-clockwise from outside; `error`: how far they are from what they stand for, mm.
 
-    Parameters
-    ----------
-    clamping : Vise or Chuck
-        In its place: how far its jaws stand apart is known.
-    chord : float
-        Chord error to ask for, mm.
-    shown : bool
-        Of the table, what is drawn alone.
-    above : float
-        Bodies that end below this height, mm, are left out, unless all do.
+    `clamping`: in its place: how far its jaws stand apart is known. `chord`: chord error to ask for, mm. `shown`: of the table,
+    what is drawn alone. `above`: bodies that end below this height, mm, are left out, unless all do.
     """
     every = clamping.solids(chord, shown=shown)
     solids = [each for each in every if each.high > above] or every

@@ -255,16 +255,8 @@ def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: fl
     Yields `face` (k,) int: of the triangles that lie there at least in part; `reach` (k,) float: how far they are from the middle
     at most: in a vise across the jaws, in a chuck from its axis; mm. Jaws grip at `0.5 * gap` or `0.5 * diameter`.
 
-    Parameters
-    ----------
-    clamping : Vise or Chuck
-        In its place.
-    vertex : (n, 3, 3) float
-        Triangles in its own frame, mm.
-    face : (n,) int
-        Face numbers of them.
-    low, high : float
-        mm.
+    `clamping`: in its place. `vertex` (n, 3, 3) float: triangles in its own frame, mm. `face` (n,) int: face numbers of them.
+    `low`, `high`: mm.
     """
     vertex, face = clipped(vertex, face, _UP, low, high)
     for turn in clamping.turns:
