@@ -315,7 +315,7 @@ class Search:
     the table whole. Of the others no more is known than that the weights do not load them too much, which is all that the
     bound needs.
 
-    `columns`: all candidates, the first ones to begin with. `rows` (n,) int64: samples to serve, and then those (r,) in the table.
+    `columns`: all candidates, the first ones at first. `rows` (n,) int64: samples to serve, and then those (r,) in the table.
     `stored`: gives columns for samples that no candidate serves: their own postures. `first`: samples that the first table holds.
     `alone` (s,) int64: samples that no candidate serves.
     """

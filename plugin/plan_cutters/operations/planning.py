@@ -13,7 +13,8 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, duration, percent
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.own_process import OwnProcess, cutter_of
+from plan_cutters.domain.own_process import cutter_of
+from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.canonical import canonical
@@ -30,7 +31,7 @@ from plan_cutters.operations.choices import (
 )
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
-from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
+from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.labels import WHOLE_FACE, Seams
 from plan_cutters.operations.motion import chosen_for_others, few_enough, flowing, recommended, with_moved
 from plan_cutters.operations.moving_axes import MovingAxes
@@ -119,48 +120,51 @@ def plan_operations(
     searched : int
         As for `proved`.
     """
-    options = ready.options
-    task = _task(ready, everywhere, least)
-    if options.process is not None:
-        return _own(task, options.process, stage, over, searched)
-    fewest, alone, more = None, 0, None
+    options, task = ready.options, _task(ready, everywhere, least)
+    fewest, alone, more, outcomes = None, 0, None, tuple[OwnResult, ...]()
+    made: PlansTimed
     with stage("operations") as tell:
-        offer = _offer(task, part_of(tell, 0, _PARTS))
-        quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
-        if quick is not None:
-            plans, timed, worth, instead = _in_motion(task, quick)
+        parts = [part_of(tell, k, _PARTS) for k in range(_PARTS)]
+        offer = _offer(task, parts[0]) if options.process is None else None
+        quick = planned_by_pattern(task, offer) if offer is not None and options.operations == "fastest" else None
+        if options.process is not None:
+            plan, outcomes = own_plan(task, options.process, partial(_planned_rest, parts=parts))
+            made = [plan], None, (), ()
+        elif quick is not None:
+            made = _in_motion(task, quick)
         elif options.operations == "fastest":
-            some = thinned(task)
-            search, few = _served(some, part_of(tell, 1, _PARTS))
-            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
+            made, search, some = _plans_by_some(task, offer, parts)
             alone = len(search.alone) * (len(task.rows) // max(1, len(some.rows)))
             task.probes.made += some.probes.made if some is not task else 0
         else:
-            search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
-            few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
-            some = thinned(task)
-            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
-            more = one_more(task, some, search, plans[0], _columns_of(task, plans[0]))
-        plans = _proved(task, plans, searched, part_of(tell, 3, _PARTS))
-    notes = (*instead, *_notes(task, least, plans, None if instead else alone))
+            finest = FINEST if options.index_step is None else options.index_step
+            search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(parts[1], 0, 2))
+            fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(parts[1], 1, 2))
+            few, alone, some = fewest.columns.of(fewest.chosen), len(fewest.alone), thinned(task)
+            made = _plans(task, some, search, few, offer, parts[2])
+            more = one_more(task, some, search, made[0][0], _columns_of(task, made[0][0]))
+        plans, timed, worth, instead = made
+        plans = _proved(task, plans, searched, parts[3])
+    notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
     columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
-    return Operations(entry, task.cutters, tuple(plans), columns, chosen)
+    return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 
 
-def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
-    """The fewest orientations among candidates, with the search that found them."""
-    options = task.ready.options
-    finest = FINEST if options.index_step is None else options.index_step
-    search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(tell, 0, 2))
-    return search, search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, 2))
+def _plans_by_some(task: Task, offer: Repeated | None, parts: Sequence[Progress]) -> tuple[PlansTimed, Search, Task]:
+    """Plans from few orientations among coarse candidates that serve some samples, with the search, and the task of these."""
+    some = thinned(task)
+    search = Search(some.probes, _first(some, COARSE), some.rows, partial(_stored, some), parts[1], _PRICED)
+    return _plans(task, some, search, served(some, search), offer, parts[2]), search, some
 
 
-def _served(task: Task, tell: Progress) -> tuple[Search, Columns]:
-    """Few orientations among coarse candidates that serve all samples of a task, with the search that found them."""
-    search = Search(task.probes, _first(task, COARSE), task.rows, partial(_stored, task), tell, _PRICED)
-    return search, served(task, search)
+def _planned_rest(rest: Task, parts: Sequence[Progress]) -> Columns:
+    """The fixed orientations of the best plan for what the steps of the planner's own process leave."""
+    if not len(rest.rows):
+        return _NONE
+    (plans, *_), _, _ = _plans_by_some(rest, _offer(rest, parts[0]), parts)
+    return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
 
 def _offer(task: Task, tell: Progress) -> Repeated | None:
@@ -217,32 +221,6 @@ def _moving_for_rest(ready: Prepared, plan: OperationPlan) -> int:
     mine, whole = np.bincount(face[rows], area[rows], most), np.bincount(face[cut], area[cut], most)
     taken = (mine >= WHOLE_FACE * whole) & (whole >= MINOR_AREA * whole.sum())
     return int((~taken[face[rows]]).sum())
-
-
-def _own(
-    task: Task,
-    process: OwnProcess,
-    stage: Callable[[str], AbstractContextManager[Progress]],
-    over: Mapping[str, Verdicts],
-    searched: int,
-) -> Operations:
-    """The planner's own process, with the rest planned behind it as it was requested."""
-    ready = task.ready
-
-    def planned(rest: Task) -> Columns:
-        """The fixed orientations of the best plan for what the steps leave."""
-        if not len(rest.rows):
-            return _NONE
-        some = thinned(rest)
-        search, few = _served(some, part_of(tell, 1, _PARTS))
-        plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 0, _PARTS)), part_of(tell, 2, _PARTS))
-        return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
-
-    with stage("operations") as tell:
-        plan, outcomes = own_plan(task, process, planned)
-        plan = proved(ready, task.everywhere, plan, searched, progress=part_of(tell, 3, _PARTS))
-    entry = operations_entry(task, [plan], over[task.cutters[0].id].reason)
-    return Operations(entry, task.cutters, (plan,), _NONE, np.zeros(0, np.int64), outcomes)
 
 
 def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
