@@ -243,7 +243,10 @@ def repeated_orientations(
     symmetry, samples = own.symmetry, task.ready.samples
     sector = task.rows[symmetry.sector(samples.point[task.rows] - symmetry.place)]
     one = replace(own, rows=sector, copies=symmetry.order) if len(sector) else own
-    exact = symmetry.exact and _unbroken(task, symmetry)
+    ready, turn = task.ready, Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
+    # Machine, fixtures, and all else that verdicts depend on have to be the same for each copy, and no face clamped.
+    exact = symmetry.exact and not any(ready.there(s).clamped.any() for s in range(len(ready.setups)))
+    exact = exact and all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
     # What is no exact pattern is looked at everywhere.
     copied = repeated(one if exact else own, candidates(task), stored, part_of(tell, 0, 2))
     if copied is None:
@@ -252,15 +255,6 @@ def repeated_orientations(
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
     return Repeated(own, one, tuple(fewer(one, columns)), copied, exact)
-
-
-def _unbroken(task: Task, symmetry: Symmetry) -> bool:
-    """Whether machine, fixtures, and all else that verdicts depend on are the same for each copy, and no face is clamped."""
-    ready = task.ready
-    if any(ready.there(s).clamped.any() for s in range(len(ready.setups))):
-        return False
-    turn = Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
-    return all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
 
 
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
@@ -272,7 +266,9 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     if not offer.exact:
         return None
     copied, alone = offer.copied, cheap(offer.copied.apart)
-    single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, _single(task, offer, alone))))
+    images = offer.task.images(copied.base).of(alone)
+    each_once = recommended(task, worth_their_turn(task, images.of(images.first)))
+    single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, each_once)))
     # The first choice leaves least to simultaneous motion.
     again = next((offer.plan(columns) for columns, _ in offer.recommended), None)
     plan = single if again is None or _better(task, single, again) else again
@@ -292,13 +288,6 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     if plan is not single and known(single) < known(plan) and np.isfinite(single.total):
         words.append(_without_repeats(single))
     return [plan], timed, worths(task, compared), tuple(words)
-
-
-def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
-    """Orientations of which each is set once, no more than are recommended."""
-    images = offer.task.images(offer.copied.base).of(alone)
-    single = worth_their_turn(task, images.of(images.first))
-    return recommended(task, single)
 
 
 def _better(task: Task, plan: OperationPlan, repeated_plan: OperationPlan) -> bool:

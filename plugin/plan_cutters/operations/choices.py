@@ -81,17 +81,12 @@ def _without_minor_areas(problem: Problem, chosen: Rows, again: NDArray[np.bool_
     return chosen
 
 
-def _reached(task: Task, cutter: int) -> NDArray[np.bool_]:
-    """Samples (n,) that a cutter reaches in one of the setups."""
-    return np.asarray(np.logical_or.reduce([verdicts[task.cutters[cutter]].reached for verdicts in task.everywhere]))
-
-
 def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:
     """Compare the fastest of some plans with each cutter and without it; none for a single cutter, or where no time is known."""
     plans = [plan for plan in plans if np.isfinite(plan.total)]
     if len(task.cutters) < 2 or not plans:
         return ()
-    reached = [_reached(task, c)[task.rows] for c in range(len(task.cutters))]
+    reached = [np.logical_or.reduce([its[cutter].reached for its in task.everywhere])[task.rows] for cutter in task.cutters]
     result = []
     for c in by_size(task):
         others = np.logical_or.reduce([mine for k, mine in enumerate(reached) if k != c])
@@ -233,14 +228,6 @@ def largest_first_choice(task: Task, search: Search, fewest: Columns, *, minor: 
     return tested.columns.of(tested.safe)
 
 
-def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
-    """As `_problem`, with samples all over the part."""
-    wanted = np.setdiff1d(task.rows, search.alone)
-    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)])
-    return _problem(task, search, fewest)
-
-
 def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
     """The candidates that are known whole, what the samples of a search cost with each, and the area that these stand for.
 
@@ -263,8 +250,12 @@ def _tested(
 
     What they leave joins these samples, and it is chosen again; with `minor`, they may leave a minor part of the area.
     """
+    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
     while True:
-        columns, problem, area = _timed(task, search, fewest)
+        # Samples all over the part.
+        wanted = np.setdiff1d(task.rows, search.alone)
+        search.require(wanted[:: max(1, len(wanted) // most)])
+        columns, problem, area = _problem(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
         rest = _remaining(task, columns.of(chosen), search, minor=minor)

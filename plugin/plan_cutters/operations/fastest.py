@@ -152,11 +152,6 @@ class Location:
     bound: float
 
 
-def fastest(problem: Problem, start: Which | None = None) -> Location:
-    """Choose operations of little cost, from a choice that serves all or from nothing, and bound what the best costs."""
-    return bounded(problem, cheap(problem, start))
-
-
 def cheap(problem: Problem, start: Which | None = None) -> Which:
     """Choose operations of little cost, from a choice that serves all or from nothing."""
     covers = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]

@@ -139,19 +139,14 @@ class Strips(Record):
     any_feed: NDArray[np.bool_]
 
 
-def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float, stepover: float) -> Strips:
-    """Find the widest strips of a cutter at samples.
-
-    `samples`: n of them. `axis` (n, 3) float: unit tool axis at each; nan where there is none. `scallop`: height of the cusps
-    between passes, mm. `stepover`: widest distance of passes, in diameters.
-    """
-    return strips_at(cutter, samples.normal, samples.direction_max, samples.curvature, axis, scallop, stepover)
-
-
 def strips_at(
     cutter: Cutter, normal: Floats, direction: Floats, curvature: Floats, axis: Floats, scallop: float, stepover: float
 ) -> Strips:
-    """Find the widest strips at points with these normals (n, 3), curvatures (n, 2) and directions (n, 3) of the larger one."""
+    """Find the widest strips at points with these normals (n, 3), curvatures (n, 2) and directions (n, 3) of the larger one.
+
+    `axis` (n, 3) float: unit tool axis at each; nan where there is none. `scallop`: height of the cusps between passes, mm.
+    `stepover`: widest distance of passes, in diameters.
+    """
     cosine = np.clip((normal * axis).sum(axis=1), -1.0, 1.0)
     across = axis - cosine[:, None] * normal
     sine = np.linalg.norm(across, axis=1)
@@ -164,7 +159,13 @@ def strips_at(
         wide = radius + np.where(offset == 0.0, 0.0, offset / sine)
         inverse[:, 0, 0], inverse[:, 1, 1] = radius, wide
         inverse[np.isinf(wide), 1, 1] = 1e12
-        relative = np.eye(2) - inverse @ _surface(normal, direction, curvature, f)
+        # The second fundamental form in the frame of f and n x f, concave positive.
+        c, s = (f * direction).sum(axis=1), (cross(normal, direction) * f).sum(axis=1)
+        high, low = curvature.T
+        form = np.empty((len(f), 2, 2))
+        form[:, 0, 0], form[:, 1, 1] = high * c**2 + low * s**2, high * s**2 + low * c**2
+        form[:, 0, 1] = form[:, 1, 0] = (low - high) * s * c
+        relative = np.eye(2) - inverse @ form
         gap, det = _product(relative, inverse)
     largest, e = _largest(np.where(np.isfinite(gap), gap, 0.0))
     trace = relative[:, 0, 0] + relative[:, 1, 1]
@@ -288,18 +289,6 @@ def _height(turn: Floats, offset: Floats, sine: Floats, radius: Floats) -> tuple
     along, up = tall * np.sin(turn), offset * np.cos(turn)
     size = np.maximum(np.hypot(along, up), 1e-300)
     return offset * np.sin(turn) + radius * along / size, radius + tall * (1.0 - np.cos(turn)) - radius * up / size
-
-
-def _surface(normal: Floats, direction: Floats, curvature: Floats, f: Floats) -> Floats:
-    """Second fundamental forms (n, 2, 2) in the frame of f and n x f, concave positive."""
-    c = (f * direction).sum(axis=1)
-    s = (cross(normal, direction) * f).sum(axis=1)
-    high, low = curvature.T
-    form = np.empty((len(f), 2, 2))
-    form[:, 0, 0] = high * c**2 + low * s**2
-    form[:, 1, 1] = high * s**2 + low * c**2
-    form[:, 0, 1] = form[:, 1, 0] = (low - high) * s * c
-    return form
 
 
 def _largest(form: Floats) -> tuple[Floats, Floats]:
