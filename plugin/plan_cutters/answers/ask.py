@@ -111,18 +111,9 @@ def mend(
 
     It has no steps where none was looked for: `why` says why.
 
-    Parameters
-    ----------
-    cutter : Cutter
-        One of `reaches`.
-    over : Verdicts
-        What it reaches, of all samples, in all setups together.
-    reaches : mapping
-        What each given cutter reaches in the plan's first setup.
-    other_setups : sequence
-        Of each other setup its axis, and what each cutter reaches there by its id.
-    budget : Budget, optional
-        As for `steps`.
+    `cutter`: one of `reaches`. `over`: what it reaches, of all samples, in all setups together. `reaches`: what each given cutter
+    reaches in the plan's first setup. `other_setups`: of each other setup its axis, and what each cutter reaches there by its id.
+    `budget`: as for `steps`.
     """
     finished, missed = Finished.of(ready), over.not_reached
     unfinished = np.flatnonzero(missed & ready.finished)

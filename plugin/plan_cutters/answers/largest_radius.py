@@ -40,19 +40,11 @@ def largest_radius(
 
     Raises OptionError: an argument has no meaning, or the tolerance is too coarse for every radius asked for.
 
-    Parameters
-    ----------
-    ready : Prepared
-        Its cutters are not looked at; its stock allowance counts.
-    shape : str
-        `flat` or `ball`: end mills without neck, shank and holder.
-    ratio : float, optional
-        Their length over their radius; a ball's is no less than 1.
-    step : float, optional
-        By which share each radius that is tried is larger than the one before.
-    least, most : float, optional
-        Radii to try, from and to, mm. The most is half the longest side of the part's box by default; the least is 0.1, or a
-        hundredth of the most if that is less, or what the tolerance lets be judged if that is more.
+    `ready`: its cutters are not looked at; its stock allowance counts. `shape`: `flat` or `ball`: end mills without neck, shank
+    and holder. `ratio`: their length over their radius; a ball's is no less than 1. `step`: by which share each radius that is
+    tried is larger than the one before. `least`, `most`: radii to try, from and to, mm. The most is half the longest side of the
+    part's box by default; the least is 0.1, or a hundredth of the most if that is less, or what the tolerance lets be judged if
+    that is more.
     """
     from plan_cutters.kernels.search.radius import largest
 

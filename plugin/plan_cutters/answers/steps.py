@@ -183,18 +183,9 @@ def steps(
 
     It has `share`, `steps` and `areas` then.
 
-    Parameters
-    ----------
-    advice : Advice
-        What was found of the cutter so far.
-    cutter : Cutter
-        One of `reaches`.
-    reaches : mapping
-        What each given cutter reaches in the plan's first setup.
-    other_setups : sequence
-        Of each other setup its axis, and what each cutter reaches there by its id.
-    budget : Budget, optional
-        The work that it may take; what promises most is judged in any case. None: as much as it takes.
+    `advice`: what was found of the cutter so far. `cutter`: one of `reaches`. `reaches`: what each given cutter reaches in the
+    plan's first setup. `other_setups`: of each other setup its axis, and what each cutter reaches there by its id. `budget`: the
+    work that it may take; what promises most is judged in any case. None: as much as it takes.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
     state = State.of(ready, cutter)

@@ -188,16 +188,10 @@ PlansTimed = tuple[list[OperationPlan], Timed | None, tuple[Worth, ...], tuple[s
 class Repeated:
     """Orientations that may be repeated.
 
-    Attributes
-    ----------
-    task, one : Task
-        With their symmetry: of all samples, and of some of those of one copy, by which choices are compared.
-    choices : tuple of (Columns, float)
-        Fewer and fewer columns, each with its images, and about the seconds that they take.
-    copied : Copied
-        What they were chosen from.
-    exact : bool
-        Whether what is known of one copy holds for all: the part is a pattern, and nothing about it breaks that.
+    `task`, `one`: with their symmetry: of all samples, and of some of those of one copy, by which choices are compared. `choices`
+    (tuple of (Columns, float)): fewer and fewer columns, each with its images, and about the seconds that they take. `copied`:
+    what they were chosen from. `exact`: whether what is known of one copy holds for all: the part is a pattern, and nothing about
+    it breaks that.
     """
 
     task: Task

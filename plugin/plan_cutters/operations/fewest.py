@@ -127,17 +127,9 @@ def fewest(
 ) -> Cover:
     """Find few columns that cover every row, each row of which some column covers.
 
-    Parameters
-    ----------
-    table : (n, m) bool
-    known : (k,) int64, optional
-        A cover.
-    relaxed : Relaxed, optional
-        Of this table, where it is known.
-    prove : bool
-        Search until no smaller cover is possible; else stop early.
-    seconds : float
-        That the search may take; behind it `at_least` is what is known by then.
+    `table` (n, m) bool. `known` (k,) int64: a cover. `relaxed`: of this table, where it is known. `prove`: search until no
+    smaller cover is possible; else stop early. `seconds`: that the search may take; behind it `at_least` is what is known by
+    then.
 
     Examples
     --------

@@ -354,16 +354,8 @@ class Paths:
 class Cut(NamedTuple):
     """Cutting at samples (m,) takes this; nan where the tool does not touch.
 
-    Attributes
-    ----------
-    strip : (m,) float
-        Width that a pass cuts, mm.
-    path : (m,) float
-        Length of the centre's path for each mm2, 1/mm.
-    links : (m,) float
-        Passes for each mm2, 1/mm2: each has a link.
-    floor : (m,) bool
-        Whether the flat part of the tip lies on a floor.
+    `strip` (m,) float: width that a pass cuts, mm. `path` (m,) float: length of the centre's path for each mm2, 1/mm. `links`
+    (m,) float: passes for each mm2, 1/mm2: each has a link. `floor` (m,) bool: whether the flat part of the tip lies on a floor.
     """
 
     strip: Floats

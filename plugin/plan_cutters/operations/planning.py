@@ -107,18 +107,9 @@ def plan_operations(
 ) -> Operations:
     """Plan the operations that finish together all that the cutters reach.
 
-    Parameters
-    ----------
-    everywhere : sequence of mapping
-        Of each setup, the first one first, the verdicts by cutter.
-    least : LeastSet, optional
-        The fewest cutters that reach all that any reaches: they are considered before others.
-    stage : callable
-        Opens a stage of work by its name; what it gives is told how much of how much is done.
-    over : mapping
-        Of each cutter by its id the verdicts over all setups, with the reasons.
-    searched : int
-        As for `proved`.
+    `everywhere`: of each setup, the first one first, the verdicts by cutter. `least`: the fewest cutters that reach all that any
+    reaches: they are considered before others. `stage`: opens a stage of work by its name; what it gives is told how much of how
+    much is done. `over`: of each cutter by its id the verdicts over all setups, with the reasons. `searched`: as for `proved`.
     """
     options, task = ready.options, _task(ready, everywhere, least)
     fewest, alone, more, outcomes = None, 0, None, tuple[OwnResult, ...]()

@@ -79,16 +79,10 @@ MINOR_AREA = 0.001
 class Reserved:
     """The planner's own steps take this of a plan.
 
-    Attributes
-    ----------
-    step : tuple of int
-        Of each column the number of the step that it is of; 0: it was planned.
-    moving : tuple of (int, int, int, (r,) int64)
-        Simultaneous steps: their number, cutter, setup, and the samples that they take.
-    leave : bool
-        Whether what no step takes is left, and not given to simultaneous operations.
-    others : tuple of mapping
-        Of each setup the verdicts by cutter for these: without those of cutters where they are forbidden.
+    `step`: of each column the number of the step that it is of; 0: it was planned. `moving` (tuple of (int, int, int, (r,)
+    int64)): simultaneous steps: their number, cutter, setup, and the samples that they take. `leave`: whether what no step takes
+    is left, and not given to simultaneous operations. `others`: of each setup the verdicts by cutter for these: without those of
+    cutters where they are forbidden.
     """
 
     step: tuple[int, ...]

@@ -36,16 +36,8 @@ _ONE = 1e-6
 class Symmetry:
     """Turns about an axis under which orientations are repeated.
 
-    Attributes
-    ----------
-    place, direction : (3,) float
-        The axis.
-    order : int
-        How many turns make a whole one.
-    exact : bool
-        Whether the part is a pattern; else its samples nearly are.
-    orientations : tuple of Orientations
-        Of each setup.
+    `place`, `direction` (3,) float: the axis. `order`: how many turns make a whole one. `exact`: whether the part is a pattern;
+    else its samples nearly are. `orientations`: of each setup.
     """
 
     place: Floats

@@ -155,16 +155,8 @@ _EXACT = 1e-3
 class Deepest(Record):
     """The deepest point of what stands around a tool.
 
-    Attributes
-    ----------
-    face : int
-        Its face; negative for a fixture, as in `Surroundings.called`.
-    triangle : int
-        Of the obstacles.
-    point : (3,) float
-        On the surface, where it could be found there, else on the triangle.
-    depth : float
-        mm; negative outside the tool.
+    `face`: its face; negative for a fixture, as in `Surroundings.called`. `triangle`: of the obstacles. `point` (3,) float: on
+    the surface, where it could be found there, else on the triangle. `depth`: mm; negative outside the tool.
     """
 
     face: int
