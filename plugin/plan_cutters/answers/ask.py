@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io.arrays import Ints
 from plan_cutters.answers.areas import Finished
@@ -112,7 +111,7 @@ def mend(
     It has no steps where none was looked for: `why` says why.
 
     `cutter`: one of `reaches`. `over`: what it reaches, of all samples, in all setups together. `reaches`: what each given cutter
-    reaches in the plan's first setup. `other_setups`: of each other setup its axis, and what each cutter reaches there by its id.
+    reaches in the plan's first setup.
     `budget`: as for `steps`.
     """
     finished, missed = Finished.of(ready), over.not_reached
@@ -218,18 +217,13 @@ def ask(
     return so_far(*unanswered)
 
 
-def _missed(reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, cutter: Cutter) -> NDArray[np.bool_]:
-    """Samples (n,) that a cutter does not reach in any setup."""
-    each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
-    return np.logical_and.reduce([verdicts.not_reached for verdicts in each])
-
-
 def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups) -> list[Cutter]:
     """Cutters that do not finish the part in all setups together, the one that leaves least first, then by rank."""
     finished, missing = Finished.of(ready), ready.conditions.surroundings.doubtful
     unreached = {}
     for cutter in ready.cutters:
-        not_reached = _missed(reaches, other_setups, cutter) & finished.wanted
+        each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
+        not_reached = np.logical_and.reduce([verdicts.not_reached for verdicts in each]) & finished.wanted
         if not_reached.any() or missing:
             unreached[cutter] = finished.of_rows(np.flatnonzero(not_reached))
     return sorted(unreached, key=lambda cutter: round(unreached[cutter], 9))

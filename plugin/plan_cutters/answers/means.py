@@ -7,6 +7,7 @@ that are sold. They are compared on a few of the samples that are not reached; `
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import product
 
@@ -305,7 +306,10 @@ def holder(scan: Scan) -> Iterator[Candidate]:
 def _chucks(now: Holder) -> list[Holder]:
     """Collet chucks of the table that are slimmer at the nose than a holder, the widest first, on its taper if it has one."""
     name = now.name.lower()
-    taper, nose, length = name.rpartition("er") if _is_chuck(name) else ("", "", "")
+    taper, nose, length = "", "", ""
+    # Of a holder of the table the name is its word.
+    with suppress(CutterError):
+        taper, nose, length = name.rpartition("er") if chuck(name) is not None else ("", "", "")
     _, times, mm = length.partition("x")
     long = f"x{mm}" if times else "" if nose else f"x{sum(stage.length for stage in now.stages):.10g}"
     slimmer = []
@@ -317,14 +321,6 @@ def _chucks(now: Holder) -> list[Holder]:
         if made.stages[0].radius < now.stages[0].radius - SAME:
             slimmer.append(made)
     return slimmer[::-1]
-
-
-def _is_chuck(name: str) -> bool:
-    """Whether a name is the word of a holder of the table."""
-    try:
-        return chuck(name) is not None
-    except CutterError:
-        return False
 
 
 def other_cutters(scan: Scan) -> Iterator[Candidate]:

@@ -45,7 +45,10 @@ def option(
     if words is None:
         return None
     auto = proposed(ready)
-    if auto and (setups is not None or not _nameable(ready)):
+    # Options have to name the proposed setups, and a plan that is given them to find the sides that faces have now.
+    if auto and (
+        setups is not None or not (_files(ready) or not options.other_setups) or not ready.scene.same_sides(ready.scene.setup)
+    ):
         return None
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
@@ -73,11 +76,6 @@ def _files(ready: Prepared) -> list[str]:
     """The files in which its setups will be; empty where they will be in none."""
     each = [place.file if place else "" for place in places(ready.options)]
     return each if all(each) else []
-
-
-def _nameable(ready: Prepared) -> bool:
-    """Whether options name the proposed setups, and a plan that is given them finds the sides that faces have now."""
-    return bool(_files(ready) or not ready.options.other_setups) and ready.scene.same_sides(ready.scene.setup)
 
 
 def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:

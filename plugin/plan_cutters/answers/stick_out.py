@@ -5,7 +5,6 @@ one say exactly how far each lets the holder come down, so that few searches fin
 (Lemma H3 of `docs/stick_out_proof.md`).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +19,7 @@ from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
 from plan_cutters.scene.distances import deepest_on
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.work import CHUNK, METER, in_chunks
+from plan_cutters.scene.work import CHUNK, METER, Progress, in_chunks
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
 EXACT, BEYOND = 0.005, 0.01
@@ -28,8 +27,6 @@ EXACT, BEYOND = 0.005, 0.01
 _FIRST = 400
 #: Intervals of tilt narrower than this are passed over, rad: as in the search that judges.
 _NARROWEST = 1e-5
-
-Progress = Callable[[int, int], None]
 
 
 def least_stick_out(ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Progress | None = None) -> StickOut:
@@ -188,11 +185,13 @@ class _Search:
 
         while limiting >= 0 and after(good) > self.floor and bad - good != 1:
             tried = (good + bad) // 2 if bad else 2 * good + 1
-            not_reached = self._not_reached(rows, after(tried), limiting)
-            if not_reached is None:
-                good = tried
+            # It is looked for first at the sample that limits.
+            reached = judge(self.ready, held(self.cutter, after(tried)), np.array([limiting])).reached[0]
+            missed = self.missed(rows, after(tried)) if reached else np.array([limiting])
+            if len(missed):
+                bad, limiting = tried, int(missed[0])
             else:
-                bad, limiting = tried, not_reached
+                good = tried
         lowest = after(good)
         if limiting < 0 or lowest <= self.floor:
             return lowest, lowest, -1
@@ -201,14 +200,6 @@ class _Search:
             if posture.reached[0]:
                 self.found.take_posture(limiting, posture, 0)
         return lowest, after(bad), limiting
-
-    def _not_reached(self, rows: NDArray[np.int64], stick_out: float, first: int) -> int | None:
-        """One of some samples that a judgement does not reach with a stick-out, looked for first at one of them; None: none."""
-        cutter = held(self.cutter, stick_out)
-        if not judge(self.ready, cutter, np.array([first])).reached[0]:
-            return first
-        missed = self.missed(rows, stick_out)
-        return int(missed[0]) if len(missed) else None
 
     def one(self, row: int, not_reached: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.

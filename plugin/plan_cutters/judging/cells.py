@@ -226,7 +226,14 @@ def laid(
     area = field.weight(clip)
     area *= part.faces[grid.face - 1].area / max(area.sum(), 1e-300)
     node = index[tile[:, 0], tile[:, 1]]
-    _bare_nodes(field, node, clip)
+    # What is known of nodes without a neighbour along some line comes from the boxes of their cells.
+    lone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
+    if len(lone):
+        own = node[lone]
+        reaches, variation = field.around(clip.low[lone], clip.high[lone], field.point[own], field.tensor[own])
+        field.radius[own] = 0.0
+        np.maximum.at(field.radius, own, reaches)
+        np.maximum.at(field.variation, own, variation)
     judged = (node >= 0) & (samples.unjudged[rows[node]] < 0)
     mine = rows[node[judged]]
     middle, span = _rectangles((u, v), tile)
@@ -335,17 +342,6 @@ def _neighbours(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdi
         new = (neighbours < 0) & (node >= 0) & known[np.maximum(node, 0)]
         neighbours[new] = rows[node[new]]
     return neighbours
-
-
-def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
-    """Fill in what is known of nodes without a neighbour along some line, from the boxes of their cells."""
-    alone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
-    if len(alone):
-        rows = node[alone]
-        reach, variation = field.around(clip.low[alone], clip.high[alone], field.point[rows], field.tensor[rows])
-        field.radius[rows] = 0.0
-        np.maximum.at(field.radius, rows, reach)
-        np.maximum.at(field.variation, rows, variation)
 
 
 def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) -> None:

@@ -25,7 +25,6 @@ from plan_cutters.domain.verdicts import (
     Verdicts,
     blank,
 )
-from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.work import Progress, Work, in_chunks, part_of
@@ -93,17 +92,10 @@ def decompose(
 
 
 def march_differs(samples: SurfaceSamples, convex: NDArray[np.bool_], region: Ints, interference_free: NDArray[np.bool_]) -> int:
-    """Convex samples that the seed's march over boundaries would have put on the other side; `region` as in `regions`."""
-    marched = _march(samples, convex, region, interference_free)
-    return int((marched[convex] != interference_free[convex]).sum())
+    """Convex samples that the seed's march over boundaries would have put on the other side; `region` as in `regions`.
 
-
-def _march(
-    samples: SurfaceSamples, convex: NDArray[np.bool_], region: NDArray[np.int32], free: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """The seed's march: from each region's boundary inwards, past every point that is not free.
-
-    What it reaches through points that are not free is prone; a pocket of such points inside is never looked at.
+    It goes from each region's boundary inwards, past every point that is not free. What it reaches through points that are not
+    free is prone; a pocket of such points inside is never looked at.
     """
     a, b = samples.neighbours.T
     n = len(samples)
@@ -112,13 +104,14 @@ def _march(
     degree = np.bincount(a, minlength=n) + np.bincount(b, minlength=n)
     rim = degree < 4
     rim[a[~inside]] = rim[b[~inside]] = True
-    blocked = convex & ~free
+    blocked = convex & ~interference_free
     both = inside & blocked[a] & blocked[b]
     graph = coo_array((np.ones(int(both.sum()), np.int8), (a[both], b[both])), shape=(n, n))
     count, island = connected_components(graph, directed=False)
     reached = np.zeros(count, bool)
     reached[island[blocked & rim]] = True
-    return np.asarray(convex & ~(blocked & reached[island]))
+    marched = ~(blocked & reached[island])
+    return int((marched[convex] != interference_free[convex]).sum())
 
 
 #: A face that triangles follow only within so many tolerances is not searched: all of it is undecided.
@@ -143,6 +136,8 @@ def access(
     are not searched again. `rows` (m,) int64: the samples to search, all by default; the others stay unjudged. Whole pieces of
     them (`with_company`), or else other postures may be found for the same sample.
     """
+    from plan_cutters.kernels.search.search import first_reason
+
     n, conditions = len(samples), context.conditions
     verdicts = blank(n)
     judged = samples.unjudged < 0
@@ -166,7 +161,12 @@ def access(
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
         verdicts.take(follows, known)
-        _first_reasons(contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), context, verdicts.reason)
+        # Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own.
+        few, tool, certain = follows & (known.verdict == INACCESSIBLE), context.inner, conditions.surroundings.certain.solids
+        in_chunks(
+            lambda piece: first_reason(piece, contacts, conditions.ranges, tool, certain, verdicts.reason),
+            np.flatnonzero(few), conditions.jobs,
+        )  # fmt: skip
         wanted &= ~follows
     alone, faces = conditions.surroundings.alone, samples.face
     if alone is None:
@@ -191,12 +191,3 @@ def access(
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
     return verdicts.freeze()
-
-
-def _first_reasons(contacts: Contacts, rows: NDArray[np.int64], context: Context, reason: NDArray[np.uint8]) -> None:
-    """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
-    from plan_cutters.kernels.search.search import first_reason
-
-    conditions, tool = context.conditions, context.inner
-    ranges, certain = conditions.ranges, conditions.surroundings.certain.solids
-    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, certain, reason), rows, conditions.jobs)

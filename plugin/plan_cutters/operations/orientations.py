@@ -86,10 +86,6 @@ class Orientations:
         held = np.flatnonzero(taken >= 0)
         return self.set_to(np.degrees(angle[held, taken[held]]))
 
-    def other(self, axis: Floats, angle: Floats) -> Floats | None:
-        """The other angles (2,), deg, that hold an axis (3,); None where there are none."""
-        return self.others(axis[None], angle[None])[0]
-
     def others(self, axis: Floats, angle: Floats) -> list[Floats | None]:
         """The other angles (2,), deg, that hold each of some axes (n, 3) beside its angles (n, 2); None where there are none."""
         both = np.degrees(self.kinematics.positions(axis)[0])
@@ -185,20 +181,13 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None,
     if step is None:
         own_angle, own_axis = where.near(directions(samples, where.conditions.setup))
         angle, axis = np.concatenate([own_angle, angle]), np.concatenate([own_axis, axis])
-    high = where.conditions.postures.tilt[1]
-    normal = samples.normal[samples.unjudged < 0]
-    facing = _faces_any(axis, normal, math.cos(min(high, math.pi)))
-    selected = np.flatnonzero(facing)
+    least, normal = math.cos(min(where.conditions.postures.tilt[1], math.pi)), samples.normal[samples.unjudged < 0]
+    if not len(normal):
+        return angle[:0], axis[:0]
+    # Those that face at least one normal.
+    selected = np.flatnonzero(1.0 - 0.5 * cKDTree(normal).query(axis)[0] ** 2 >= least - 1e-9)
     selected = selected[apart(axis[selected])]
     return angle[selected], axis[selected]
-
-
-def _faces_any(axis: Floats, normal: Floats, least: float) -> NDArray[np.bool_]:
-    """Which axes (m,) face at least one normal."""
-    if not len(normal):
-        return np.zeros(len(axis), bool)
-    nearest = cKDTree(normal).query(axis)[0]
-    return np.asarray(1.0 - 0.5 * nearest**2 >= least - 1e-9)
 
 
 #: Positions of which the best order is looked for among all orders; of more, the nearest one comes next.

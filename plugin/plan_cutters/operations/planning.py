@@ -35,7 +35,7 @@ from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.labels import WHOLE_FACE, Seams
 from plan_cutters.operations.motion import chosen_for_others, few_enough, flowing, recommended, with_moved
 from plan_cutters.operations.moving_axes import MovingAxes
-from plan_cutters.operations.orientations import STEP, Indexing, apart, candidates
+from plan_cutters.operations.orientations import STEP, Indexing, Orientations, apart, candidates
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.passes import Extents, Paths
 from plan_cutters.operations.plans import (
@@ -44,7 +44,6 @@ from plan_cutters.operations.plans import (
     considered,
     costs_with,
     of_wanted_kinds,
-    orientations_of,
     plan_with,
     small_pieces,
     worth_their_turn,
@@ -331,7 +330,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         machine.acceleration,
     )  # fmt: skip
     walls = Walls.of(probes, paths)
-    where = orientations_of(ready)
+    where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls,

@@ -27,7 +27,7 @@ from plan_cutters.operations.labels import (
     regions_of,
     without_minor_steps,
 )
-from plan_cutters.operations.orientations import Indexing, Orientations
+from plan_cutters.operations.orientations import Indexing
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
@@ -36,7 +36,7 @@ from plan_cutters.plan_file.operations import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Prepared, places
 
 
 def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Indexing) -> list[Operation]:
@@ -46,7 +46,7 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
     starts with these at zero.
     """
     options = ready.options
-    placements = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
+    placements = places(options)
     planned = list(operations)
     groups: dict[tuple[int, str], list[int]] = {}
     for i, each in enumerate(operations):
@@ -143,8 +143,11 @@ def plan_with(
             strip, length = moving, area / moving
         links = sum(_to_pieces(task, region[each.rows]) for each in operations)
     else:
-        operations = [_moving_in_a_field(task, each) for each in operations]
         for k, operation in enumerate(operations):
+            if operation.axis is None:
+                # Simultaneous motion goes with the axes of its field.
+                axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
+                operation = replace(operation, moving=(axis, np.full(n, -1, np.int32)))
             stands, mine = _stands(task, operation), operation.rows
             strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
             if task.paths.feed is not None:
@@ -162,14 +165,6 @@ def plan_with(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
         links, other, short, mark * task.seams.marks(number),
     )  # fmt: skip
-
-
-def _moving_in_a_field(task: Task, operation: Operation) -> Operation:
-    """A simultaneous operation with the axes of its field; others as they are."""
-    if operation.axis is not None:
-        return operation
-    axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
-    return replace(operation, moving=(axis, np.full(len(axis), -1, np.int32)))
 
 
 def _to_pieces(task: Task, region: Ints) -> float:
@@ -216,7 +211,7 @@ def _fixed(
     operations = [
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
-            task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
+            task.orientations[columns.setup[k]].others(columns.axis[[k]], columns.angle[[k]])[0], np.flatnonzero(label == k),
             step=step[k], orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
@@ -534,11 +529,6 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
             break
         columns_left = np.delete(columns_left, minor[saved[minor].argmin()])
     return columns.of(columns_left)
-
-
-def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:
-    """Those of each setup."""
-    return tuple(Orientations.of(conditions) for conditions in ready.setups)
 
 
 def considered(cutters: Sequence[Cutter], needed: Sequence[Cutter], most: int) -> tuple[Cutter, ...]:

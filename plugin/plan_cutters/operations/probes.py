@@ -170,7 +170,11 @@ class Walls:
         if flank is None or not able.any():
             return result
         at = np.flatnonzero(able)
-        square, ruling = _flute_frame(normal[at], axis, cutter.taper)
+        # Of the flutes: unit normals on the face's side, and directions up them.
+        radial = normal[at] - (normal[at] @ axis)[:, None] * axis
+        radial = radial / np.linalg.norm(radial, axis=1)[:, None]
+        square = math.cos(cutter.taper) * radial + math.sin(cutter.taper) * axis
+        ruling = math.cos(cutter.taper) * axis - math.sin(cutter.taper) * radial
         low, high = self._ends(rows[at], normal[at], axis)
         begins = flank[0] / math.cos(cutter.taper)
         starts = (0.0, begins) if flank[0] > NOTHING else (0.0,)
@@ -315,10 +319,3 @@ class Walls:
             rows = np.flatnonzero(judged & wall & ~served)
             served[rows] = np.isfinite(self.passes(c, s, axis, rows).strip)
         return served
-
-
-def _flute_frame(normal: Floats, axis: Floats, taper: float) -> tuple[Floats, Floats]:
-    """Of flutes that touch faces with normals (m, 3): unit normals (m, 3) on the face's side, and directions (m, 3) up them."""
-    radial = normal - (normal @ axis)[:, None] * axis
-    radial = radial / np.linalg.norm(radial, axis=1)[:, None]
-    return (math.cos(taper) * radial + math.sin(taper) * axis, math.cos(taper) * axis - math.sin(taper) * radial)

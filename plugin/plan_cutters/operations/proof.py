@@ -239,7 +239,11 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         number[plan.label == k] = i
     axes, serves = np.array([each.axis for each in chosen]), plan.serves[:, group]
     context = Context.of(chosen[0].cutter, ready.setups[chosen[0].setup])
-    first = np.where(number < 0, -1, _roomiest(samples, axes, serves, context))
+    # Of the axes that serve a sample the one with most room for the contact to move comes first.
+    normal, tensor = samples.normal, tensors(samples.normal, samples.direction_max, samples.curvature)
+    remaining = np.array([margin(np.broadcast_to(axis, normal.shape), normal, tensor, context) for axis in axes]).T
+    remaining = np.where(serves, np.nan_to_num(remaining, nan=-np.inf, neginf=-1e300), -np.inf)
+    first = np.where((number >= 0) & serves.any(axis=1), remaining.argmax(axis=1), -1).astype(np.int32)
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
         ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
@@ -257,13 +261,3 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         share = proved_share(float(by_sample[mine].sum()), surrounding_area)
         result.append(each.with_fields(proved_share=share, approaches_proved=counted_pieces(size)))
     return result
-
-
-def _roomiest(samples: SurfaceSamples, axes: Floats, serves: NDArray[np.bool_], context: Context) -> NDArray[np.int32]:
-    """Of axes (k, 3) that serve samples (n, k) the one with most room for the contact to move; -1 where none serves."""
-    tensor = tensors(samples.normal, samples.direction_max, samples.curvature)
-    remaining = np.array(
-        [margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, context) for axis in axes]
-    ).T
-    remaining = np.where(serves, np.nan_to_num(remaining, nan=-np.inf, neginf=-1e300), -np.inf)
-    return np.where(serves.any(axis=1), remaining.argmax(axis=1), -1).astype(np.int32)

@@ -81,7 +81,8 @@ def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context:
     axis[rows] = along * contacts.normal[rows]
     off = np.flatnonzero(~conditions.allows(axis[rows]))
     axis[rows[off]] = _nearest(axis[rows[off]], conditions)
-    most = max(conditions.accuracy, _angle(2.0 * flat, conditions.tolerance))
+    # By how much the flat may lean and stay within the tolerance.
+    most = max(conditions.accuracy, min(BEYOND, math.asin(min(1.0, conditions.tolerance / (2.0 * flat)))))
     near = _between(axis[rows], along * contacts.normal[rows]) <= most
     rows = rows[near & conditions.allows(axis[rows])]
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
@@ -329,11 +330,6 @@ def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions
         turn = rotations_of(contacts.normal[rows], contacts.direction_max[rows], f)
         held &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
     return rows[held], axis[held]
-
-
-def _angle(length: float, tolerance: float) -> float:
-    """By how much a line of a length, mm, may lean and stay within the tolerance, mm; rad, no more than `BEYOND`."""
-    return min(BEYOND, math.asin(min(1.0, tolerance / length)))
 
 
 def _between(axis: Floats, normal: Floats) -> Floats:

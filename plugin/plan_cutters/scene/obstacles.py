@@ -311,9 +311,20 @@ class Obstacles(Record):
     def skin_of(self, body: Body) -> "Obstacles":
         """The triangles of one body; their tree is built once."""
         key = (tuple(body.faces), tuple(body.sign))
-        if key not in self._skins:
-            self._skins[key] = self._skin_of(body)
-        return self._skins[key]
+        if key in self._skins:
+            return self._skins[key]
+        own = self._own
+        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
+            result = own.skin_of(body)
+        else:
+            mine = self.rows_of(body.faces)
+            triangles = self.triangles.take(mine)
+            # A fixture is one body whatever it consists of, and its triangles know what they count.
+            weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
+            whole = len(mine) == len(self.triangles) and (weight == self.weight).all()
+            result = self if whole else Obstacles(triangles, weight)
+        self._skins[key] = result
+        return result
 
     @cached_property
     def _skins(self) -> "dict[tuple[tuple[int, ...], tuple[int, ...]], Obstacles]":
@@ -328,18 +339,6 @@ class Obstacles(Record):
         """Rows (k,) of the triangles of some faces, ascending."""
         none = np.zeros(0, np.int64)
         return np.sort(np.concatenate([none, *(self._rows.get(number, none) for number in set(faces))]))
-
-    def _skin_of(self, body: Body) -> "Obstacles":
-        own = self._own
-        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
-            return own.skin_of(body)
-        mine = self.rows_of(body.faces)
-        triangles = self.triangles.take(mine)
-        # A fixture is one body whatever it consists of, and its triangles know what they count.
-        weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
-        if len(mine) == len(self.triangles) and (weight == self.weight).all():
-            return self
-        return Obstacles(triangles, weight)
 
     def holds(
         self, tool: Assembly, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats, *, certain: bool = False

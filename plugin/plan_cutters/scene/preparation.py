@@ -247,9 +247,8 @@ class Prepared(Record):
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
         """Give the setup axis and, where it is known, the direction along the machine's X, of each requested setup."""
-        options, axes = self.options, (self.scene.setup, *self.options.other_setups)
-        places = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
-        return tuple((axis, None if place is None else place.x) for axis, place in zip(axes, places, strict=True))
+        axes = self.scene.setup, *self.options.other_setups
+        return tuple((axis, None if at is None else at.x) for axis, at in zip(axes, places(self.options), strict=True))
 
     @property
     def setups(self) -> tuple[Conditions, ...]:
@@ -341,20 +340,21 @@ def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
                 f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this setup the first"
             )
     tolerance = max(each.tolerance(scene.asked) for each in each_setup)
+    along = [None if place is None or place.x is None else np.array(place.x) for place in places(options)]
     return [
-        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place), options.accuracy)
-        for axis, each, place in zip(axes, each_setup, places(options), strict=True)
+        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, x, options.accuracy)
+        for axis, each, x in zip(axes, each_setup, along, strict=True)
     ]
-
-
-def _x(place: Placement | None) -> Floats | None:
-    return None if place is None or place.x is None else np.array(place.x)
 
 
 def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     """Add what is held in the first setup, and the other setups with what cannot be machined there."""
-    held = [_samples_of(ready, place, each) for place, each in zip(places(ready.options), conditions, strict=True)]
-    others = []
+    held, others = list[NDArray[np.bool_]](), list[OtherSetup]()
+    for place, each in zip(places(ready.options), conditions, strict=True):
+        # Faces that the setup clamps, or with which the part rests in a vise or chuck.
+        rests_on = [number for one in each.surroundings.fixtures if one.hold is not None for number in one.hold.rests_on]
+        faces = sorted({*clamped_faces(ready.scene.part, place, ready.scene.repeated), *rests_on})
+        held.append(np.isin(ready.samples.face, faces))
     for each, clamped in zip(conditions[1:], held[1:], strict=True):
         inside = ready.inside
         if each.surroundings is not ready.conditions.surroundings:
@@ -364,12 +364,6 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
             )  # fmt: skip
         others.append(OtherSetup(each, inside, clamped))
     return replace(ready, held=held[0], others=tuple(others))
-
-
-def _samples_of(ready: Prepared, place: Placement | None, conditions: Conditions) -> NDArray[np.bool_]:
-    """Samples (n,) of the faces that a setup clamps, or with which the part rests in a vise or chuck."""
-    rests_on = [number for each in conditions.surroundings.fixtures if each.hold is not None for number in each.hold.rests_on]
-    return np.isin(ready.samples.face, sorted({*clamped_faces(ready.scene.part, place, ready.scene.repeated), *rests_on}))
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:

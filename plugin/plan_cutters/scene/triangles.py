@@ -100,7 +100,9 @@ def thickened(vertex: Floats, error: float) -> Floats:
     normal = np.cross(side[:, 0], side[:, 1])
     twice = np.linalg.norm(normal, axis=1)
     flat = (twice > _THIN * length.max(axis=1, initial=0.0) ** 2) & (length.min(axis=1, initial=np.inf) > 0.0)
-    return np.concatenate([_prisms(vertex[flat], error), _boxes(vertex[~flat], error)])
+    needles = vertex[~flat]
+    boxes = [boxed(low - error, high + error) for low, high in zip(needles.min(axis=1), needles.max(axis=1), strict=True)]
+    return np.concatenate([_prisms(vertex[flat], error), *boxes])
 
 
 def boxed(low: Floats, high: Floats) -> Floats:
@@ -116,22 +118,11 @@ def _prisms(vertex: Floats, error: float) -> Floats:
     outward /= np.linalg.norm(outward, axis=2)[:, :, None]
     # At a corner the prism is cut off at the distance, across the middle between the sides before and behind it.
     before = np.roll(outward, 1, axis=1)
-    across = _unit(before + outward)
-    corner = [vertex + error * _where_lines_meet(one, across) for one in (before, outward)]
+    across = before + outward
+    across = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    # Two lines at distance 1 from a point, with unit normals, meet at twice their sum over its square.
+    meets = (2.0 * (one + across) / ((one + across) ** 2).sum(axis=2, keepdims=True) for one in (before, outward))
+    corner = [vertex + error * each for each in meets]
     ring = np.stack(corner, axis=2).reshape(-1, 6, 3)
     high = error * normal[:, None]
     return np.asarray(np.concatenate([ring - high, ring + high], axis=1)[:, _PRISM].reshape(-1, 3, 3))
-
-
-def _where_lines_meet(one: Floats, other: Floats) -> Floats:
-    """Where two lines at distance 1 from a point, with these unit normals (n, 3, 3), meet, from that point."""
-    return np.asarray(2.0 * (one + other) / ((one + other) ** 2).sum(axis=2, keepdims=True))
-
-
-def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
-
-
-def _boxes(vertex: Floats, error: float) -> Floats:
-    boxes = [boxed(low - error, high + error) for low, high in zip(vertex.min(axis=1), vertex.max(axis=1), strict=True)]
-    return np.concatenate([np.zeros((0, 3, 3)), *boxes])

@@ -66,17 +66,16 @@ def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
             continue
         wall = wall_of([number], vertex, part.face[rows], np.zeros(3))
         centre, radius = circle
-        same = next((k for k, each in enumerate(cylinders) if _one_cylinder(each, circle)), None)
+        same = next(
+            (k for k, (_, at, known) in enumerate(cylinders)
+             if abs(known - radius) <= TOGETHER and float(np.linalg.norm(at - centre)) <= TOGETHER), None
+        )  # fmt: skip
         if same is None:
             cylinders.append((wall, centre, radius))
         else:
             first, centre, known = cylinders[same]
             cylinders[same] = merged(first, wall), centre, max(radius, known)
     return sorted(cylinders, key=lambda each: (-each[2], each[0].faces))
-
-
-def _one_cylinder(known: tuple[Wall, Floats, float], circle: tuple[Floats, float]) -> bool:
-    return abs(known[2] - circle[1]) <= TOGETHER and float(np.linalg.norm(known[1] - circle[0])) <= TOGETHER
 
 
 def _circle(vertex: Floats, normal: Floats) -> tuple[Floats, float] | None:

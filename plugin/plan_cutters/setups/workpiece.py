@@ -223,26 +223,22 @@ def area_of(vertex: Floats) -> float:
 def clipped(vertex: Floats, face: Ints, direction: Floats, low: float, high: float) -> tuple[Floats, Ints]:
     """Cut triangles (n, 3, 3) of faces (n,) to what lies between two heights along a direction."""
     for way, limit in ((direction, low), (-direction, -high)):
-        vertex, face = _beyond(vertex, face, way, limit)
+        height = vertex @ way - limit
+        count = (height > 0.0).sum(axis=1)
+        parts, faces = [vertex[count == 3]], [face[count == 3]]
+        for number in (1, 2):
+            some, tall = vertex[count == number], height[count == number]
+            # The corner that is alone on its side comes first.
+            alone = np.argmax(tall > 0.0, axis=1) if number == 1 else np.argmax(tall <= 0.0, axis=1)
+            a, b, c = (np.take_along_axis(some, ((alone + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3))
+            p, q, r = (np.take_along_axis(tall, ((alone + k) % 3)[:, None], axis=1) for k in range(3))
+            ab, ac = a + (b - a) * (p / (p - q)), a + (c - a) * (p / (p - r))
+            corners = [(a, ab, ac)] if number == 1 else [(ab, b, c), (ab, c, ac)]
+            pieces = [np.stack(each, axis=1) for each in corners]
+            parts += pieces
+            faces += [face[count == number]] * len(pieces)
+        vertex, face = np.concatenate(parts), np.concatenate(faces)
     return vertex, face
-
-
-def _beyond(vertex: Floats, face: Ints, direction: Floats, limit: float) -> tuple[Floats, Ints]:
-    """Cut triangles to what lies above a height along a direction."""
-    height = vertex @ direction - limit
-    count = (height > 0.0).sum(axis=1)
-    parts, faces = [vertex[count == 3]], [face[count == 3]]
-    for number in (1, 2):
-        some, tall = vertex[count == number], height[count == number]
-        # The corner that is alone on its side comes first.
-        alone = np.argmax(tall > 0.0, axis=1) if number == 1 else np.argmax(tall <= 0.0, axis=1)
-        a, b, c = (np.take_along_axis(some, ((alone + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3))
-        p, q, r = (np.take_along_axis(tall, ((alone + k) % 3)[:, None], axis=1) for k in range(3))
-        ab, ac = a + (b - a) * (p / (p - q)), a + (c - a) * (p / (p - r))
-        pieces = [np.stack([a, ab, ac], axis=1)] if number == 1 else [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
-        parts += pieces
-        faces += [face[count == number]] * len(pieces)
-    return np.concatenate(parts), np.concatenate(faces)
 
 
 _UP = np.array([0.0, 0.0, 1.0])
