@@ -157,20 +157,12 @@ def ask(
 ) -> Answers:
     """Answer what is asked.
 
-    Parameters
-    ----------
-    reaches : mapping
-        What each cutter reaches.
-    stage : callable
-        Opens a stage of work by its name; what it gives is told how much of how much is done.
-    other_setups : sequence
-        Of each other setup its axis, and what each cutter reaches there by its id.
-    searched : int
-        Boxes that the searches for verdicts looked at: the work of advice is bounded by a share of them.
-    least : LeastSet, optional
-        The fewest runs, as they are known already: one of the answers.
-    answered : callable, optional
-        Called with the answers so far and the words of those that are missing, whenever one is found.
+    `reaches`: what each cutter reaches.
+    `stage`: opens a stage of work by its name; what it gives is told how much of how much is done.
+    `other_setups`: of each other setup its axis, and what each cutter reaches there by its id.
+    `searched`: boxes that the searches for verdicts looked at: the work of advice is bounded by a share of them.
+    `least`: the fewest runs, as they are known already: one of the answers.
+    `answered`: called with the answers so far and the words of those that are missing, whenever one is found.
     """
     requested = ready.options.answers
     setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}

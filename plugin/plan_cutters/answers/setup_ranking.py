@@ -38,20 +38,12 @@ _GRIPPED_FOR = 0.9
 class Held:
     """How a part is held in a direction that was searched.
 
-    Attributes
-    ----------
-    fixture : Fixture
-        In its place.
-    served : (r,) bool
-        Where a posture was found among it.
-    grips, rests_on : tuple of int
-        Faces that jaws touch, and planar ones with which the part rests in them; none for a table.
-    hidden : float
-        Area of the target faces that jaws touch, mm2.
-    words : str
-        What it is and what it grips; empty for a table.
-    why : str
-        Why it was taken; empty where only one was tried.
+    `fixture`: in its place.
+    `served` (r,) bool: where a posture was found among it.
+    `grips`, `rests_on`: faces that jaws touch, and planar ones with which the part rests in them; none for a table.
+    `hidden`: area of the target faces that jaws touch, mm2.
+    `words`: what it is and what it grips; empty for a table.
+    `why`: why it was taken; empty where only one was tried.
     """
 
     fixture: Fixture
@@ -161,28 +153,17 @@ def holdable(
 class Ranking:
     """The ranking keeps what is known of each direction; it grows as directions are searched.
 
-    Attributes
-    ----------
-    ready : Prepared
-        In any setup, without fixtures.
-    rows : (r,) int64
-        Samples on which directions are compared.
-    free : (r,) bool
-        Where a posture was found without table and machine: what the part itself is in the way of is not searched again in each
-        direction.
-    bound : (r, m) bool
-        Those of them where the machine holds an axis over the table at all, and the face is not stood on.
-    words : tuple of str
-        What may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
-    held : mapping
-        By candidate that was searched, how it is held; None where it cannot be.
-    settled : set
-        Candidates for which all words were tried; of the others over a table it is not known yet where that lies.
-    refused : mapping
-        Why nothing holds it in directions that were searched, the first cause first.
-    usual : (r,) bool
-        Where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter makes a
-        setup look better than it is.
+    `ready`: in any setup, without fixtures.
+    `rows` (r,) int64: samples on which directions are compared.
+    `free` (r,) bool: where a posture was found without table and machine: what the part itself is in the way of is not searched
+        again in each direction.
+    `bound` (r, m) bool: those of them where the machine holds an axis over the table at all, and the face is not stood on.
+    `words`: what may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
+    `held`: by candidate that was searched, how it is held; None where it cannot be.
+    `settled`: candidates for which all words were tried; of the others over a table it is not known yet where that lies.
+    `refused`: why nothing holds it in directions that were searched, the first cause first.
+    `usual` (r,) bool: where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form
+        cutter makes a setup look better than it is.
     """
 
     ready: Prepared

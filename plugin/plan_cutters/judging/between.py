@@ -92,24 +92,16 @@ _STEPS = 1000
 class Cells(Record):
     """Cells of target faces that are served, each by one tool axis.
 
-    Attributes
-    ----------
-    face : (m,) int32
-    uv, span : (m, 2) float
-        Middle and full extent in surface parameters; what of it lies in the trim counts.
-    axis : (m, 3) float
-        Unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its bottom
-        centre lies from the contact along `n - (n.a) a`.
-    side : (m, 3) float
-        Unit tilt direction where the axis is the normal all over the cell: there the bottom centre lies against it.
-    whole : (m,) bool
-        It lies in the trim altogether.
-    area : (m,) float
-        Of what lies in the trim, mm2.
-    sample : (m,) int64
-        The one that it lies about, -1 for none.
-    piece : (m,) int64
-        Connected cells with one axis have the same number (`connected`).
+    `face` (m,) int32.
+    `uv`, `span` (m, 2) float: middle and full extent in surface parameters; what of it lies in the trim counts.
+    `axis` (m, 3) float: unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its
+        bottom centre lies from the contact along `n - (n.a) a`.
+    `side` (m, 3) float: unit tilt direction where the axis is the normal all over the cell: there the bottom centre lies against
+        it.
+    `whole` (m,) bool: it lies in the trim altogether.
+    `area` (m,) float: of what lies in the trim, mm2.
+    `sample` (m,) int64: the one that it lies about, -1 for none.
+    `piece` (m,) int64: connected cells with one axis have the same number (`connected`).
     """
 
     face: Ints
@@ -127,23 +119,14 @@ class Cells(Record):
 class Between(Record):
     """The search between samples proved this part of the target area.
 
-    Attributes
-    ----------
-    served, whole : float
-        Proved area, mm2, and that of all target faces whose area is known, sampled or not, without what surely lies inside other
-        bodies of the part.
-    contacts : int
-        Contacts looked at, samples included.
-    left : int
-        Contacts whose cells are not proved, when the budget or the levels ended, and samples of faces without cells.
-    short : int
-        Those of them for which the budget was spent.
-    dropped : int
-        Those of them that were not looked at more closely since too little was to be gained.
-    unknown : tuple of int
-        Target faces whose area is not known: none of them is proved, and they are not in `share`.
-    around : (n,) float
-        Area of all cells about each sample, served or not, mm2.
+    `served`, `whole`: proved area, mm2, and that of all target faces whose area is known, sampled or not, without what surely
+        lies inside other bodies of the part.
+    `contacts`: contacts looked at, samples included.
+    `left`: contacts whose cells are not proved, when the budget or the levels ended, and samples of faces without cells.
+    `short`: those of them for which the budget was spent.
+    `dropped`: those of them that were not looked at more closely since too little was to be gained.
+    `unknown`: target faces whose area is not known: none of them is proved, and they are not in `share`.
+    `around` (n,) float: area of all cells about each sample, served or not, mm2.
     """
 
     served: float
@@ -185,25 +168,17 @@ def between(
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-        The faces in them, `empty` ones included, are the target.
-    verdicts : Verdicts
-        Of the cutter.
-    budget : int
-        Most contacts to add to the samples.
-    most : float
-        Most work to do, counted as `Work` does.
-    covered_samples : (n,) bool, optional
-        Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
-    axes : Fixed or mapping of int to AxisField, optional
-        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact
-        has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without
-        a field are not looked at. No other posture is searched.
-    own : (n + 1,) bool, optional
-        Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
-        there, but `share` is of all the same.
+    `samples`: the faces in them, `empty` ones included, are the target.
+    `verdicts`: of the cutter.
+    `budget`: most contacts to add to the samples.
+    `most`: most work to do, counted as `Work` does.
+    `covered_samples` (n,) bool: samples that are no surface of the finished part: cells about them are left out where all around
+        them are such, too.
+    `axes`: of a Fixed, each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each
+        contact has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces
+        without a field are not looked at. No other posture is searched.
+    `own` (n + 1,) bool: samples whose cells are looked at, and behind them whether those about no sample are; the others are as
+        if they were not there, but `share` is of all the same.
     """
     whole, unknown = _areas(samples, part)
     fixed, turning = (axes, None) if axes is None or isinstance(axes, Fixed) else (None, axes)

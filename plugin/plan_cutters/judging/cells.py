@@ -136,17 +136,12 @@ class CellContacts:
 class Field:
     """A face, its grid's tiles and what is known of the surface at their nodes.
 
-    Attributes
-    ----------
-    part, orientation, number, trim
-        The face.
-    lines : list of (u, v)
-        Lines between tiles, level by level, each halving the one before.
-    index : (nu, nv) int32
-        Each tile's node, -1: nothing of it lies in the trim, or its node was not judged.
-    closed : (2,) bool
-    point, normal, tensor, wobble, radius : (k, ...) float
-        Of the nodes. How far the curvature may differ in the cell, 1/mm, and how far it reaches, mm; nan: not known.
+    `part`, `orientation`, `number`, `trim`: the face.
+    `lines` (list of (u, v)): lines between tiles, level by level, each halving the one before.
+    `index` (nu, nv) int32: each tile's node, -1: nothing of it lies in the trim, or its node was not judged.
+    `closed` (2,) bool.
+    `point`, `normal`, `tensor`, `wobble`, `radius` (k, ...) float: of the nodes. How far the curvature may differ in the cell,
+        1/mm, and how far it reaches, mm; nan: not known.
     """
 
     part: Part

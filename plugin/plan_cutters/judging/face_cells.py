@@ -60,32 +60,19 @@ class Fixed:
 class FaceCells:
     """A face and its cells.
 
-    Attributes
-    ----------
-    work : Work
-        What was looked at, for this face and others.
-    fixed : Fixed, optional
-        Where postures are not searched.
-    turning : AxisField, optional
-        Each contact has its own axis: no other posture is tried.
-    reported : callable
-        Called as often as contacts were looked at.
-    found : list of CellContacts
-        Served.
-    levels : list of int
-        How often those were cut into four.
-    pools : list of (CellContacts, outlook)
-        Open, by how often they were cut into four.
-    unseen : int
-        Contacts that were not looked at, for the budget was spent.
-    short, dropped : int
-        Those, and open cells that would be cut if the budget were not spent; and those that are not for the gain is too small.
-    seen, spent : int
-        Contacts looked at, and the work that they took.
-    about : (k, 16) float
-        What kernels take of the nodes.
-    sweeping : Sweeping
-        What they take of the cutter.
+    `work`: what was looked at, for this face and others.
+    `fixed`: where postures are not searched.
+    `turning`: each contact has its own axis: no other posture is tried.
+    `reported`: called as often as contacts were looked at.
+    `found`: served.
+    `levels`: how often those were cut into four.
+    `pools` (list of (CellContacts, outlook)): open, by how often they were cut into four.
+    `unseen`: contacts that were not looked at, for the budget was spent.
+    `short`, `dropped`: those, and open cells that would be cut if the budget were not spent; and those that are not for the gain
+        is too small.
+    `seen`, `spent`: contacts looked at, and the work that they took.
+    `about` (k, 16) float: what kernels take of the nodes.
+    `sweeping`: what they take of the cutter.
     """
 
     field: Field

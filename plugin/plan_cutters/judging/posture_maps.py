@@ -411,22 +411,14 @@ def posture_maps(
     Of samples that are more than the work is worth, as many as that allows, evenly spread: of the others, every tilt is undecided
     and `unmapped` says how many there are. The same samples get the same maps whatever the machine's speed.
 
-    Parameters
-    ----------
-    context : Context
-        The machine is not looked at.
-    verdicts : Verdicts
-        What the cutter reaches without a machine.
-    part : str
-        SHA-256 of the part's file.
-    inside : (n,) bool, optional
-        Samples that lie inside another body of the part.
-    shut : (n,) bool, optional
-        Samples that no cutter gets to, for they are held or lie within a fixture: no tilt is free there, nor in doubt.
-    missing : tuple of str
-        Obstacles that are missing or only guessed.
-    most : int, optional
-        Samples to map, at most. None: as many as take `WORK`.
+    `context`: the machine is not looked at.
+    `verdicts`: what the cutter reaches without a machine.
+    `part`: SHA-256 of the part's file.
+    `inside` (n,) bool: samples that lie inside another body of the part.
+    `shut` (n,) bool: samples that no cutter gets to, for they are held or lie within a fixture: no tilt is free there, nor in
+        doubt.
+    `missing`: obstacles that are missing or only guessed.
+    `most`: samples to map, at most. None: as many as take `WORK`.
     """
     from plan_cutters.kernels.maps.free_map import free_map
 

@@ -53,20 +53,12 @@ def symmetric(task: Task) -> Task | None:
 class Copied:
     """One copy: columns that were compared for it, and those that were chosen.
 
-    Attributes
-    ----------
-    base : Columns
-        All that were compared, each with its images.
-    chosen : Columns
-        Of these; `Task.images` are what is set.
-    problem : Problem
-        What samples of one copy that are served cost, counted as often as there are copies.
-    apart : Problem
-        The same of all copies, each image a candidate of its own: what would be chosen if nothing were repeated.
-    area : float
-        That these stand for, mm2.
-    not_served : float
-        Share of the area that no compared column serves.
+    `base`: all that were compared, each with its images.
+    `chosen`: of these; `Task.images` are what is set.
+    `problem`: what samples of one copy that are served cost, counted as often as there are copies.
+    `apart`: the same of all copies, each image a candidate of its own: what would be chosen if nothing were repeated.
+    `area`: that these stand for, mm2.
+    `not_served`: share of the area that no compared column serves.
     """
 
     base: Columns

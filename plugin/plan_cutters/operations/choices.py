@@ -148,20 +148,12 @@ _TRIES = 4
 class Choice:
     """Columns that were chosen among others.
 
-    Attributes
-    ----------
-    columns : Columns
-        All that were compared.
-    problem : Problem
-        What samples cost with them.
-    rows : (n,) int64
-        These samples.
-    area : float
-        That they stand for, mm2.
-    chosen, known : (k,) int64
-        The choice, and a choice that was known before: of the columns.
-    whole : bool
-        Whether the choice serves all samples that it was tested at.
+    `columns`: all that were compared.
+    `problem`: what samples cost with them.
+    `rows` (n,) int64: these samples.
+    `area`: that they stand for, mm2.
+    `chosen`, `known` (k,) int64: the choice, and a choice that was known before: of the columns.
+    `whole`: whether the choice serves all samples that it was tested at.
     """
 
     columns: Columns

@@ -41,18 +41,11 @@ _ROUNDING = 1e-6
 class Cover:
     """A cover of the rows of a table.
 
-    Attributes
-    ----------
-    chosen : (k,) int64
-        Columns, ascending.
-    at_least : int
-        No cover has fewer columns.
-    weight : (n,) int64
-        Of the rows, in parts of `UNIT`.
-    bound : float
-        What the weights prove: their sum, at the largest load of a column.
-    relaxed : float
-        The least sum of shares of columns that covers all rows, where columns may be taken in part.
+    `chosen` (k,) int64: columns, ascending.
+    `at_least`: no cover has fewer columns.
+    `weight` (n,) int64: of the rows, in parts of `UNIT`.
+    `bound`: what the weights prove: their sum, at the largest load of a column.
+    `relaxed`: the least sum of shares of columns that covers all rows, where columns may be taken in part.
     """
 
     chosen: Which
@@ -71,18 +64,11 @@ class Cover:
 class Relaxed:
     """The cover of a table whose columns may be taken in part, and the weights that belong to it.
 
-    Attributes
-    ----------
-    rows : (r,) int64
-        Rows of which no other one follows from them.
-    share : (m,) float
-        Part of each column that is taken.
-    dual : (r,) float
-        Weights of `rows`: no column carries more than 1.
-    weight : (n,) int64
-        Of all rows, in parts of `UNIT`.
-    value : float
-        Sum of the parts.
+    `rows` (r,) int64: rows of which no other one follows from them.
+    `share` (m,) float: part of each column that is taken.
+    `dual` (r,) float: weights of `rows`: no column carries more than 1.
+    `weight` (n,) int64: of all rows, in parts of `UNIT`.
+    `value`: sum of the parts.
     """
 
     rows: Which
@@ -249,26 +235,15 @@ FINEST = math.radians(0.5)
 class Fewest(Record):
     """The fewest orientations found, with what proves how few there can be.
 
-    Attributes
-    ----------
-    columns : Columns
-        All candidates.
-    chosen : (k,) int64
-        Of the candidates.
-    rows : (r,) int64
-        Samples in the table.
-    weight : (r,) int64
-        Their weights, in millionths: no candidate serves samples of more than 1,000,000 together.
-    at_least : int
-        No choice among the candidates has fewer.
-    bound, relaxed : float
-        What the weights prove, and the least sum of parts of candidates.
-    spacing : float
-        Between candidates where the weights lie, rad.
-    alone : (s,) int64
-        Samples that no candidate serves.
-    samples : int
-        How many are reached.
+    `columns`: all candidates.
+    `chosen` (k,) int64: of the candidates.
+    `rows` (r,) int64: samples in the table.
+    `weight` (r,) int64: their weights, in millionths: no candidate serves samples of more than 1,000,000 together.
+    `at_least`: no choice among the candidates has fewer.
+    `bound`, `relaxed`: what the weights prove, and the least sum of parts of candidates.
+    `spacing`: between candidates where the weights lie, rad.
+    `alone` (s,) int64: samples that no candidate serves.
+    `samples`: how many are reached.
     """
 
     columns: Columns

@@ -239,22 +239,14 @@ _NOTHING = 1e-9
 class Steps:
     """Steps that samples may go with.
 
-    Attributes
-    ----------
-    cost : (n, k) float
-        Of each sample with each step, s, or mm without a feed; infinite where the step does not serve the sample, or may not.
-    group : (k,) int
-        Steps of one number are images of each other: to a machinist one step.
-    free : (k,) bool
-        Whether a step was planned: a person's own keeps its samples, and takes no others.
-    moving : (k,) bool
-        Whether it is simultaneous motion, which takes no step of a large area that a fixed orientation cuts.
-    area : (n,) float
-        Of the samples, mm2.
-    timed : bool
-        Whether costs are seconds.
-    spent : callable
-        What some steps, by their numbers, take besides cutting: orientations, changes of cutters and setups.
+    `cost` (n, k) float: of each sample with each step, s, or mm without a feed; infinite where the step does not serve the
+        sample, or may not.
+    `group` (k,) int: steps of one number are images of each other: to a machinist one step.
+    `free` (k,) bool: whether a step was planned: a person's own keeps its samples, and takes no others.
+    `moving` (k,) bool: whether it is simultaneous motion, which takes no step of a large area that a fixed orientation cuts.
+    `area` (n,) float: of the samples, mm2.
+    `timed`: whether costs are seconds.
+    `spent`: what some steps, by their numbers, take besides cutting: orientations, changes of cutters and setups.
     """
 
     cost: Floats

@@ -117,19 +117,12 @@ _ROUND, _MOST = 1e-6, 50.0
 class Strips(Record):
     """Widest strips at contacts.
 
-    Attributes
-    ----------
-    width : (n,) float
-        mm, at most the step-over that is allowed; nan where the tool does not touch at that tilt.
-    feed : (n, 3) float
-        Unit feed direction of the widest strip, in the tangent plane.
-    free_width : (n,) float
-        Largest eigenvalue of `D^-1`, mm, the radius of a ball that leaves the same gap; infinite where curvatures match. The
-        smaller it is, the farther is the tool from gouging.
-    narrow : (n,) float
-        Width of the strip that is fed at right angles to that, mm.
-    any_feed : (n,) bool
-        Whether the strip is as wide in all feed directions.
+    `width` (n,) float: mm, at most the step-over that is allowed; nan where the tool does not touch at that tilt.
+    `feed` (n, 3) float: unit feed direction of the widest strip, in the tangent plane.
+    `free_width` (n,) float: largest eigenvalue of `D^-1`, mm, the radius of a ball that leaves the same gap; infinite where
+        curvatures match. The smaller it is, the farther is the tool from gouging.
+    `narrow` (n,) float: width of the strip that is fed at right angles to that, mm.
+    `any_feed` (n,) bool: whether the strip is as wide in all feed directions.
     """
 
     width: Floats
@@ -316,22 +309,13 @@ NOTHING = 1e-6
 class Paths:
     """How passes are laid.
 
-    Attributes
-    ----------
-    scallop : float
-        Height of the cusps between passes, mm.
-    stepover : float
-        Widest distance of passes, in diameters.
-    feed : mapping, optional
-        Cutter -> mm/min; None: times are not known, and lengths stand for them.
-    accuracy : float
-        Of the rotary axes, rad: within it of its normal an axis stands upright on a floor.
-    extents : Extents
-        How far faces go on from samples.
-    link : float
-        Seconds from the end of a pass to the next one.
-    acceleration : float
-        Of the slowest linear axis, mm/s2; infinite where it is not known.
+    `scallop`: height of the cusps between passes, mm.
+    `stepover`: widest distance of passes, in diameters.
+    `feed`: cutter -> mm/min; None: times are not known, and lengths stand for them.
+    `accuracy`: of the rotary axes, rad: within it of its normal an axis stands upright on a floor.
+    `extents`: how far faces go on from samples.
+    `link`: seconds from the end of a pass to the next one.
+    `acceleration`: of the slowest linear axis, mm/s2; infinite where it is not known.
     """
 
     scallop: float

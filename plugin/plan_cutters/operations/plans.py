@@ -361,18 +361,11 @@ def _made_of(operations: Sequence[Operation], number: Ints, made: _Made, pace: F
 class _Stands:
     """How a tool stands at the samples of an operation.
 
-    Attributes
-    ----------
-    samples : SurfaceSamples
-        All n, with the contact in the place of those that are cut along a wall.
-    held : Verdicts
-        Postures at its samples; those of others are not looked at.
-    strategy : (r,) uint8
-        How its samples are cut, in STRATEGIES.
-    contact : (r, 3) float
-        As in the plan.
-    cut : Cut
-        What it takes.
+    `samples`: all n, with the contact in the place of those that are cut along a wall.
+    `held`: postures at its samples; those of others are not looked at.
+    `strategy` (r,) uint8: how its samples are cut, in STRATEGIES.
+    `contact` (r, 3) float: as in the plan.
+    `cut`: what it takes.
     """
 
     samples: SurfaceSamples

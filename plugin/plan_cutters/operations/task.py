@@ -116,22 +116,13 @@ class Problems:
 class Task:
     """The same for all plans of a part.
 
-    Attributes
-    ----------
-    cutters : tuple of Cutter
-        Those that are compared; columns count in them.
-    orientations : tuple of Orientations
-        Of each setup.
-    everywhere : tuple of mapping
-        Of each setup, the verdicts by cutter.
-    rows : (r,) int64
-        Samples that are reached by one of the cutters in one of the setups.
-    symmetry : Symmetry, optional
-        Under which each column stands for itself and its images; None: for itself alone.
-    copies : int
-        How many equal copies the samples stand for: their areas and times count so often.
-    moved : (n,) bool, optional
-        Samples that go with simultaneous motion whatever else serves them; None: none.
+    `cutters`: those that are compared; columns count in them.
+    `orientations`: of each setup.
+    `everywhere`: of each setup, the verdicts by cutter.
+    `rows` (r,) int64: samples that are reached by one of the cutters in one of the setups.
+    `symmetry`: under which each column stands for itself and its images; None: for itself alone.
+    `copies`: how many equal copies the samples stand for: their areas and times count so often.
+    `moved` (n,) bool: samples that go with simultaneous motion whatever else serves them; None: none.
     """
 
     ready: Prepared

@@ -31,28 +31,16 @@ _PROVED_AT, _CLEAR = np.array([1.0, 0.3, 0.1, 0.03]), 4.0
 class Conditions(Record):
     """The same for all cutters of a plan, in one setup.
 
-    Attributes
-    ----------
-    setup : (3,) float
-        Unit setup axis.
-    surroundings : Surroundings
-        What is, and what may be, in the way.
-    tolerance : float
-        Gouge tolerance that is kept, mm.
-    jobs : int
-        Threads.
-    x : (3,) float, optional
-        Unit direction of the part along the machine's X, as `Placement` has it.
-    accuracy : float
-        Of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
-    obstacles : Obstacles
-        Everything that may be in the way. It follows from the fields above, as the next three do.
-    frame : (3, 3) float
-        The machine's X, Y and Z in part coordinates, as rows, at zero angles.
-    kinematics : Kinematics, optional
-        The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
-    ranges : Ranges
-        The postures and the limits of the machine, in the form that kernels take.
+    `setup` (3,) float: unit setup axis.
+    `surroundings`: what is, and what may be, in the way.
+    `tolerance`: gouge tolerance that is kept, mm.
+    `jobs`: threads.
+    `x` (3,) float: unit direction of the part along the machine's X, as `Placement` has it.
+    `accuracy`: of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
+    `obstacles`: everything that may be in the way. It follows from the fields above, as the next three do.
+    `frame` (3, 3) float: the machine's X, Y and Z in part coordinates, as rows, at zero angles.
+    `kinematics`: the machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
+    `ranges`: the postures and the limits of the machine, in the form that kernels take.
     """
 
     machine: Machine
@@ -97,20 +85,13 @@ class Conditions(Record):
 class Context(Record):
     """One cutter under the conditions of one setup: what every judgement of it needs, made once and handed on.
 
-    Attributes
-    ----------
-    outer_tool : Assembly
-        A triangle that does not reach into it lets the surface come no deeper than allowed.
-    inner_tool : Assembly
-        A triangle that reaches into it proves that a point of the surface is too deep in the cutter.
-    outer, inner : Tool
-        The same two in the form that kernels take.
-    dummy : (k, COLUMNS) float
-        Of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
-    proved_at : (k,) float
-        Distances along the normal, mm, at which material proves that every posture is blocked, those that are tried.
-    judges : bool
-        Whether the tolerance that is kept is fine enough to say anything about the cutter.
+    `outer_tool`: a triangle that does not reach into it lets the surface come no deeper than allowed.
+    `inner_tool`: a triangle that reaches into it proves that a point of the surface is too deep in the cutter.
+    `outer`, `inner`: the same two in the form that kernels take.
+    `dummy` (k, COLUMNS) float: of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
+    `proved_at` (k,) float: distances along the normal, mm, at which material proves that every posture is blocked, those that are
+        tried.
+    `judges`: whether the tolerance that is kept is fine enough to say anything about the cutter.
     """
 
     cutter: Cutter

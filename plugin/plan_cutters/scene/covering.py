@@ -28,23 +28,14 @@ _FEW = 300
 class Covering(Record):
     """A body, and what of the samples lies inside it.
 
-    Attributes
-    ----------
-    index : int
-        Into the part's bodies.
-    rows : (m,) int64
-        Samples, those of sheets that lie on bodies not among them.
-    how : str
-        `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
-        Otherwise neither is sure.
-    faces : tuple of int
-        Of the body, ascending.
-    largest : bool
-        No other body is larger.
-    name : str
-        Of its component; empty where it has none of its own.
-    selection : str
-        Words for faces that choose this body and no other one.
+    `index`: into the part's bodies.
+    `rows` (m,) int64: samples, those of sheets that lie on bodies not among them.
+    `how`: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its
+        skin. Otherwise neither is sure.
+    `faces`: of the body, ascending.
+    `largest`: no other body is larger.
+    `name`: of its component; empty where it has none of its own.
+    `selection`: words for faces that choose this body and no other one.
     """
 
     index: int

@@ -40,24 +40,14 @@ _LONGEST = 60
 class Chosen:
     """The choice makes some faces of a part targets and ignores some; those in neither list are other faces.
 
-    Attributes
-    ----------
-    targets, ignored : tuple of int
-        Face numbers, ascending.
-    asked : str
-        The words for `targets`.
-    ignore : tuple of str
-        The words for `ignored`.
-    unshaped : bool
-        The targets are all faces for which no list was given, and none of them that can be judged is sculptured.
-    clamped : tuple of int
-        Targets that are held in all setups.
-    blends : frozenset of int
-        Faces of the part that are fillets and rounds, whether chosen or not.
-    free_form : float
-        Share of the targets' area that is bent in both directions (`preference.free_form_share`).
-    repeated : mapping of int to int
-        Ignored faces that lie where others lie: which face stands for each.
+    `targets`, `ignored`: face numbers, ascending.
+    `asked`: the words for `targets`.
+    `ignore`: the words for `ignored`.
+    `unshaped`: the targets are all faces for which no list was given, and none of them that can be judged is sculptured.
+    `clamped`: targets that are held in all setups.
+    `blends`: faces of the part that are fillets and rounds, whether chosen or not.
+    `free_form`: share of the targets' area that is bent in both directions (`preference.free_form_share`).
+    `repeated`: ignored faces that lie where others lie: which face stands for each.
     """
 
     targets: tuple[int, ...]
@@ -85,20 +75,12 @@ def choose(
     Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all
     setups.
 
-    Parameters
-    ----------
-    faces : str, objects or None
-        None: the faces picked on the host's object, else `DEFAULT`.
-    ignored : collection of int
-        Faces to leave out.
-    ignore : tuple of str
-        The words for these.
-    placed : Placement, optional
-        Its clamped faces stay targets: they are left for another setup, and named.
-    others : sequence of (Placement or None)
-        Of other setups: only what is clamped in all of them, too, is left.
-    repeated : mapping of int to int
-        Faces, ignored too, that lie where others lie: which face stands for each.
+    `faces`: without it those picked on the host's object, else `DEFAULT`.
+    `ignored`: faces to leave out.
+    `ignore`: the words for these.
+    `placed`: its clamped faces stay targets: they are left for another setup, and named.
+    `others` (sequence of (Placement or None)): of other setups: only what is clamped in all of them, too, is left.
+    `repeated`: faces, ignored too, that lie where others lie: which face stands for each.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
@@ -178,21 +160,14 @@ def select_faces(
 
     Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
 
-    Parameters
-    ----------
-    faces : sequence of FaceInfo
-        All faces of the part.
-    text : str
-        `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or `color:#RRGGBB`;
-        after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is sculptured.
-    tree : sequence of Node
-        Components of the part.
-    ignored : iterable of int
-        Faces that cannot be targets.
-    blends : collection of int
-        Numbers of the faces that are fillets and rounds.
-    repeated : mapping of int to int
-        Faces that lie where others lie, and which one is taken for each.
+    `faces`: all faces of the part.
+    `text`: `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
+        `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
+        sculptured.
+    `tree`: components of the part.
+    `ignored`: faces that cannot be targets.
+    `blends`: numbers of the faces that are fillets and rounds.
+    `repeated`: faces that lie where others lie, and which one is taken for each.
     """
     out = frozenset(ignored)
     remaining = [f for f in faces if f.number not in out]

@@ -43,20 +43,13 @@ class Obstacles(Record):
 
     Raises UnjudgeableError: there are no triangles, or one has a corner that is no point: nothing could be called safe.
 
-    Attributes
-    ----------
-    triangles : Triangles
-        As tessellated.
-    weight : (n,) int8
-        How often each counts as part of a skin that encloses something; default: nothing is enclosed.
-    open_boxes : (k, 2, 3) float
-        Boxes of skins that are not quite closed: nothing in them is surely outside.
-    gap : float
-        Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
-    near : (2, 3) float, optional
-        Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
-    first : int, optional
-        So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
+    `triangles`: as tessellated.
+    `weight` (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
+    `open_boxes` (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
+    `gap`: widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+    `near` (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
+    `first`: so many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds
+        all.
     """
 
     triangles: Triangles

@@ -33,22 +33,15 @@ Rows = NDArray[np.int64]
 class Copies(Record):
     """Samples that are images of others under motions of the whole part.
 
-    Attributes
-    ----------
-    master : (n,) int64
-        The sample whose image each one is; itself where it is none.
-    motion : (n,) int32
-        Which motion carries the master onto it, -1 for none.
-    unchanged : tuple of tuple of bool
-        Of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is ignored.
-    frames : (n,) bool
-        Copies whose postures that are searched are the images of those searched at the master.
-    verified : (n,) bool
-        Those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion carries onto another.
-    group : (n,) int64
-        The same for copies of one motion on one face, -1 for none.
-    setup : int
-        Counted from 0, in which the part is looked at.
+    `master` (n,) int64: the sample whose image each one is; itself where it is none.
+    `motion` (n,) int32: which motion carries the master onto it, -1 for none.
+    `unchanged`: of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is
+        ignored.
+    `frames` (n,) bool: copies whose postures that are searched are the images of those searched at the master.
+    `verified` (n,) bool: those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion
+        carries onto another.
+    `group` (n,) int64: the same for copies of one motion on one face, -1 for none.
+    `setup`: counted from 0, in which the part is looked at.
     """
 
     master: Rows
@@ -194,35 +187,21 @@ class OtherSetup(Record):
 class Prepared(Record):
     """Everything that is needed to judge a cutter.
 
-    Attributes
-    ----------
-    chosen : Chosen
-        Target and ignored faces.
-    spacing : float, dict or None
-        Of the samples: one, by face number, or none where they were taken on a grid.
-    surface_class : (n,) uint8
-    region : (n,) int32
-        Connected samples of one class.
-    inside : (n,) int32
-        The body that each sample lies within in the first setup, -1 for none.
-    inside_bodies : (n,) bool
-        Samples that lie inside another body of the part (`inside_material.inside_bodies`).
-    cutters : tuple of Cutter
-        From the most wanted down.
-    coarser : float
-        How many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
-    held : (n,) bool, optional
-        Samples of faces that are clamped in the first setup; None: none of them is.
-    others : tuple of OtherSetup
-        The setups beside the first.
-    exempt : (n,) bool, optional
-        Samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are required.
-    patterns : tuple of Pattern
-        Equal faces of the part, and motions that carry it onto itself.
-    copies : Copies, optional
-        Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
-    cache : Cache
-        What stages make of this part is kept there.
+    `chosen`: target and ignored faces.
+    `spacing`: of the samples: one, by face number, or none where they were taken on a grid.
+    `surface_class` (n,) uint8.
+    `region` (n,) int32: connected samples of one class.
+    `inside` (n,) int32: the body that each sample lies within in the first setup, -1 for none.
+    `inside_bodies` (n,) bool: samples that lie inside another body of the part (`inside_material.inside_bodies`).
+    `cutters`: from the most wanted down.
+    `coarser`: how many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
+    `held` (n,) bool: samples of faces that are clamped in the first setup; None: none of them is.
+    `others`: the setups beside the first.
+    `exempt` (n,) bool: samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are
+        required.
+    `patterns`: equal faces of the part, and motions that carry it onto itself.
+    `copies`: samples that these motions carry onto others; None where there are few, or patterns are not to be used.
+    `cache`: what stages make of this part is kept there.
     """
 
     scene: Scene

@@ -32,28 +32,17 @@ _LOOKED_AT = 50
 class PlacedFixture(Record):
     """A fixture where it stands.
 
-    Attributes
-    ----------
-    number : int
-        Face number of all its triangles, negative.
-    source : Part or Mesh, optional
-        What was read of it; None for words.
-    obstacles : Obstacles
-        Its own, in part coordinates.
-    body : Body, optional
-        That it surely encloses something.
-    missing : tuple of (str, str, str)
-        Faces of it that stand in the way only as a guess, with the reason and what stands in for each.
-    notes : tuple of str
-        What the plan must say of it.
-    shown : (n, 3, 3) float
-        Triangles to draw of it, mm.
-    requested : Fixture, optional
-        What was requested where it was placed for the setup; None: `fixture` itself.
-    hold : Hold, optional
-        What it grips, where it was placed for the setup.
-    unheld : tuple of int
-        Of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
+    `number`: face number of all its triangles, negative.
+    `source`: what was read of it; None for words.
+    `obstacles`: its own, in part coordinates.
+    `body`: that it surely encloses something.
+    `missing` (tuple of (str, str, str)): faces of it that stand in the way only as a guess, with the reason and what stands in
+        for each.
+    `notes`: what the plan must say of it.
+    `shown` (n, 3, 3) float: triangles to draw of it, mm.
+    `requested`: what was requested where it was placed for the setup; None: `fixture` itself.
+    `hold`: what it grips, where it was placed for the setup.
+    `unheld`: of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
     """
 
     number: int
@@ -78,25 +67,16 @@ class PlacedFixture(Record):
 class Surroundings(Record):
     """The surroundings hold the possible and the certain obstacles of a part in one setup.
 
-    Attributes
-    ----------
-    possible : Obstacles
-        Everything that may be in the way: a posture that misses it is safe.
-    certain : Obstacles
-        Everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is uncertain.
-    bodies : tuple of Body
-        Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
-    missing : tuple of (int, str, str)
-        Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a
-        `box`, or `none` where its place is not known.
-    on_bodies : tuple of int
-        Faces of no body that lie on the faces of one, as construction geometry does.
-    lost : tuple of LostFace
-        Faces of the file that the part does not have; those it has in another form are in `missing`.
-    fixtures : tuple of PlacedFixture
-        Fixtures that stand among the obstacles; nothing else here is about them.
-    alone : Surroundings, optional
-        The part's own, without the fixtures; None where there are none.
+    `possible`: everything that may be in the way: a posture that misses it is safe.
+    `certain`: everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is
+        uncertain.
+    `bodies`: bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
+    `missing` (tuple of (int, str, str)): faces that stand in the way only as a guess, with the reason and the proxy geometry of
+        each: its own `triangles`, a `box`, or `none` where its place is not known.
+    `on_bodies`: faces of no body that lie on the faces of one, as construction geometry does.
+    `lost`: faces of the file that the part does not have; those it has in another form are in `missing`.
+    `fixtures`: fixtures that stand among the obstacles; nothing else here is about them.
+    `alone`: the part's own, without the fixtures; None where there are none.
     """
 
     possible: Obstacles

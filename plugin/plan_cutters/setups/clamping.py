@@ -29,18 +29,11 @@ class NothingToGripError(FixtureError):
 class Hold:
     """A vise or chuck that was placed for a setup.
 
-    Attributes
-    ----------
-    fixture : Fixture
-        In its place, with all its numbers.
-    grips : tuple of int
-        Numbers of the faces that its jaws touch.
-    rests_on : tuple of int
-        Numbers of the planar faces with which the part rests in it.
-    hidden : float
-        Area of the faces to machine that its jaws touch, mm2.
-    words : str
-        What it is and what it grips, for people.
+    `fixture`: in its place, with all its numbers.
+    `grips`: numbers of the faces that its jaws touch.
+    `rests_on`: numbers of the planar faces with which the part rests in it.
+    `hidden`: area of the faces to machine that its jaws touch, mm2.
+    `words`: what it is and what it grips, for people.
     """
 
     fixture: Fixture

@@ -58,10 +58,7 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
 
     Raises OptionError: the file is none, or contradicts itself.
 
-    Parameters
-    ----------
-    path : path
-        TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
+    `path`: TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
         machine's Z and X, three numbers or a word as `+z`; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those
         of `--fixture`: files are looked for in the setup file's folder.
 

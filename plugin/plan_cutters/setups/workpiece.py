@@ -31,26 +31,15 @@ _OUT = 6.0
 class Workpiece(Record):
     """A part as it stands in a setup, as far as clamping it matters.
 
-    Attributes
-    ----------
-    frame : (3, 3) float
-        The setup's x, y and z in part coordinates, as rows.
-    lowest : float
-        Height of the part's lowest point along z, mm.
-    vertex : (n, 3, 3) float
-        Triangles in that frame, z from the lowest point, mm.
-    normal : (n, 3) float
-        Outward normals of them, as long as twice their area.
-    face : (n,) int
-        Face numbers of them.
-    planes : set of int
-        Planar faces.
-    targets : set of int
-        Faces to machine.
-    flat : float
-        Heights that differ by less are one, mm.
-    bodies : tuple of frozenset of int
-        The faces of each body that is material.
+    `frame` (3, 3) float: the setup's x, y and z in part coordinates, as rows.
+    `lowest`: height of the part's lowest point along z, mm.
+    `vertex` (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
+    `normal` (n, 3) float: outward normals of them, as long as twice their area.
+    `face` (n,) int: face numbers of them.
+    `planes`: planar faces.
+    `targets`: faces to machine.
+    `flat`: heights that differ by less are one, mm.
+    `bodies`: the faces of each body that is material.
     """
 
     frame: Floats
@@ -136,22 +125,13 @@ class Wall:
 class Place:
     """A vise or chuck at a place of a setup's frame, and what it grips there.
 
-    Attributes
-    ----------
-    x, origin : (3,) float
-        Its x axis and its origin.
-    grips : tuple of int
-        Numbers of the faces that its jaws touch.
-    touched, hidden : float
-        Area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
-    above : float
-        Height of what it rests on over the part's lowest point, mm.
-    size : float
-        Area of what could be gripped if jaws were as large, on the side where that is less, mm2.
-    off : float
-        How far its middle is from the middle of the part, seen from above, mm.
-    farthest : float
-        How far the part reaches from its middle across the jaws, mm.
+    `x`, `origin` (3,) float: its x axis and its origin.
+    `grips`: numbers of the faces that its jaws touch.
+    `touched`, `hidden`: area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
+    `above`: height of what it rests on over the part's lowest point, mm.
+    `size`: area of what could be gripped if jaws were as large, on the side where that is less, mm2.
+    `off`: how far its middle is from the middle of the part, seen from above, mm.
+    `farthest`: how far the part reaches from its middle across the jaws, mm.
     """
 
     clamping: Clamping
