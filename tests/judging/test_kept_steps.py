@@ -256,8 +256,8 @@ def test_dummies_and_searches_of_some_samples(keeps):
 
 def test_how_many_samples_are_mapped(keeps, monkeypatch):
     rows = np.arange(7, 400, 3)
-    spread = [map_budget.spread(rows, most) for most in (0, 1, 2, 5, 17, 130, 131, 132)]
-    spread.append(map_budget.spread(rows[:0], 3))
+    spread = [map_budget.evenly(rows, most) for most in (0, 1, 2, 5, 17, 130, 131, 132)]
+    spread.append(map_budget.evenly(rows[:0], 3))
     monkeypatch.setattr(map_budget, "WORK", 5000)
     monkeypatch.setattr(map_budget, "PROBED", 20)
     looked = [map_budget.chosen(rows, most, lambda piece: 31 * len(piece), 1) for most in (None, 3, 400)]

@@ -28,6 +28,7 @@ from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.work import evenly
 from plan_cutters.setups.clamping import NothingToGripError
 
 #: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
@@ -185,7 +186,7 @@ class Ranking:
         """
         candidates = Candidates.of(ready)
         open_ = np.flatnonzero(ready.somewhere)
-        rows = open_[np.unique(np.linspace(0, len(open_) - 1, min(COMPARED, len(open_))).astype(np.int64))]
+        rows = evenly(open_, COMPARED)
         few = ready.conditions
         bound = np.zeros((len(rows), len(candidates.axis)), bool)
         for k in range(len(candidates.axis)):

@@ -19,7 +19,7 @@ from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
 from plan_cutters.scene.distances import deepest_on
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.work import CHUNK, METER, Progress, in_chunks
+from plan_cutters.scene.work import CHUNK, METER, Progress, evenly, in_chunks
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
 EXACT, BEYOND = 0.005, 0.01
@@ -133,8 +133,7 @@ class _Search:
     def all(self, rows: NDArray[np.int64]) -> tuple[float, int]:
         """The least stick-out that serves all of some samples, and the one that limits it, -1 for the floor."""
         least, limiting, done = self.floor, -1, 0
-        few = rows[np.unique(np.linspace(0, len(rows) - 1, min(_FIRST, len(rows))).astype(int))]
-        for company in (few, rows):
+        for company in (evenly(rows, _FIRST), rows):
             company = company[self.sure[company] > least]
             pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
             at = np.zeros(len(pieces), np.int64)

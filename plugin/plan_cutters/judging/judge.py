@@ -9,7 +9,6 @@ of the images on each face, judged by themselves, have the verdicts that follow;
 (`docs/operations_proof.md`, lemmas P1 and P2).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -24,7 +23,7 @@ from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture,
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.preparation import Copies, Prepared
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.scene.work import Progress, Work, part_of, with_company
+from plan_cutters.scene.work import Progress, Work, evenly, part_of, with_company
 from plan_cutters_base.digest import digest
 
 #: Grounds whose checksums are remembered.
@@ -76,7 +75,7 @@ class Judge(Protocol):
 
     def __call__(
         self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
-        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        progress: Progress | None = None, work: Work | None = None,
     ) -> Verdicts: ...  # fmt: skip
 
 
@@ -86,7 +85,7 @@ def judge(
     rows: NDArray[np.int64] | None = None,
     known: Verdicts | None = None,
     *,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     work: Work | None = None,
 ) -> Verdicts:
     """Find the verdicts of a cutter on some samples, or on all; nothing else is looked at or changed.
@@ -117,7 +116,7 @@ class CachedJudge:
 
     def __call__(
         self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
-        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        progress: Progress | None = None, work: Work | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
 
@@ -152,7 +151,7 @@ class JudgeOnce:
 
     def __call__(
         self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
-        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        progress: Progress | None = None, work: Work | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`."""
         copies = ready.copies
@@ -303,7 +302,7 @@ def first_look(ready: Prepared) -> FirstLook | None:
     if len(every) * len(ready.cutters) < _WORTH:
         return None
     few = min(_LOOKED_AT, max(_LEAST, _PAIRS // len(ready.cutters)), len(every))
-    rows = every[np.linspace(0, len(every) - 1, few).astype(np.int64)]
+    rows = evenly(every, few)
     some = some_of(ready, rows)
     reached = [judge(some, cutter).reached for cutter in ready.cutters]
     area = np.nan_to_num(some.samples.area)

@@ -25,7 +25,7 @@ from plan_cutters.scene.conditions import Context, contacts_of, require_finite, 
 from plan_cutters.scene.flats_and_flanks import on_the_flank, on_the_flat
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.triangles import halved
-from plan_cutters.scene.work import Progress, in_chunks
+from plan_cutters.scene.work import Progress, evenly, in_chunks
 
 #: Ends that move by no more, rad, have settled.
 SETTLED = np.radians(0.01)
@@ -330,16 +330,9 @@ def chosen(judged: Rows, most: int | None, looked: Callable[[Rows], int], jobs: 
     if most is None:
         if len(judged) <= PROBED:
             return judged
-        tried = spread(judged, PROBED)
+        tried = evenly(judged, PROBED)
         most = int(WORK * len(tried) / max(1, in_chunks(looked, tried, jobs, chunk=_AT_A_TIME)))
-    return spread(judged, most)
-
-
-def spread(rows: Rows, most: int) -> Rows:
-    """At most so many of ascending rows, evenly spread."""
-    if len(rows) <= most:
-        return rows
-    return rows[np.unique(np.linspace(0, len(rows) - 1, max(1, most)).astype(np.int64))]
+    return evenly(judged, most)
 
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.

@@ -27,7 +27,7 @@ from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import SOME, Task, costs_of, paces, shared_area, thinned
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
-from plan_cutters.scene.work import Progress, part_of
+from plan_cutters.scene.work import Progress, evenly, part_of
 
 Rows = NDArray[np.int64]
 #: Columns and images that are compared; samples at first, of one copy at least so many, and those that join them; rounds until a
@@ -84,7 +84,7 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
     assert symmetry is not None
     samples, wanted = task.ready.samples, task.rows
     area = np.nan_to_num(samples.area)
-    base = _thinned(candidates.of(symmetry.sector(candidates.axis)), _MOST_COLUMNS // symmetry.order)
+    base = candidates.of(evenly(symmetry.sector(candidates.axis), _MOST_COLUMNS // symmetry.order))
     # One copy tells what all of them cost; where the part is no exact pattern, what is left elsewhere joins them.
     copy = wanted[symmetry.sector(samples.point[wanted] - symmetry.place)]
     copy = copy if len(copy) else wanted
@@ -126,11 +126,6 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
 def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
     """What samples cost with the best of the images of each column."""
     return np.asarray(cost.reshape(len(cost), cost.shape[1] // times, times).min(axis=2))
-
-
-def _thinned(columns: Columns, most: int) -> Columns:
-    """At most so many of some columns, evenly taken."""
-    return columns if len(columns) <= most else columns.of(np.linspace(0, len(columns) - 1, most).astype(np.int64))
 
 
 def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:

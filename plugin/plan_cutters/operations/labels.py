@@ -44,7 +44,7 @@ class Seams:
         """Those of all samples of a part."""
         samples, edge = ready.samples, ready.samples.neighbours
         face, area = samples.face[edge], np.nan_to_num(samples.area)
-        bent = np.isin(face, bent_faces(ready))
+        bent = np.isin(face, sampled_faces(ready, is_bent))
         return cls(edge, np.sqrt(0.5 * area[edge].sum(axis=1)), (face[:, 0] == face[:, 1]) & bent.all(axis=1))
 
     def marks(self, label: Ints) -> float:
@@ -62,11 +62,10 @@ class Seams:
         return Seams(pair[:, :2], np.asarray(length, float), pair[:, 2] > 0)
 
 
-def bent_faces(ready: Prepared) -> Rows:
-    """Numbers of the faces of a part with samples that are bent in both directions, ascending."""
+def sampled_faces(ready: Prepared, shaped: Callable[[str], bool]) -> Rows:
+    """Numbers of the faces of a part with samples that have some shape, ascending."""
     faces = ready.scene.part.faces
-    sampled = np.unique(ready.samples.face).tolist()
-    return np.array([face for face in sampled if is_bent(faces[face - 1].shape)], np.int64)
+    return np.array([face for face in np.unique(ready.samples.face).tolist() if shaped(faces[face - 1].shape)], np.int64)
 
 
 #: The largest whole number of a capacity of a cut; sums of some of them must not pass 2^31.

@@ -15,6 +15,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.choices import Choice
 from plan_cutters.operations.fastest import cheap
+from plan_cutters.operations.labels import sampled_faces
 from plan_cutters.operations.plans import costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan
@@ -161,8 +162,7 @@ def _faces_tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
 
     Rounds and spheres are none: nobody turns while cutting for a fillet.
     """
-    shapes, samples = [each.shape for each in task.ready.scene.part.faces], task.ready.samples
-    faces = np.array([face for face in np.unique(samples.face).tolist() if shapes[face - 1] == "sculptured"], np.int64)
+    samples, faces = task.ready.samples, sampled_faces(task.ready, "sculptured".__eq__)
     rows = task.rows[np.isin(samples.face[task.rows], faces)]
     if not len(rows):
         return

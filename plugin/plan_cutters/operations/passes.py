@@ -69,38 +69,35 @@ class Extents:
         return first, cross(self._samples.normal[rows], first)
 
     def _measure(self, rows: Rows) -> None:
-        face = self._samples.face
-        for number in np.unique(face[rows[~self._measured[rows]]]).tolist():
-            self._measure_face(number, np.flatnonzero(face == number))
-
-    def _measure_face(self, number: int, every: Rows) -> None:
         from scipy.spatial import cKDTree
 
         from plan_cutters.kernels.linear.sections import sections
 
-        samples, triangles = self._samples, self._obstacles.triangles
-        self._measured[every] = True
-        known = every[np.isfinite(samples.direction_max[every]).all(axis=1) & np.isfinite(samples.normal[every]).all(axis=1)]
-        vertex = np.ascontiguousarray(triangles.vertex[triangles.face == number])
-        if not len(known) or not len(vertex):
-            return
-        most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
-        some = known[:: 1 + len(known) // most]
-        first, second = self._frame(some)
-        point, normal = np.ascontiguousarray(samples.point[some]), np.ascontiguousarray(samples.normal[some])
-        near = 2.0 * triangles.chord_error + 1e-6
-        nearest = cKDTree(point).query(samples.point[known])[1]
-        for k in range(DIRECTIONS):
-            turn = k * math.pi / DIRECTIONS
-            along = np.ascontiguousarray(math.cos(turn) * first + math.sin(turn) * second)
-            connected, whole = np.empty((2, len(some)))
-            sections(point, along, normal, vertex, near, near, connected, whole)
-            self._length[0, known, k], self._length[1, known, k] = connected[nearest], whole[nearest]
-        # A sample has its area there: what the triangles about a border say is no less than that allows.
-        longest = np.nan_to_num(self._length[0, known]).max(axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            least = np.nan_to_num(samples.area[known] / longest, posinf=0.0)
-        self._length[:, known] = np.maximum(self._length[:, known], least[:, None])
+        samples, triangles, face = self._samples, self._obstacles.triangles, self._samples.face
+        for number in np.unique(face[rows[~self._measured[rows]]]).tolist():
+            every = np.flatnonzero(face == number)
+            self._measured[every] = True
+            known = every[np.isfinite(samples.direction_max[every]).all(axis=1) & np.isfinite(samples.normal[every]).all(axis=1)]
+            vertex = np.ascontiguousarray(triangles.vertex[triangles.face == number])
+            if not len(known) or not len(vertex):
+                continue
+            most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
+            some = known[:: 1 + len(known) // most]
+            first, second = self._frame(some)
+            point, normal = np.ascontiguousarray(samples.point[some]), np.ascontiguousarray(samples.normal[some])
+            near = 2.0 * triangles.chord_error + 1e-6
+            nearest = cKDTree(point).query(samples.point[known])[1]
+            for k in range(DIRECTIONS):
+                turn = k * math.pi / DIRECTIONS
+                along = np.ascontiguousarray(math.cos(turn) * first + math.sin(turn) * second)
+                connected, whole = np.empty((2, len(some)))
+                sections(point, along, normal, vertex, near, near, connected, whole)
+                self._length[0, known, k], self._length[1, known, k] = connected[nearest], whole[nearest]
+            # A sample has its area there: what the triangles about a border say is no less than that allows.
+            longest = np.nan_to_num(self._length[0, known]).max(axis=1)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                least = np.nan_to_num(samples.area[known] / longest, posinf=0.0)
+            self._length[:, known] = np.maximum(self._length[:, known], least[:, None])
 
 
 #: Widths beyond this part of the radius are those of a section; curvatures of a plane at most, 1/mm.

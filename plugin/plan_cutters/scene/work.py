@@ -127,6 +127,11 @@ def _total(results: Iterable[int | None], count: int, progress: Progress | None)
     return total
 
 
+def evenly(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """At most so many of some rows, evenly spread."""
+    return rows if len(rows) <= most else rows[np.unique(np.linspace(0, len(rows) - 1, max(1, most)).astype(np.int64))]
+
+
 def with_company(rows: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Of n rows, all that are in one fixed piece with some of these."""
     numbers = np.arange(n, dtype=np.int64)
