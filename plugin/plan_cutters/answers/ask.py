@@ -32,7 +32,7 @@ from plan_cutters.scene.work import Budget, Progress, part_of
 
 
 def stick_out_in_each(
-    ready: Prepared, cutter: Cutter, verdicts: Sequence[Verdicts], which: Ints, *, progress: Progress | None = None
+    ready: Prepared, cutter: Cutter, verdicts: Sequence[Verdicts], which: Ints, *, progress: Progress
 ) -> StickOut:
     """The least stick-out with which each setup still reaches all samples that it serves.
 
@@ -41,20 +41,19 @@ def stick_out_in_each(
     """
     if len(verdicts) == 1:
         return least_stick_out(ready, cutter, verdicts[0], progress=progress)
-    tell = progress or (lambda done, total: None)
     results = list[StickOut]()
     for k, there in enumerate(verdicts):
         mine = replace(there, verdict=np.where(there.reached & (which != k), UNJUDGED, there.verdict).astype(np.uint8))
-        part = part_of(tell, k, len(verdicts))
+        part = part_of(progress, k, len(verdicts))
         results.append(replace(least_stick_out(ready.alone(k), cutter, mine, progress=part), setup=k))
     # A setup that serves nothing asks for nothing.
     most = max(results, key=lambda each: -np.inf if np.isnan(each.least) else each.least)
     return replace(most, served=sum(each.served for each in results))
 
 
-def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Progress | None = None) -> RadiusMap:
+def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, tell: Progress) -> RadiusMap:
     """Find the largest radius that reaches each sample in one setup or another, as `largest_radius` does in one."""
-    number, tell = len(ready.setups), progress or (lambda done, total: None)
+    number = len(ready.setups)
     best, *others = [largest_radius(ready.alone(k), shape, ratio=ratio, progress=part_of(tell, k, number)) for k in range(number)]
     for other in others:
         larger = other.radius > best.radius
@@ -191,9 +190,7 @@ def ask(
     if "radius" in requested:
         with stage("radius") as tell:
             ratio = ready.options.length_over_radius
-            radius_maps = [
-                radius_in_any(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
-            ]
+            radius_maps = [radius_in_any(ready, shape, ratio=ratio, tell=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)]
         so_far("radius")
     if "mend" in requested:
         failing = nearest(ready, reaches, other_setups)

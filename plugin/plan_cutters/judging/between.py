@@ -332,7 +332,7 @@ def _cells(faces: Sequence[FaceCells]) -> Cells:
     for face_cells in faces:
         if not face_cells.found:
             continue
-        each = CellContacts(*(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__))
+        each = CellContacts.joined(*face_cells.found)
         level = np.repeat(np.array(face_cells.levels, np.int64), [len(c) for c in face_cells.found])
         piece = last + connected(face_cells.field, each, level, turning=face_cells.turning is not None)
         last += len(each)

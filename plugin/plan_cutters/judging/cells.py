@@ -125,8 +125,8 @@ class CellContacts:
         return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
 
     @staticmethod
-    def joined(first: "CellContacts", second: "CellContacts") -> "CellContacts":
-        return CellContacts(*(np.concatenate([getattr(first, n), getattr(second, n)]) for n in CellContacts.__slots__))
+    def joined(*parts: "CellContacts") -> "CellContacts":
+        return CellContacts(*(np.concatenate([getattr(each, n) for each in parts]) for n in CellContacts.__slots__))
 
     def __len__(self) -> int:
         return len(self.point)

@@ -68,11 +68,6 @@ class Copied:
     area: float
     not_served: float
 
-    @property
-    def at_best(self) -> float:
-        """Seconds of cutting alone, each sample with its best column."""
-        return float(self.problem.cost.min(axis=1, initial=np.inf).sum())
-
 
 def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns], tell: Progress) -> Copied | None:
     """Choose orientations that take little time with their images, each counted as often as it is set.
@@ -261,7 +256,8 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
         compared.append(plan_with(offer.task, "fastest", columns))
         plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
     bound = bounded(copied.apart, alone).bound
-    timed = against_bound(plan.total, bound, copied.at_best, *copied.apart.cost.shape), copied.area
+    at_best = float(copied.problem.cost.min(axis=1, initial=np.inf).sum())
+    timed = against_bound(plan.total, bound, at_best, *copied.apart.cost.shape), copied.area
     words = [
         "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
         "well, by all samples."

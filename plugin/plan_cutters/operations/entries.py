@@ -35,8 +35,8 @@ _UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s
 
 
 def operations_entry(
-    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str] = (),
-    fewest: FewestEntry | None = None, timed: Timed | None = None, worth: Sequence[Worth] = (),
+    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str],
+    fewest: FewestEntry | None, timed: Timed | None, worth: Sequence[Worth],
 ) -> OperationsEntry:  # fmt: skip
     """Make the entry of plans.
 

@@ -171,7 +171,7 @@ def _proved(task: Task, plans: Sequence[OperationPlan], searched: int, tell: Pro
         same = next((other for other in result if each.like(other)), None)
         mine = part_of(tell, k, len(plans))
         if same is None:
-            each = proved(task.ready, task.everywhere, each, searched, progress=mine)
+            each = proved(task.ready, task.everywhere, each, searched, mine)
         result.append(each if same is None else replace(same, name=each.name))
     return result
 

@@ -60,14 +60,14 @@ class Probes:
                 self.made += made
         return table.T
 
-    def kept(self, rows: Rows, columns: Columns, progress: Progress | None = None) -> NDArray[np.bool_]:
+    def kept(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """As `table`, for columns that are requested again and again at the same rows."""
         if not np.array_equal(rows, self._kept_rows):
             self._kept, self._kept_rows = {}, rows
         keys = columns.key.tolist()
         new = np.array([k for k, key in enumerate(keys) if key not in self._kept], np.int64)
         if len(new):
-            self._kept |= dict(zip((keys[k] for k in new.tolist()), self.table(rows, columns.of(new), progress).T, strict=True))
+            self._kept |= dict(zip((keys[k] for k in new.tolist()), self.table(rows, columns.of(new)).T, strict=True))
         return np.array([self._kept[key] for key in keys], bool).reshape(len(keys), len(rows)).T
 
     def one(self, rows: Rows, columns: Columns, which: int) -> NDArray[np.bool_]:

@@ -36,7 +36,7 @@ _CLOSED = 1e-6
 
 
 def proved_moving(
-    ready: Prepared, operation: Operation, verdicts: Verdicts, *, budget: int, most: float, progress: Progress | None = None
+    ready: Prepared, operation: Operation, verdicts: Verdicts, *, budget: int, most: float, progress: Progress
 ) -> Operation:
     """Write into a simultaneous operation over which share a field of tool axes is proved, and how the axes turn.
 
@@ -186,12 +186,7 @@ _CONTACTS = 4
 
 
 def proved(
-    ready: Prepared,
-    everywhere: Sequence[Mapping[Cutter, Verdicts]],
-    plan: OperationPlan,
-    searched: int,
-    *,
-    progress: Progress | None = None,
+    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], plan: OperationPlan, searched: int, tell: Progress
 ) -> OperationPlan:
     """Write into operations which share of their area is proved, and in how many pieces.
 
@@ -216,7 +211,7 @@ def proved(
             alike.setdefault((each.cutter.id, each.setup), []).append(k)
     moving = [k for k, each in enumerate(operations) if each.mode == "simultaneous" and len(each.rows)]
     whole = sum(len(each.rows) for each in operations)
-    tell, count = progress or (lambda done, total: None), len(alike) + len(moving)
+    count = len(alike) + len(moving)
     for number, group in enumerate(alike.values()):
         part = sum(len(operations[k].rows) for k in group) / max(1, whole)
         mine = part_of(tell, number, count)

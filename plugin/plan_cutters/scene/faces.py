@@ -233,7 +233,10 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
     else:
-        chosen = _numbered(plain, len(faces), where) | _of_kinds(plain, faces, blends)
+        sculptured = {f.number for f in faces if f.shape == "sculptured"}
+        kinds = {"all": every, "blends": set(blends), "sculptured": sculptured}
+        words = {each.strip() for each in plain.split(",")} & set(_KINDS)
+        chosen = _numbered(plain, len(faces), where).union(*(kinds[each] for each in words))
     # All but what a mistyped name selects would be everything.
     known_word = bool(chosen) or plain in _KINDS or _finished(plain)
     if word != plain:
@@ -241,14 +244,6 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     if not (known_word and chosen):
         raise OptionError(f"{where} selects no face of this part")
     return chosen
-
-
-def _of_kinds(plain: str, faces: Sequence[FaceInfo], blends: Collection[int]) -> set[int]:
-    """Numbers of the faces of each kind in a list."""
-    sculptured = {f.number for f in faces if f.shape == "sculptured"}
-    kinds = {"all": {f.number for f in faces}, "blends": set(blends), "sculptured": sculptured}
-    words = {word.strip() for word in plain.split(",")} & set(_KINDS)
-    return set[int]().union(*(kinds[word] for word in words))
 
 
 def _numbered(word: str, count: int, where: str) -> set[int]:

@@ -191,7 +191,18 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
     """A fixture in its own frame, as close to what it stands for as is asked."""
     source = read(fixture, cache)
     if isinstance(source, Mesh):
-        return _of_mesh(source, fixture.chord_error)
+        shells, notes = source.shells, list(source.notes)
+        if shells.open and shells.closed:
+            notes.append(
+                f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
+                "is in the way, not what may lie within"
+            )
+        elif shells.open:
+            notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
+        if shells.turned:
+            notes.append(f"{shells.turned} of its skins run the wrong way round: what lies within counts as material")
+        whole = Obstacles(_triangles(source.vertex, fixture.chord_error), shells.weight)
+        return _Body(whole, whole, (), tuple(notes))
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
     if key not in cache:
         cache[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
@@ -219,21 +230,6 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     missing += [(str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in boundary.lost]
     notes = [] if boundary.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
     return _Body(boundary.possible, boundary.certain, tuple(missing), (*part.warnings, *notes))
-
-
-def _of_mesh(mesh: Mesh, error: float) -> _Body:
-    shells, notes = mesh.shells, list(mesh.notes)
-    if shells.open and shells.closed:
-        notes.append(
-            f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
-            "is in the way, not what may lie within"
-        )
-    elif shells.open:
-        notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
-    if shells.turned:
-        notes.append(f"{shells.turned} of its skins run the wrong way round: what lies within counts as material")
-    whole = Obstacles(_triangles(mesh.vertex, error), shells.weight)
-    return _Body(whole, whole, (), tuple(notes))
 
 
 def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:

@@ -8,7 +8,7 @@ with the axis as it is given.
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,7 +120,7 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
     conditions = context.conditions
     rows = rows[verdicts.reason[rows] != INSIDE]
     low, high = conditions.postures.tilt
-    hints = _Hints.of(len(contacts.normal))
+    hints = np.full((2, len(contacts.normal)), -1)
     for flank in context.outer_tool.flanks:
         if not low - _WHOLE <= flank.tilt <= high + _WHOLE:
             continue
@@ -131,18 +131,6 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
         rows = rows[verdicts.not_reached[rows]]
 
 
-class _Hints(NamedTuple):
-    """Triangles that were in the way of samples (n,) at the axis before, or -1: of what surely is, and of what may be."""
-
-    certain: NDArray[np.int64]
-    possible: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, n: int) -> "_Hints":
-        """None yet."""
-        return cls(np.full(n, -1), np.full(n, -1))
-
-
 def _on_flank(
     contacts: Contacts,
     rows: Rows,
@@ -151,9 +139,12 @@ def _on_flank(
     whole: bool,
     context: Context,
     verdicts: VerdictBuffer,
-    hints: _Hints,
+    hints: Rows,
 ) -> None:
-    """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
+    """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that.
+
+    `hints` (2, n): triangles that were in the way at the axis before, or -1: of what surely is, and of what may be.
+    """
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
     from plan_cutters.kernels.search.flank import FREE, NONE, along_flank
 
@@ -179,7 +170,7 @@ def _on_flank(
         return state
 
     def surely(some: Rows) -> NDArray[np.int8]:
-        return tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, some, hints.certain)
+        return tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, some, hints[0])
 
     # What is surely in the way of the smaller tool leaves nothing to look for. Why the larger one does not stand is looked at
     # where only the axis limit seemed to lose the contact.
@@ -187,8 +178,8 @@ def _on_flank(
     proved = inaccessible & ~unknown
     sure = surely(np.flatnonzero(proved))
     open_ = np.flatnonzero(~(proved & (sure == NONE)))
-    hints.possible[rows[unknown]] = -1
-    state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints.possible)
+    hints[1, rows[unknown]] = -1
+    state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints[1])
     free = state == FREE
     at = rows[free]
     f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])

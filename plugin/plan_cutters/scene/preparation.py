@@ -53,10 +53,6 @@ class Copies(Record):
     group: Rows
     setup: int = 0
 
-    def there(self, setup: int) -> "Copies":
-        """The same in another setup."""
-        return replace(self, setup=setup)
-
     @property
     def copy(self) -> NDArray[np.bool_]:
         """Samples (n,) that are images of others."""
@@ -143,17 +139,12 @@ def spacing_key(options: Options, cutters: Sequence[Cutter]) -> tuple[float | No
     return options.grid, options.spacing, least
 
 
-def _most() -> int:
-    """Samples that may be taken here."""
-    stated = os.environ.get(MOST, "") or str(MOST_SAMPLES)
-    if not stated.isdecimal():
-        raise OptionError(f"{MOST} in the environment must be a whole number, not {stated!r}")
-    return min(MOST_SAMPLES, int(stated))
-
-
 def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
     """Refuse to sample more than memory holds, before it is tried."""
-    wanted, most = 0.0, _most()
+    stated, wanted = os.environ.get(MOST, "") or str(MOST_SAMPLES), 0.0
+    if not stated.isdecimal():
+        raise OptionError(f"{MOST} in the environment must be a whole number, not {stated!r}")
+    most = min(MOST_SAMPLES, int(stated))
     if options.grid is not None:
         wanted = len(faces) * float(options.grid) ** 2
     elif options.spacing is not None:
@@ -239,7 +230,7 @@ class Prepared(Record):
         if setup == 0:
             return self
         other = self.others[setup - 1]
-        copies = None if self.copies is None else self.copies.there(setup)
+        copies = None if self.copies is None else replace(self.copies, setup=setup)
         return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped, copies=copies)
 
     def alone(self, setup: int) -> "Prepared":
