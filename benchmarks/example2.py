@@ -19,9 +19,7 @@ from cad_io.arrays import Triangles
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.judging.access import access
-from plan_cutters.judging.classify import CONVEX
-from plan_cutters.judging.decompose import decompose
+from plan_cutters.judging.phases import CONVEX, access, decompose
 from plan_cutters.judging.posture_maps import posture_maps
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles

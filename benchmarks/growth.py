@@ -36,9 +36,7 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters import Cutter
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.judging.access import access
-    from plan_cutters.judging.classify import CONVEX, classify
-    from plan_cutters.judging.decompose import decompose
+    from plan_cutters.judging.phases import CONVEX, access, classify, decompose
     from plan_cutters.scene.conditions import Conditions, Context
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings

@@ -42,7 +42,7 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.judging.access import access
+from plan_cutters.judging.phases import access
 from plan_cutters.kernels.maps.free_map import free_map
 from plan_cutters.kernels.maps.free_tilts import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
@@ -51,7 +51,7 @@ from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rota
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 CUTTER, GRID, TOLERANCE, COARSE = Cutter.flat(radius=6, length=80), 201, 0.01, 0.1

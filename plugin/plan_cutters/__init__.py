@@ -22,7 +22,7 @@ _HOME = {
     "plan_many": "_batch.many",  # a package of its own
     "Result": ".result",
     "posture_map": ".point",
-    "PostureMap": ".judging.posture_map",
+    "PostureMap": ".judging.posture_maps",
     "PostureMaps": ".judging.posture_maps",
     "Plan": ".plan_file.model",
     "PlanError": ".errors",

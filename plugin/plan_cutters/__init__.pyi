@@ -7,8 +7,7 @@ from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
-from plan_cutters.judging.posture_map import PostureMap
-from plan_cutters.judging.posture_maps import PostureMaps
+from plan_cutters.judging.posture_maps import PostureMap, PostureMaps
 from plan_cutters.options import Options
 from plan_cutters.pipeline import plan
 from plan_cutters.plan_file.model import Plan

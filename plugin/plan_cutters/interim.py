@@ -6,7 +6,7 @@ from dataclasses import replace
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.judged_part import JudgedPart, assembled, worded
-from plan_cutters.judging.first_look import first_look
+from plan_cutters.judging.judge import first_look
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import AreaEntry, Plan
 from plan_cutters.plan_file.notes import later_stages, run_unfinished

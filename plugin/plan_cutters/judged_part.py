@@ -23,13 +23,11 @@ from plan_cutters.domain.standard_tools import Fit
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts, over_setups
 from plan_cutters.judging.between import in_each
-from plan_cutters.judging.decompose import march_differs
-from plan_cutters.judging.judge import judge
+from plan_cutters.judging.judge import GroundDigests, judge
+from plan_cutters.judging.limits import travels, within_limits
+from plan_cutters.judging.phases import march_differs
 from plan_cutters.judging.posture_maps import posture_maps
-from plan_cutters.judging.reasons import Explained, Reasons
-from plan_cutters.judging.setups import within_limits
-from plan_cutters.judging.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
-from plan_cutters.judging.travel import travels
+from plan_cutters.judging.reasons import Explained, Reasons, exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.witness import witnesses
 from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
@@ -40,11 +38,8 @@ from plan_cutters.plan_file.part_info import SharpEdgeEntry
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.ground import GroundDigests
-from plan_cutters.scene.preparation import Axis, Prepared
-from plan_cutters.scene.setups import for_another_setup
-from plan_cutters.scene.threads import Progress, part_of
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.preparation import Axis, Prepared, for_another_setup
+from plan_cutters.scene.work import Progress, Work, part_of
 from plan_cutters_base.stage_cache import NO_CACHE
 
 #: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many

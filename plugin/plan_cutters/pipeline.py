@@ -26,11 +26,8 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
-from plan_cutters.judging.cached_judge import CachedJudge
-from plan_cutters.judging.classify import classify, regions
-from plan_cutters.judging.judge import Judge, judge
-from plan_cutters.judging.judge_once import JudgeOnce
-from plan_cutters.judging.other_setups import in_setup
+from plan_cutters.judging.judge import CachedJudge, Judge, JudgeOnce, in_setup, judge
+from plan_cutters.judging.phases import classify, regions
 from plan_cutters.options import Options, PlanOptions
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import Plan
@@ -40,12 +37,18 @@ from plan_cutters.scene.conditions import Context, contacts_of, warm
 from plan_cutters.scene.copied import with_copies
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import (
+    Prepared,
+    affordable,
+    conditions_of,
+    fixtures_of,
+    places,
+    sampled,
+    spacing_key,
+    with_setups,
+)
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
-from plan_cutters.scene.spacing import affordable, sampled, spacing_key
-from plan_cutters.scene.threads import part_of
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Work, part_of
 from plan_cutters_base.copies import SideProcess
 from plan_cutters_base.forks import Gauge
 from plan_cutters_base.stage_cache import NO_CACHE, Cache, RunCache, StageCache

@@ -17,7 +17,7 @@ from plan_cutters.domain.posture import Heading, PostureRange, Range, complement
 from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.verdicts import nominal_depth
 from plan_cutters.errors import OptionError
-from plan_cutters.judging.posture_map import SETTLED, PostureMap, moved, posture_map_of
+from plan_cutters.judging.posture_maps import SETTLED, PostureMap, moved, posture_map_of
 from plan_cutters.options import Options, PointOptions, machine_option
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.scene import Scene

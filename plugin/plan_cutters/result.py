@@ -25,8 +25,8 @@ from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.shares import VerdictCounts
-from plan_cutters.scene.clearance import Clearances, clearances_over
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.distances import Clearances, clearances_over
 from plan_cutters.scene.faces import face_numbers
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene

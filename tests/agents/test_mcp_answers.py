@@ -299,7 +299,7 @@ def test_a_missing_extra_and_a_wrong_root_are_one_line(monkeypatch, tmp_path):
 
 def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
     from plan_cutters.errors import OptionError
-    from plan_cutters.scene.spacing import MOST, affordable
+    from plan_cutters.scene.preparation import MOST, affordable
 
     part, asked = SimpleNamespace(file="part.step"), SimpleNamespace(grid=100, spacing=None)
     assert child._environment(Limits(samples=9_999), [])[MOST] == "9999"

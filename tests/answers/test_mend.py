@@ -8,11 +8,9 @@ import pytest
 from cad_io import read_part
 from plan_cutters import Cutter, Options, Scene, plan
 from plan_cutters.answers.areas import Finished
-from plan_cutters.answers.means_place import _directions, tolerance
-from plan_cutters.answers.mend import mend
-from plan_cutters.answers.scan import Scan
-from plan_cutters.answers.state import Judgements, State
-from plan_cutters.answers.trial import Case
+from plan_cutters.answers.ask import mend
+from plan_cutters.answers.means import _directions, tolerance
+from plan_cutters.answers.state import Case, Judgements, Scan, State
 from plan_cutters.domain.standard_tools import METRIC, USUAL, smaller
 from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare

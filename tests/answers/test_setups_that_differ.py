@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.answers.state import State, on_table
-from plan_cutters.answers.trial import Case
+from plan_cutters.answers.state import Case, State, on_table
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.stick_out import held

@@ -15,7 +15,7 @@ from plan_cutters.command import partial_plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
-from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.judge import JudgeOnce
 from plan_cutters.judging.reasons import Reasons
 from plan_cutters.operations import planning
 from plan_cutters.options import Options

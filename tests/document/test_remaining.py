@@ -7,7 +7,7 @@ import pytest
 
 from cad_io import Part
 from plan_cutters import plan
-from plan_cutters.answers.trial import Case
+from plan_cutters.answers.state import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.plan_file.operations import HelpEntry, PointsEntry

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters.answers.means_tool import longer
-from plan_cutters.answers.option import spoken
+from plan_cutters.answers.means import longer
+from plan_cutters.answers.steps import spoken
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import is_spec, spelled, typed
 from plan_cutters.domain.figures import Notation, across, length

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from cad_io import read_part
 from plan_cutters import Cutter
-from plan_cutters.judging.axis_field import AxisField, angle_between
+from plan_cutters.judging.axes import AxisField, angle_between
 from plan_cutters.kernels.area.cover import swung
 from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.tool.pieces import inset

@@ -12,10 +12,9 @@ from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.judging import between as between_module
-from plan_cutters.judging.cells import CellContacts, Field, quartered
+from plan_cutters.judging.cells import CellContacts, Field, quartered, tensors
 from plan_cutters.judging.face_cells import FaceCells, _cover
 from plan_cutters.judging.judge import judge
-from plan_cutters.judging.nodes import tensors
 from plan_cutters.kernels.codes import NEVER
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Conditions, Context

@@ -7,9 +7,8 @@ import pytest
 
 from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.verdicts import UNJUDGED
-from plan_cutters.judging import cached_judge
-from plan_cutters.judging.cached_judge import CachedJudge
-from plan_cutters.judging.judge import judge
+from plan_cutters.judging import judge as cached_judge
+from plan_cutters.judging.judge import CachedJudge, judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.work import Work
 from plan_cutters_base import stage_cache

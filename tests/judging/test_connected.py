@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from plan_cutters.judging.between import connected
 from plan_cutters.judging.cells import CellContacts
-from plan_cutters.judging.connected import connected
 
 AXES = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]])
 

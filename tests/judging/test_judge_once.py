@@ -8,11 +8,10 @@ import pytest
 from cad_io import Part, read_part
 from plan_cutters import plan
 from plan_cutters.domain.verdicts import ACCESSIBLE, FIXTURE
-from plan_cutters.judging.judge import judge
-from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.judge import JudgeOnce, judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.preparation import Prepared
 from tests.support.patterns import impeller, plate
 

@@ -11,15 +11,11 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import handed, order
 from plan_cutters.domain.verdicts import CONVEX, over_setups
 from plan_cutters.judging.between import in_each
-from plan_cutters.judging.decompose import march_differs
-from plan_cutters.judging.judge import judge
-from plan_cutters.judging.judge_once import JudgeOnce
-from plan_cutters.judging.other_setups import in_setup
+from plan_cutters.judging.judge import JudgeOnce, in_setup, judge
+from plan_cutters.judging.limits import AXES, travels, within_limits
+from plan_cutters.judging.phases import march_differs
 from plan_cutters.judging.posture_maps import posture_maps
-from plan_cutters.judging.reasons import Reasons
-from plan_cutters.judging.setups import AXES, within_limits
-from plan_cutters.judging.sharp_edges import exempt, strips, with_sharp_edges
-from plan_cutters.judging.travel import travels
+from plan_cutters.judging.reasons import Reasons, exempt, strips, with_sharp_edges
 from plan_cutters.judging.witness import witnesses
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.work import Work

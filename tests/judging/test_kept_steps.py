@@ -10,22 +10,17 @@ from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, Witness, blank
 from plan_cutters.errors import OptionError
-from plan_cutters.judging import map_budget, witness
-from plan_cutters.judging.access import access
-from plan_cutters.judging.axis_field import AxisField, angle_between, held_within
+from plan_cutters.judging import posture_maps as map_budget
+from plan_cutters.judging import witness
+from plan_cutters.judging.axes import AxisField, angle_between, held_within, margin, roomiest
 from plan_cutters.judging.between import between
-from plan_cutters.judging.cells import laid, quartered
-from plan_cutters.judging.classify import FLAT, classify, regions
-from plan_cutters.judging.decompose import decompose
+from plan_cutters.judging.cells import from_neighbours, laid, quartered, steepest, tensors
 from plan_cutters.judging.face_cells import FaceCells, Fixed, _poor, best
 from plan_cutters.judging.judge import judge
-from plan_cutters.judging.margin import margin, roomiest
-from plan_cutters.judging.nodes import from_neighbours, steepest, tensors
-from plan_cutters.judging.posture_map import moved, posture_map_of
-from plan_cutters.judging.posture_maps import posture_maps
-from plan_cutters.judging.setups import within_limits
-from plan_cutters.judging.sharp_edges import may_be_at_edge
-from plan_cutters.judging.travel import travels
+from plan_cutters.judging.limits import travels, within_limits
+from plan_cutters.judging.phases import FLAT, access, classify, decompose, regions
+from plan_cutters.judging.posture_maps import moved, posture_map_of, posture_maps
+from plan_cutters.judging.reasons import may_be_at_edge
 from plan_cutters.kernels.codes import NEVER
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.work import Work
@@ -261,8 +256,8 @@ def test_dummies_and_searches_of_some_samples(keeps):
 
 def test_how_many_samples_are_mapped(keeps, monkeypatch):
     rows = np.arange(7, 400, 3)
-    spread = [map_budget.spread(rows, most) for most in (0, 1, 2, 5, 17, 130, 131, 132)]
-    spread.append(map_budget.spread(rows[:0], 3))
+    spread = [map_budget.evenly(rows, most) for most in (0, 1, 2, 5, 17, 130, 131, 132)]
+    spread.append(map_budget.evenly(rows[:0], 3))
     monkeypatch.setattr(map_budget, "WORK", 5000)
     monkeypatch.setattr(map_budget, "PROBED", 20)
     looked = [map_budget.chosen(rows, most, lambda piece: 31 * len(piece), 1) for most in (None, 3, 400)]

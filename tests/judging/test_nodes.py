@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cad_io.arrays import FaceGrid
-from plan_cutters.judging.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
+from plan_cutters.judging.cells import WIDER, WILDER, from_neighbours, steepest, tensors
 
 SEEDS = st.integers(0, 2**32 - 1)
 

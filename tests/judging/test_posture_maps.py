@@ -110,7 +110,7 @@ def horn(major=8.2, minor=8.0):
 
 def test_maps_keep_to_an_amount_of_work(monkeypatch):
     """What would take too long is left out evenly, undecided at every tilt, and said; the rest is as it would be."""
-    from plan_cutters.judging import map_budget
+    from plan_cutters.judging import posture_maps as map_budget
 
     options = {"cutters": "R0.5L20", "faces": "all", "grid": 21, "tolerance": 0.05, "area_budget": 0, "posture_maps": True,
                "rotation_step": np.pi / 2}  # fmt: skip

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from cad_io.arrays import Triangles
 from plan_cutters.judging.between import _areas
 from plan_cutters.judging.face_cells import _JUDGED, FaceCells, _poor, best
-from plan_cutters.judging.posture_map import _rear, moved
+from plan_cutters.judging.posture_maps import _rear, moved
 from plan_cutters.kernels.codes import NEVER
 from plan_cutters.setups import solids
 

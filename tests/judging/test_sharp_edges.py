@@ -15,7 +15,7 @@ from plan_cutters.document.features import sharp_edge_entries
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE, UNDECIDED
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import judge
-from plan_cutters.judging.sharp_edges import exempt, strips
+from plan_cutters.judging.reasons import exempt, strips
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from tests.support.cad_parts import box, cut

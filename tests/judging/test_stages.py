@@ -14,13 +14,11 @@ from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, REASONS, SADDLE, UNDECIDED, UNJUDGED, blank
-from plan_cutters.judging.access import access
-from plan_cutters.judging.classify import FLAT, classify, regions
-from plan_cutters.judging.decompose import march_differs
-from plan_cutters.judging.posture_map import posture_map_of
+from plan_cutters.judging.phases import FLAT, access, classify, march_differs, regions
+from plan_cutters.judging.posture_maps import posture_map_of
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.spacing import BUDGET, default_spacing
+from plan_cutters.scene.preparation import BUDGET, default_spacing
 from plan_cutters.scene.surroundings import Surroundings
 from tests.support import shapes
 from tests.support.cad_parts import ball, rod

@@ -9,10 +9,10 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 from cad_io import read_part
 from plan_cutters import Options
 from plan_cutters.domain.verdicts import FIXTURE
-from plan_cutters.judging.access import access
+from plan_cutters.judging.between import _key
 from plan_cutters.judging.cells import _halved, _rectangles, _tiles, laid
-from plan_cutters.judging.connected import _key
 from plan_cutters.judging.judge import judge
+from plan_cutters.judging.phases import access
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from tests.support.cad_parts import box, ring

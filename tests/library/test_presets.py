@@ -8,7 +8,7 @@ import pytest
 from plan_cutters import Cutter, OptionError, Options
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.cutting import feed_of, is_finishing
-from plan_cutters.operations.priced import feeds
+from plan_cutters.operations.planning import feeds
 from tests.support.tool_files import ID, fusion, hsmlib, real, write_csv, write_json, write_tools
 
 PRESETS = [("Roughing", 900), ("Finishing", 1200), ("Last", 800)]

@@ -12,7 +12,7 @@ from plan_cutters.domain.machine import Axis, builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.judging.judge import judge
-from plan_cutters.judging.setups import within_limits
+from plan_cutters.judging.limits import within_limits
 from plan_cutters.machines import to_toml
 from plan_cutters.pipeline import prepare
 from tests.support import cad_parts, shapes

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.at_once import _Times
+from plan_cutters.operations.motion import _Times
 
 
 class Cutting(_Times):

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.operations import columns_of
-from plan_cutters.operations.candidates import DIGITS, Orientations
 from plan_cutters.operations.canonical import _choice, _merged, _shortened, canonical
+from plan_cutters.operations.orientations import DIGITS, Orientations
 from plan_cutters.scene.conditions import Conditions
 from tests.support.sheets import AROUND
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from plan_cutters.operations.cover import UNIT, fewest, relax, whole_weights
+from plan_cutters.operations.fewest import UNIT, fewest, relax, whole_weights
 
 TABLES = st.tuples(st.integers(1, 14), st.integers(1, 9)).flatmap(lambda size: arrays(bool, size, elements=st.booleans()))
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fewer_steps import Steps, in_one_step, without_minor_steps
+from plan_cutters.operations.labels import Steps, in_one_step, without_minor_steps
 
 INF = math.inf
 

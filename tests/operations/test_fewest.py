@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.operations import columns_of
-from plan_cutters.operations.cover import Cover, fewest
-from plan_cutters.operations.fewest import Search, search_fewest, spread
+from plan_cutters.operations.fewest import Cover, Search, fewest, search_fewest, spread
 
 UNIT = 1_000_000
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from cad_io.arrays import Triangles
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.operations import INDEX_TIME, columns_of
-from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.indexing import MOST, Indexing, index_times
+from plan_cutters.operations.orientations import MOST, Indexing, Orientations, index_times
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

@@ -17,10 +17,11 @@ from plan_cutters import Machine, operations, plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.placement import Placement
-from plan_cutters.operations import at_once, canonical, choices, companions, moving_axes, planning, plans
-from plan_cutters.operations.extent import Extents
-from plan_cutters.operations.passes import Paths
-from plan_cutters.operations.thinned import thinned
+from plan_cutters.operations import canonical, choices, moving_axes, planning, plans
+from plan_cutters.operations import choices as companions
+from plan_cutters.operations import motion as at_once
+from plan_cutters.operations.passes import Extents, Paths
+from plan_cutters.operations.task import thinned
 from plan_cutters.options import Options
 from tests.support.patterns import impeller
 from tests.support.shapes import Patch

@@ -15,13 +15,24 @@ from cad_io.arrays import FaceGrid, Triangles
 from plan_cutters import Machine, PostureRange, operations
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import columns_of
-from plan_cutters.operations import canonical, cover, fastest, fewest, moving_axes, moving_proof, passes, strips, symmetry, timing
-from plan_cutters.operations.candidates import Orientations, _multiples, apart, candidates, directions, neighbours
-from plan_cutters.operations.fastest import Reach, bounded, cheap, exchanged, lagrange
-from plan_cutters.operations.indexing import Indexing, index_times
+from plan_cutters.operations import canonical, fastest, fewest, moving_axes, passes, symmetry
+from plan_cutters.operations import fewest as cover
+from plan_cutters.operations import passes as strips
+from plan_cutters.operations import proof as moving_proof
+from plan_cutters.operations import task as timing
+from plan_cutters.operations.choices import largest_first, with_and_without
+from plan_cutters.operations.fastest import Costs, Problem, Reach, Turning, bounded, cheap, exchanged, lagrange
 from plan_cutters.operations.labels import joined, labelled, pieces, regions_of
-from plan_cutters.operations.problem import Costs, Problem, Turning
-from plan_cutters.operations.rest_areas import largest_first, with_and_without
+from plan_cutters.operations.orientations import (
+    Indexing,
+    Orientations,
+    _multiples,
+    apart,
+    candidates,
+    directions,
+    index_times,
+    neighbours,
+)
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

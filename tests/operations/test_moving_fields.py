@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.operations.moving_axes import _smoothed
-from plan_cutters.operations.moving_proof import _held, _pieces, _span, counted_pieces, proved_share
+from plan_cutters.operations.proof import _held, _pieces, _span, counted_pieces, proved_share
 
 SEEDS = st.integers(0, 2**32 - 1)
 WHOLE = 2.0 * math.pi

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from plan_cutters import plan
 from plan_cutters.operations import planning
 from plan_cutters.operations.fastest import against_bound
-from plan_cutters.operations.flow_faces import with_moved
+from plan_cutters.operations.labels import Seams
+from plan_cutters.operations.motion import with_moved
 from plan_cutters.operations.moving_axes import _AS_WIDE
 from plan_cutters.operations.plans import plan_with
-from plan_cutters.operations.seams import Seams
 from tests.support.cad_parts import patch
 from tests.support.shapes import bowl, dome, trough
 

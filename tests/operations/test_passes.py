@@ -15,8 +15,7 @@ from plan_cutters import Cutter, plan
 from plan_cutters.domain.machine import Machine
 from plan_cutters.kernels.linear.sections import sections
 from plan_cutters.machines import read_machine, to_toml
-from plan_cutters.operations.passes import Paths
-from plan_cutters.operations.strips import centre_path
+from plan_cutters.operations.passes import Paths, centre_path
 from tests.support.cad_parts import box
 from tests.support.places import DATA
 

@@ -12,11 +12,9 @@ from scipy.spatial.transform import Rotation
 
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.operations import Columns
-from plan_cutters.operations.candidates import DIGITS, Orientations
-from plan_cutters.operations.fastest import bounded, cheap
-from plan_cutters.operations.indexing import Indexing
-from plan_cutters.operations.problem import Costs, Problem
-from plan_cutters.operations.repeated import _apart
+from plan_cutters.operations.by_pattern import _apart
+from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap
+from plan_cutters.operations.orientations import DIGITS, Indexing, Orientations
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.scene.conditions import Conditions
 from tests.support.sheets import AROUND

@@ -9,7 +9,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import planning, plans
-from plan_cutters.operations.at_once import _Times
+from plan_cutters.operations.motion import _Times
 from plan_cutters.operations.plans import small_pieces
 from tests.support.cad_parts import box
 

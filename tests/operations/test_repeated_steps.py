@@ -13,9 +13,8 @@ from plan_cutters import plan
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.judging.judge import judge
 from plan_cutters.operations import planning
-from plan_cutters.operations.by_pattern import planned_by_pattern
+from plan_cutters.operations.by_pattern import planned_by_pattern, repeated, symmetric
 from plan_cutters.operations.plans import plan_with
-from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.task import Task
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare

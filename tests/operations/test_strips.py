@@ -9,10 +9,15 @@ from hypothesis import strategies as st
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters import Cutter
-from plan_cutters.operations.strips import strips
+from plan_cutters.operations.passes import strips_at
 from tests.support.moved_tool import width_left
 
 NORMAL, X, Y = np.eye(3)[[2, 0, 1]]
+
+
+def strips(cutter, samples, *rest):
+    """The widest strips of a cutter at samples."""
+    return strips_at(cutter, samples.normal, samples.direction_max, samples.curvature, *rest)
 
 
 def samples_of(high=0.0, low=0.0, largest=X, normal=NORMAL, n=1):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.operations import planning, thinned
+from plan_cutters.operations import planning
+from plan_cutters.operations import task as thinned
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import SAMPLES

@@ -7,8 +7,8 @@ import pytest
 
 import plan_cutters.scene.surroundings as surroundings
 from plan_cutters import plan
-from plan_cutters.answers import mend as mending
-from plan_cutters.answers.undecidable import undecidable
+from plan_cutters.answers import ask as mending
+from plan_cutters.answers.ask import undecidable
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank

@@ -20,12 +20,11 @@ from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import columns_of
-from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.indexing import MOST, Indexing, index_times
+from plan_cutters.operations.orientations import MOST, Indexing, Orientations, index_times
 from plan_cutters.plan_file.reasons import operation_colour, parts, rgb
 from plan_cutters.report import DEFAULT_FORMATS, models
-from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.distances import clearances
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES

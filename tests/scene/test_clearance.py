@@ -15,8 +15,7 @@ from plan_cutters.domain.assembly import FINEST, SHARE
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.kernels.codes import HOLDER
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.clearance import clearances, clearances_over, least_clearance
-from plan_cutters.scene.deepest import deepest, deepest_of, deepest_on
+from plan_cutters.scene.distances import clearances, clearances_over, deepest, deepest_of, deepest_on, least_clearance
 from plan_cutters.scene.obstacles import Obstacles
 from tests.support import shapes
 from tests.support.cad_parts import ball, box, compound

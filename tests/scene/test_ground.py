@@ -9,9 +9,9 @@ from cad_io.part.equal_faces import Motion
 from plan_cutters import Machine, Options
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.judging.judge import GroundDigests, made_of, same
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.copies import Copies
-from plan_cutters.scene.ground import GroundDigests, made_of, same
+from plan_cutters.scene.preparation import Copies
 from tests.support.cad_parts import box
 from tests.support.two_setups import DOWN, LOWER, UP, UPPER
 

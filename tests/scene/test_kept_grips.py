@@ -17,11 +17,9 @@ from plan_cutters.scene.fixtures import body_near
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.setups import solids
-from plan_cutters.setups.chuck_places import chuck_places
 from plan_cutters.setups.clamping import held as placed_by
-from plan_cutters.setups.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
-from plan_cutters.setups.vise_places import vise_places
-from plan_cutters.setups.workpiece import Workpiece
+from plan_cutters.setups.places import chuck_places, vise_places
+from plan_cutters.setups.workpiece import Workpiece, at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import said_by
 from tests.support.vises import stands_in

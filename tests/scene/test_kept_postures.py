@@ -10,7 +10,6 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.machine import Axis
 from plan_cutters.domain.verdicts import UNDECIDED, UNJUDGED, blank
 from plan_cutters.judging.judge import judge
-from plan_cutters.scene.clearance import clearances, clearances_over, least_clearance
 from plan_cutters.scene.conditions import (
     Conditions,
     Context,
@@ -22,7 +21,7 @@ from plan_cutters.scene.conditions import (
     tool_of,
     tools,
 )
-from plan_cutters.scene.deepest import deepest, deepest_of, deepest_on
+from plan_cutters.scene.distances import clearances, clearances_over, deepest, deepest_of, deepest_on, least_clearance
 from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, leaning, served_by, serves
 from plan_cutters.scene.flats_and_flanks import _at_angle, _nearest, on_the_flank, on_the_flat, search
 from plan_cutters.scene.work import Work

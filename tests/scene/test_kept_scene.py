@@ -22,22 +22,21 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
 from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
-from plan_cutters.scene import covering, spacing
-from plan_cutters.scene import overlap as overlapping
+from plan_cutters.scene import covering
+from plan_cutters.scene import fixtures as overlapping
+from plan_cutters.scene import preparation as spacing
 from plan_cutters.scene import surroundings as gathered
 from plan_cutters.scene.copied import keeps as keeps_setup
 from plan_cutters.scene.copied import some_of, with_copies
 from plan_cutters.scene.covering import coverings, sheets
 from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
-from plan_cutters.scene.fixtures import joined
+from plan_cutters.scene.fixtures import joined, overlap, overlaps, refuse_overlaps
 from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
-from plan_cutters.scene.setups import for_another_setup, stood_on
+from plan_cutters.scene.preparation import for_another_setup, stood_on
 from plan_cutters.scene.surroundings import surroundings
-from plan_cutters.scene.thickened import thickened
-from plan_cutters.scene.threads import in_chunks, with_company
-from plan_cutters.scene.triangles import divided
+from plan_cutters.scene.triangles import divided, thickened
+from plan_cutters.scene.work import in_chunks, with_company
 from plan_cutters.setups import solids
 from plan_cutters.setups.workpiece import clipped, stands
 from tests.support.cad_parts import box, compound, cut, rod

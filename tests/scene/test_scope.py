@@ -183,7 +183,7 @@ def test_where_nothing_is_sculptured_all_is_judged():
 
 def test_what_lies_between_samples_that_are_far_apart_is_said_not_to_be_seen(monkeypatch):
     """A default plan whose budget binds: the samples are farther apart than the cutter is wide."""
-    monkeypatch.setattr("plan_cutters.scene.spacing.BUDGET", 40)
+    monkeypatch.setattr("plan_cutters.scene.preparation.BUDGET", 40)
     part = read_part(box(90, 90, 5))
     found = plan(part, cutters=CUTTERS, faces="F6", area_budget=0).plan
     assert found.selected == "R3L40"

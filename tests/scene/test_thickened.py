@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.scene.thickened import thickened
+from plan_cutters.scene.triangles import thickened
 
 
 def is_closed(skin):

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 ROWS = np.arange(3, 1203, 2)
 

@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
-from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, served_by
 
 LONG, WIDE, DEEP, RADIUS = 40.0, 16.0, 8.0, 7.0

@@ -12,13 +12,11 @@ from scipy.spatial.transform import Rotation
 from cad_io.arrays import Triangles
 from plan_cutters.domain.clamping import requested
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.scene.fixtures import body_near
+from plan_cutters.scene.fixtures import body_near, entered, overlaps
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.overlap import entered, overlaps
 from plan_cutters.setups import solids
-from plan_cutters.setups.clamping import held
-from plan_cutters.setups.holds import NothingToGripError
-from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.clamping import NothingToGripError, held
+from plan_cutters.setups.places import vise_places
 from plan_cutters.setups.workpiece import PARALLEL, Workpiece
 
 TOLERANCE, UP = 0.01, np.array([0.0, 0.0, 1.0])

@@ -15,8 +15,7 @@ from plan_cutters.domain.clamping import requested
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups import solids
-from plan_cutters.setups.chuck_places import _degrees_of
-from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.places import _degrees_of, vise_places
 from plan_cutters.setups.workpiece import Workpiece, clipped
 from tests.support.cad_parts import box, rod
 from tests.support.vises import hold_of

@@ -6,7 +6,7 @@ from cad_io.face.curvature import evaluate
 from cad_io.part.bodies import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, plan
-from plan_cutters.judging.axis_field import AxisField
+from plan_cutters.judging.axes import AxisField
 from plan_cutters.judging.between import between
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles

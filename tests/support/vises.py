@@ -5,8 +5,8 @@ import numpy as np
 from cad_io.arrays import Triangles
 from plan_cutters import Scene
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.scene.fixtures import entered
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.overlap import entered
 from plan_cutters.scene.triangles import divided
 from plan_cutters.setups.solids import box
 

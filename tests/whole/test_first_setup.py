@@ -8,8 +8,8 @@ import pytest
 from plan_cutters import Options
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
-from plan_cutters.judging import first_look as looking
-from plan_cutters.judging.first_look import first_look
+from plan_cutters.judging import judge as looking
+from plan_cutters.judging.judge import first_look
 from plan_cutters.pipeline import prepare, run
 from tests.support.cad_parts import box
 

@@ -11,9 +11,9 @@ from cad_io.write import render_mesh as drawing
 from cad_io.write.render_mesh import Net, cut
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.judging import witness
-from plan_cutters.judging.access import access
 from plan_cutters.judging.between import between
 from plan_cutters.judging.judge import judge
+from plan_cutters.judging.phases import access
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.inside_material import cover

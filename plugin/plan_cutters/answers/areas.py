@@ -21,14 +21,9 @@ _WAYS = 200
 class Finished(Record):
     """The areas and shares of the finished surface that the samples stand for; one value belongs to each sample.
 
-    Attributes
-    ----------
-    area : (n,) float
-        mm2 of the finished surface; 0 of samples inside another body.
-    share : (n,) float
-        The same of all target area that is no inside of a body, faces without samples included, as a plan counts it.
-    wanted : (n,) bool
-        Samples of the finished surface that are judged.
+    `area` (n,) float: mm2 of the finished surface; 0 of samples inside another body. `share` (n,) float: the same of all target
+    area that is no inside of a body, faces without samples included, as a plan counts it. `wanted` (n,) bool: samples of the
+    finished surface that are judged.
     """
 
     area: Floats

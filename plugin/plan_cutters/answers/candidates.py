@@ -21,16 +21,8 @@ _ONE = float(np.cos(np.radians(0.1)))
 class Candidates(Record):
     """Directions of the part along the spindle that are compared.
 
-    Attributes
-    ----------
-    axis : (m, 3) float
-        Unit directions.
-    stands_on : tuple of tuple of int
-        For each the numbers of the planar faces that lie on the table.
-    lowest : (m,) float
-        Height along each of the part's lowest point, mm.
-    tall : (m,) float
-        How high the part stands along each, mm.
+    `axis` (m, 3) float: unit directions. `stands_on`: for each the numbers of the planar faces that lie on the table. `lowest`
+    (m,) float: height along each of the part's lowest point, mm. `tall` (m,) float: how high the part stands along each, mm.
     """
 
     axis: Floats

@@ -7,8 +7,7 @@ import numpy as np
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.answers.areas import Rows
-from plan_cutters.answers.scan import HALF, NEARLY
-from plan_cutters.answers.trial import Case
+from plan_cutters.answers.state import HALF, NEARLY, Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import MOST, Fit, smaller
 from plan_cutters.scene.preparation import Prepared
@@ -25,21 +24,10 @@ def fitting(ready: Prepared, cutter: Cutter, rows: Rows, area: Floats) -> tuple[
     Each is judged as long as the cutter, in its holder, without a thinner neck or a thicker shank, under the conditions of the
     plan: whether a tool of that size is sold so long is not asked here.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-        Of its kind the sizes are.
-    rows : (m,) int64
-        Samples that it does not reach. Of very many some are looked at, as many of each face as it has of the area.
-    area : (n,) float
-        mm2 that each sample stands for.
-
-    Returns
-    -------
-    tuple of Fit, optional
-        Empty where no size reaches any. None where nothing was judged: sizes have no meaning (form cutters, tapers), none is
-        smaller, or obstacles are missing.
+    `cutter`: of its kind the sizes are. `rows` (m,) int64: samples that it does not reach. Of very many some are looked at, as
+    many of each face as it has of the area. `area` (n,) float: mm2 that each sample stands for. It is empty where no size
+    reaches any. None where nothing was judged: sizes have no meaning (form cutters, tapers), none is smaller, or obstacles are
+    missing.
     """
     conditions = ready.conditions
     if conditions.surroundings.doubtful or not area[rows].sum() > 0.0:

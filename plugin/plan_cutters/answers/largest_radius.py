@@ -17,7 +17,7 @@ from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, INSIDE, JUDGED_S
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Progress, in_chunks
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.search.search import Ladder
@@ -37,26 +37,13 @@ def largest_radius(
 ) -> RadiusMap:  # fmt: skip
     """Find the largest radius that reaches each sample, under the conditions of a plan.
 
-    Parameters
-    ----------
-    ready : Prepared
-        Its cutters are not looked at; its stock allowance counts.
-    shape : str
-        `flat` or `ball`: end mills without neck, shank and holder.
-    ratio : float, optional
-        Their length over their radius; a ball's is no less than 1.
-    step : float, optional
-        By which share each radius that is tried is larger than the one before.
-    least, most : float, optional
-        Radii to try, from and to, mm. The most is half the longest side of the part's box by default; the least is 0.1, or a
-        hundredth of the most if that is less, or what the tolerance lets be judged if that is more.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
+    Raises OptionError: an argument has no meaning, or the tolerance is too coarse for every radius asked for.
 
-    Raises
-    ------
-    OptionError
-        An argument has no meaning, or the tolerance is too coarse for every radius asked for.
+    `ready`: its cutters are not looked at; its stock allowance counts. `shape`: `flat` or `ball`: end mills without neck, shank
+    and holder. `ratio`: their length over their radius; a ball's is no less than 1. `step`: by which share each radius that is
+    tried is larger than the one before. `least`, `most`: radii to try, from and to, mm. The most is half the longest side of the
+    part's box by default; the least is 0.1, or a hundredth of the most if that is less, or what the tolerance lets be judged if
+    that is more.
     """
     from plan_cutters.kernels.search.search import largest
 

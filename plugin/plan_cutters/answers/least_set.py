@@ -10,10 +10,8 @@ from plan_cutters.domain.answers import LeastSet, Run, essential_rows
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
-from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.setups import stood_on
+from plan_cutters.scene.preparation import Axis, Prepared, stood_on
 
-Axis = tuple[float, float, float]
 #: Seconds that the proof may take; then the best set found so far is told as such.
 _SECONDS = 10.0
 
@@ -23,19 +21,9 @@ def least_set(
 ) -> LeastSet | None:
     """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
 
-    Parameters
-    ----------
-    ready : Prepared
-    reaches : mapping
-        What each cutter reaches in the plan's first setup.
-    other_setups : sequence
-        Of each other setup its axis, and what each cutter reaches there by its id.
-
-    Returns
-    -------
-    LeastSet or None
-        None where one cutter was judged in one setup. What stands on the table of a proposed setup chooses no kind of cutter
-        that comes later: it is left for another setup.
+    `reaches`: what each cutter reaches in the plan's first setup. `other_setups`: of each other setup its axis, and what each
+    cutter reaches there by its id. None where one cutter was judged in one setup. What stands on the table of a proposed setup
+    chooses no kind of cutter that comes later: it is left for another setup.
     """
     setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *other_setups]
     cutters = [cutter for cutter in ready.cutters if cutter in reaches]
@@ -112,20 +100,9 @@ def _with_more(
 def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:
     """The fewest columns that cover every row that any column covers.
 
-    Parameters
-    ----------
-    reached : (n, m) bool
-        Which of n samples each of m runs reaches.
-    setup, rank : sequences of int
-        Of each run: its setup, and its cutter's rank, 0 for the most wanted. Of covers with as few runs
-        that in the fewest setups is taken, and of these the one with the least sum of ranks.
-
-    Returns
-    -------
-    chosen : list of int
-        Ascending.
-    proven : bool
-        Whether no fewer do.
+    `reached` (n, m) bool: which of n samples each of m runs reaches. `setup`, `rank`: of each run: its setup, and its cutter's
+    rank, 0 for the most wanted. Of covers with as few runs that in the fewest setups is taken, and of these the one with the
+    least sum of ranks. Returns `chosen`: ascending; `proven`: whether no fewer do.
 
     Examples
     --------

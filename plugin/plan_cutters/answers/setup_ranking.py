@@ -1,4 +1,5 @@
-"""Which setups are worth planning: directions of the part, ranked by what a machine could hold there over a table.
+"""Which setups are worth planning: directions of the part, ranked by what a machine could hold there over a table, and what holds
+the part best in each: a table, a vise or a chuck, by what cutters reach among each.
 
 First a bound that is cheap and sees no obstacle but the table: at which samples does the machine hold any tool axis at which a
 cutter touches, whose upper end is above the plane that the part stands on? Then, for the few best, a search on some samples among
@@ -6,27 +7,97 @@ the part alone, with tools that are nowhere below that plane. In those that are 
 chuck as well. It promises; the plan of that setup decides.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.answers.candidates import Candidates
-from plan_cutters.answers.holding import Held, best_hold, held_by
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import area, percent
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
-from plan_cutters.judging.setups import within_limits
+from plan_cutters.judging.limits import within_limits
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.setups.holds import NothingToGripError
+from plan_cutters.scene.work import evenly
+from plan_cutters.setups.clamping import NothingToGripError
+
+#: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
+_GRIPPED_FOR = 0.9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Held:
+    """How a part is held in a direction that was searched.
+
+    `fixture`: in its place.
+    `served` (r,) bool: where a posture was found among it.
+    `grips`, `rests_on`: faces that jaws touch, and planar ones with which the part rests in them; none for a table.
+    `hidden`: area of the target faces that jaws touch, mm2.
+    `words`: what it is and what it grips; empty for a table.
+    `why`: why it was taken; empty where only one was tried.
+    """
+
+    fixture: Fixture
+    served: NDArray[np.bool_]
+    grips: tuple[int, ...] = ()
+    rests_on: tuple[int, ...] = ()
+    hidden: float = 0.0
+    words: str = ""
+    why: str = ""
+
+    @property
+    def kind(self) -> Any:
+        """`table`, `vise` or `chuck`."""
+        return self.fixture.kind
+
+    @property
+    def faces(self) -> tuple[int, ...]:
+        """All faces that a vise or chuck holds."""
+        return (*self.grips, *self.rests_on)
+
+
+def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]]) -> Held:
+    """Hold a part along an axis by a table, vise or chuck, and find where a posture is among it.
+
+    `axis` (float, float, float). `word`: `table`, or the word of a vise or chuck. `among`: where any cutter has a posture among
+    some obstacles, (r,). Raises NothingToGripError.
+    """
+    surroundings = ready.scene.surround_held(axis, word)
+    (placed,) = surroundings.fixtures
+    held, hold = Held(placed.fixture, among(surroundings)), placed.hold
+    if hold is None:
+        return held
+    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words)
+
+
+def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
+    """Take what holds a part best, and say why.
+
+    `tried`: at least one. `refused`: of each kind that cannot hold it, why not. `weight` (r,) float: the area that each sample
+    stands for.
+    """
+    whole = max(1e-300, float(weight.sum()))
+    share = {each.kind: float(weight @ each.served) / whole for each in tried}
+    gripping = [each for each in tried if each.kind != TABLE]
+    best = max(gripping or tried, key=lambda each: share[each.kind])
+    if share[best.kind] < _GRIPPED_FOR * share.get(TABLE, 0.0):
+        best = next(each for each in tried if each.kind == TABLE)
+    served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
+    served[0] += " of the samples' area"
+    nothing = [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
+    left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
+    return replace(best, why=f"{', '.join([*served, *nothing])}{left}")
+
 
 Rows = NDArray[np.int64]
 Table = NDArray[np.bool_]
@@ -55,19 +126,9 @@ def holdable(
 ) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
-    conditions : Conditions
-        Machine and posture range.
-    axis : (3,) float
-        Unit direction of the part along the spindle.
-    table : float, optional
-        Height along `axis` below which nothing of a tool may be, mm: axes are left out at which the upper end of every cutter
-        would be there. None: no table.
-    rows : (m,) int64, optional
-        The samples to look at, all by default.
+    `conditions`: machine and posture range. `axis` (3,) float: unit direction of the part along the spindle. `table`: height
+    along `axis` below which nothing of a tool may be, mm: axes are left out at which the upper end of every cutter would be
+    there. None: no table. `rows` (m,) int64: the samples to look at, all by default.
     """
     setup: Axis = (float(axis[0]), float(axis[1]), float(axis[2]))
     if table is None:
@@ -93,29 +154,17 @@ def holdable(
 class Ranking:
     """The ranking keeps what is known of each direction; it grows as directions are searched.
 
-    Attributes
-    ----------
-    ready : Prepared
-        In any setup, without fixtures.
-    candidates : Candidates
-    rows : (r,) int64
-        Samples on which directions are compared.
-    free : (r,) bool
-        Where a posture was found without table and machine: what the part itself is in the way of is not searched again in each
-        direction.
-    bound : (r, m) bool
-        Those of them where the machine holds an axis over the table at all, and the face is not stood on.
-    words : tuple of str
-        What may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
-    held : mapping
-        By candidate that was searched, how it is held; None where it cannot be.
-    settled : set
-        Candidates for which all words were tried; of the others over a table it is not known yet where that lies.
-    refused : mapping
-        Why nothing holds it in directions that were searched, the first cause first.
-    usual : (r,) bool
-        Where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter makes a
-        setup look better than it is.
+    `ready`: in any setup, without fixtures.
+    `rows` (r,) int64: samples on which directions are compared.
+    `free` (r,) bool: where a posture was found without table and machine: what the part itself is in the way of is not searched
+        again in each direction.
+    `bound` (r, m) bool: those of them where the machine holds an axis over the table at all, and the face is not stood on.
+    `words`: what may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
+    `held`: by candidate that was searched, how it is held; None where it cannot be.
+    `settled`: candidates for which all words were tried; of the others over a table it is not known yet where that lies.
+    `refused`: why nothing holds it in directions that were searched, the first cause first.
+    `usual` (r,) bool: where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form
+        cutter makes a setup look better than it is.
     """
 
     ready: Prepared
@@ -133,14 +182,11 @@ class Ranking:
     def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,)) -> "Ranking":
         """Rank the directions of a part by the bound; `words` as the attribute.
 
-        Raises
-        ------
-        OptionError
-            In no direction does the machine hold any axis at which a cutter touches.
+        Raises OptionError: in no direction does the machine hold any axis at which a cutter touches.
         """
         candidates = Candidates.of(ready)
         open_ = np.flatnonzero(ready.somewhere)
-        rows = open_[np.unique(np.linspace(0, len(open_) - 1, min(COMPARED, len(open_))).astype(np.int64))]
+        rows = evenly(open_, COMPARED)
         few = ready.conditions
         bound = np.zeros((len(rows), len(candidates.axis)), bool)
         for k in range(len(candidates.axis)):
@@ -253,16 +299,7 @@ class Ranking:
 
         Of as many that serve as much, those are taken in which the part lies lower.
 
-        Parameters
-        ----------
-        most : int
-        without : set of int
-            Directions that failed.
-
-        Returns
-        -------
-        tuple of int
-            Candidates, that with the most area first; none where none serves anything.
+        `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
         every = self._lowest_first([k for k, held in self.held.items() if held is not None and k not in without])
         flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
@@ -343,19 +380,8 @@ def _reached(
 def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,)) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
-    Parameters
-    ----------
-    ready : Prepared
-        In any setup, without fixtures.
-    most : int
-        Setups that may be proposed together.
-    words : tuple of str
-        What may hold the part: as the attribute of `Ranking`.
-
-    Raises
-    ------
-    OptionError
-        As for `Ranking.of`.
+    `ready`: in any setup, without fixtures. `most`: setups that may be proposed together. `words`: what may hold the part: as the
+    attribute of `Ranking`. Raises OptionError: as for `Ranking.of`.
     """
     ranking = Ranking.of(ready, words)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)

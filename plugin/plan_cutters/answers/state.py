@@ -1,4 +1,9 @@
-"""Describe the plan after a step: its cutters, setups and conditions, and the samples that it would not reach."""
+"""The plan after a step: its cutters, setups and conditions, the samples that it would not reach, and some of them on which
+values of a step are compared before any is judged.
+
+Samples are asked again quickly, or as a plan judges them. A quick look asks only whether samples have a posture, in any company;
+what is told of a step rests on `judge`: Lemma M1 of `docs/mending_proof.md`.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -7,18 +12,104 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.candidates import planes_below
-from plan_cutters.answers.trial import Case
+from plan_cutters.domain.answers import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import TABLE
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    CONVEX,
+    FIXTURE,
+    INACCESSIBLE,
+    INSIDE,
+    TOLERANCE,
+    UNDECIDED,
+    Verdicts,
+    blank,
+    over_setups,
+)
+from plan_cutters.judging.judge import judge
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.scene.conditions import Context, contacts_of, over_plane
+from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.inside_material import inside_material
-from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.holds import NothingToGripError
+from plan_cutters.scene.preparation import Axis, Prepared
+from plan_cutters.setups.clamping import NothingToGripError
 from plan_cutters.setups.requested import without
 
 Rows = NDArray[np.int64]
-Axis = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """A part that is ready, in all its setups, and a cutter, one thing of either changed."""
+
+    ready: Prepared
+    cutter: Cutter
+    #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
+    above: float | None = None
+
+    @property
+    def setups(self) -> Iterator[Prepared]:
+        """The part in each of its setups, the first one first."""
+        return (self.ready.alone(k) for k in range(len(self.ready.setups)))
+
+    def look(self, rows: Rows, *, brief: bool = False) -> Verdicts:
+        """Judge some of the judged samples again, for this part and cutter, in one setup after the other.
+
+        The verdicts are those of `judge`, except that a search from another start may differ by its angular resolution; and, if
+        it is `brief`, that what takes long is left undecided.
+        """
+        each, open_rows = list[Verdicts](), np.arange(len(rows))
+        for one in self.setups:
+            part = _look(one, self.cutter, rows[open_rows], brief=brief, above=self.above)
+            whole = blank(len(rows))
+            whole.take(open_rows, part, at=slice(None))
+            each.append(whole.freeze())
+            open_rows = open_rows[~part.reached]
+        return over_setups(each)[0]
+
+    def misses(self, rows: Rows, *, brief: bool = False) -> Rows:
+        """Those of some samples that it does not reach, or, if the search is `brief`, may not reach."""
+        return rows[~self.look(rows, brief=brief).reached]
+
+    def judged(self, rows: Rows | None = None) -> Rows:
+        """Samples of the finished surface that it does not reach, as a plan finds them: of all, or of some, ascending."""
+        wanted = np.flatnonzero(self.ready.finished) if rows is None else rows[self.ready.finished[rows]]
+        for one in self.setups:
+            if len(wanted):
+                wanted = wanted[~judge(one, self.cutter, wanted).reached]
+        return wanted
+
+
+def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: float | None) -> Verdicts:
+    """Judge some samples again in one setup."""
+    from plan_cutters.kernels.search.search import dummy_clear
+
+    conditions, verdicts = ready.conditions, blank(len(rows))
+    context = Context.of(cutter, conditions)
+    if not context.judges:
+        verdicts.verdict[:], verdicts.reason[:] = UNDECIDED, TOLERANCE
+        return verdicts.freeze()
+    contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
+    free = np.zeros(len(rows), bool)
+    if len(context.dummy):
+        upright = np.flatnonzero((ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal))
+        dummy_clear(upright, contacts, context.dummy, context.outer, conditions.obstacles.solids, free)
+    verdicts.verdict[free] = ACCESSIBLE
+    # Of the finished surface these lie within a fixture, or are held.
+    within, held = ready.shut[rows] >= 0, ready.clamped[rows]
+    search(contacts, ready.samples.face[rows], np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
+    if above is not None:
+        below = verdicts.reached & ~over_plane(context, contacts, verdicts, above)
+        verdicts.verdict[below], verdicts.reason[below] = INACCESSIBLE, FIXTURE
+    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
+    return verdicts.freeze()
+
+
+#: Of each setup beside the first its axis, and what each cutter reaches there by its id.
+OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 #: What looks down at the table so squarely lies on it.
 _SQUARE = 1e-6
 #: Setups that are not planned yet of which what stands around the part is kept, at most.
@@ -41,14 +132,8 @@ class SetupOf(NamedTuple):
 class State:
     """Cutters that share a part: what counts is what none of them reaches in any of its setups.
 
-    Attributes
-    ----------
-    ready : Prepared
-    cutters : tuple of Cutter
-        The one that is mended, or what became of it, first.
-    setups : tuple of SetupOf
-    tables : dict
-        What setups that are not planned yet see, by axis and tolerance, those that were looked at last.
+    `cutters`: the one that is mended, or what became of it, first. `tables`: what setups that are not planned yet see, by axis
+    and tolerance, those that were looked at last.
     """
 
     ready: Prepared
@@ -142,12 +227,8 @@ def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
 class Judgements:
     """Keep all that was judged so far, so that nothing is judged twice.
 
-    Attributes
-    ----------
-    looked, missed : mapping
-        By key: samples (n,) that were judged, and those of them that are not reached.
-    tell : callable
-        Called whenever a case was judged.
+    `looked`, `missed`: by key: samples (n,) that were judged, and those of them that are not reached. `tell`: called whenever a
+    case was judged.
     """
 
     looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
@@ -155,9 +236,7 @@ class Judgements:
     tell: Callable[[], None] = lambda: None
 
     @classmethod
-    def of(
-        cls, ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
-    ) -> "Judgements":
+    def of(cls, ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups = ()) -> "Judgements":
         """Those of a plan."""
         judgements, wanted = cls(), ready.finished
         for k, ((axis, _), each) in enumerate(zip(ready.axes, (None, *(there for _, there in other_setups)), strict=False)):
@@ -195,3 +274,107 @@ class Judgements:
             not_reached[new] = np.isin(rows[new], case.misses(rows[new], brief=True)) if len(new) else False
             rows = rows[not_reached]
         return rows
+
+
+#: Samples on which values are compared, at most.
+_FEW = 96
+#: Shares of what the most would gain, with which less is content.
+NEARLY, HALF = 0.95, 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidate:
+    """A step that may be worth judging.
+
+    `state`: after it. `estimate`: share of the finished area that it may leave. `nested`: whether it surely reaches all that is
+    reached now.
+    """
+
+    moves: tuple[Move, ...]
+    state: State
+    estimate: float
+    nested: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan:
+    """The samples that are not reached now, and a few of them that are looked at first.
+
+    state : State
+    left : (m,) int64
+        Samples that it leaves.
+    few : int64
+        Some of them.
+    finished : Finished
+    known : Judgements
+    given : tuple of Cutter
+        All that the plan judged.
+    """
+
+    state: State
+    left: Rows
+    few: Rows
+    finished: Finished
+    known: Judgements
+    given: tuple[Cutter, ...]
+
+    @classmethod
+    def of(cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]) -> "Scan":
+        """With every so-manieth of the samples that are left."""
+        return cls(state, open_rows, spread(open_rows), finished, known, cutters)
+
+    @property
+    def sculptured(self) -> bool:
+        """Whether some of the few lie on free-form faces."""
+        ready = self.state.ready
+        return any(ready.scene.part.faces[n - 1].shape == "sculptured" for n in np.unique(ready.samples.face[self.few]).tolist())
+
+    def estimate(self, missed: Rows) -> float:
+        """The share of the area that is left, if of the few these are."""
+        whole = float(self.finished.area[self.few].sum())
+        part = float(self.finished.area[missed].sum()) / whole if whole > 0.0 else len(missed) / max(1, len(self.few))
+        # Equal areas are equal, whichever samples stand for them.
+        return round(part * self.finished.of_rows(self.left), 12)
+
+    def found(self, move: Move, state: State, missed: Rows, *, nested: bool) -> Candidate:
+        """A candidate by what it misses of the few."""
+        return Candidate((move,), state, self.estimate(missed), nested)
+
+    def least(
+        self, make: Callable[[int], State | None], most: int, shares: Sequence[float] = (NEARLY,)
+    ) -> Iterator[tuple[int, State, Rows]]:
+        """Of values 0 to `most`, each of which reaches what those before it reach, the least that gains shares of what the most
+        gains: its number, its state, and what it misses of the few."""
+        while most >= 0 and (end := make(most)) is None:
+            most -= 1
+        if most < 0 or end is None:
+            return
+        missed = self.known.glance(end, self.few)
+        gained = np.setdiff1d(self.few, missed, assume_unique=True)
+        if not len(gained):
+            return
+        seen = set()
+        for share in shares:
+            low, high, still = -1, most, gained[:0]
+            while high - low > 1:
+                middle = (low + high) // 2
+                state = make(middle)
+                not_reached = gained if state is None else self.known.glance(state, gained)
+                if len(not_reached) <= (1.0 - share) * len(gained):
+                    high, still = middle, not_reached
+                else:
+                    low = middle
+            made = make(high)
+            if high not in seen and made is not None:
+                seen.add(high)
+                yield high, made, np.union1d(missed, still)
+
+
+def spread(rows: Rows, most: int = _FEW) -> Rows:
+    """Every so-manieth of some samples."""
+    return rows[:: 1 + (len(rows) - 1) // most] if len(rows) else rows
+
+
+def under(state: State, **changes: Any) -> State:
+    """A state with other values of its conditions, in every setup."""
+    return replace(state, ready=state.ready.under(**changes))

@@ -5,7 +5,6 @@ one say exactly how far each lets the holder come down, so that few searches fin
 (Lemma H3 of `docs/stick_out_proof.md`).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,10 +17,9 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, bl
 from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
-from plan_cutters.scene.deepest import deepest_on
+from plan_cutters.scene.distances import deepest_on
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import CHUNK, in_chunks
-from plan_cutters.scene.work import METER
+from plan_cutters.scene.work import CHUNK, METER, Progress, evenly, in_chunks
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
 EXACT, BEYOND = 0.005, 0.01
@@ -30,25 +28,11 @@ _FIRST = 400
 #: Intervals of tilt narrower than this are passed over, rad: as in the search that judges.
 _NARROWEST = 1e-5
 
-Progress = Callable[[int, int], None]
-
 
 def least_stick_out(ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Progress | None = None) -> StickOut:
     """The least stick-out with which a cutter in its holder reaches every sample that it reaches now.
 
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    verdicts : Verdicts
-        What `judge` found for it.
-    progress : callable, optional
-        Called with the number of samples done, and the number of all.
-
-    Returns
-    -------
-    StickOut
-        `least` is exact to `EXACT` for the rotations of the plan's posture range.
+    `verdicts`: what `judge` found for it. `least` is exact to `EXACT` for the rotations of the plan's posture range.
     """
     rows = np.flatnonzero(verdicts.reached)
     longest = cutter.length
@@ -93,13 +77,9 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: Stic
 class _Search:
     """Searches of one cutter at any stick-out.
 
-    Attributes
-    ----------
-    found : VerdictBuffer
-        A posture of each sample, the shortest one that was looked for.
-    sure : (n,) float
-        From this stick-out on a posture that was found stays free, with what a cover piece may hold too much and `BEYOND` to
-        spare, mm: so that a judgement finds it, or another one. With that or more no search is made. Infinite: none is known.
+    `found`: a posture of each sample, the shortest one that was looked for. `sure` (n,) float: from this stick-out on a posture
+    that was found stays free, with what a cover piece may hold too much and `BEYOND` to spare, mm: so that a judgement finds it,
+    or another one. With that or more no search is made. Infinite: none is known.
     """
 
     def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:
@@ -153,8 +133,7 @@ class _Search:
     def all(self, rows: NDArray[np.int64]) -> tuple[float, int]:
         """The least stick-out that serves all of some samples, and the one that limits it, -1 for the floor."""
         least, limiting, done = self.floor, -1, 0
-        few = rows[np.unique(np.linspace(0, len(rows) - 1, min(_FIRST, len(rows))).astype(int))]
-        for company in (few, rows):
+        for company in (evenly(rows, _FIRST), rows):
             company = company[self.sure[company] > least]
             pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
             at = np.zeros(len(pieces), np.int64)
@@ -205,11 +184,13 @@ class _Search:
 
         while limiting >= 0 and after(good) > self.floor and bad - good != 1:
             tried = (good + bad) // 2 if bad else 2 * good + 1
-            not_reached = self._not_reached(rows, after(tried), limiting)
-            if not_reached is None:
-                good = tried
+            # It is looked for first at the sample that limits.
+            reached = judge(self.ready, held(self.cutter, after(tried)), np.array([limiting])).reached[0]
+            missed = self.missed(rows, after(tried)) if reached else np.array([limiting])
+            if len(missed):
+                bad, limiting = tried, int(missed[0])
             else:
-                bad, limiting = tried, not_reached
+                good = tried
         lowest = after(good)
         if limiting < 0 or lowest <= self.floor:
             return lowest, lowest, -1
@@ -218,14 +199,6 @@ class _Search:
             if posture.reached[0]:
                 self.found.take_posture(limiting, posture, 0)
         return lowest, after(bad), limiting
-
-    def _not_reached(self, rows: NDArray[np.int64], stick_out: float, first: int) -> int | None:
-        """One of some samples that a judgement does not reach with a stick-out, looked for first at one of them; None: none."""
-        cutter = held(self.cutter, stick_out)
-        if not judge(self.ready, cutter, np.array([first])).reached[0]:
-            return first
-        missed = self.missed(rows, stick_out)
-        return int(missed[0]) if len(missed) else None
 
     def one(self, row: int, not_reached: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.

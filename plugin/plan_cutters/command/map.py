@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.judging.posture_map import PostureMap
+    from plan_cutters.judging.posture_maps import PostureMap
     from plan_cutters.options import Options
 
 _SELF = "plan-cutters map"

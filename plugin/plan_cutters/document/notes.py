@@ -20,10 +20,8 @@ from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.notes import Note
 from plan_cutters.scene.faces import clamped_faces, repeated_groups
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import BUDGET, Prepared, places
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import places
-from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 

@@ -11,7 +11,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.judging.setups import AXES, within_limits
+from plan_cutters.judging.limits import AXES, within_limits
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import LinearEntry
 from plan_cutters.plan_file.setups import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry

@@ -11,17 +11,76 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.judging.axis_field import AxisField
+from plan_cutters.judging.axes import AxisField
 from plan_cutters.judging.cells import CellContacts, Field, laid
-from plan_cutters.judging.connected import connected
 from plan_cutters.judging.face_cells import FaceCells, Fixed, best
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.threads import Progress, part_of
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, part_of
+
+Indices = NDArray[np.int64]
+
+#: Times that a cell is cut into four, at most; room for that in the numbers of tiles.
+_MOST_LEVELS = 10
+#: An axis with a smaller sine to the normal is along it, and sides with a smaller difference are one.
+_ALONG, _ONE = 1e-9, 1e-9
+
+
+def connected(field: Field, cells: CellContacts, level: Indices, *, turning: bool = False) -> Indices:
+    """Number the pieces of served cells of a face, from 0.
+
+    Cells that lie in the trim altogether are joined across a common side if they have the same axis, and where that is the normal
+    in both, the same side. One that the border cuts may fall apart: it goes with one whole neighbour and joins no others.
+
+    `cells`: served, none of them within another. `level` (m,) int64: how often each was cut into four. `turning`: both sides of a
+    common side have the axes of one field. Returns (m,) int64.
+    """
+    m = len(cells)
+    tiles, which = np.array(field.index.shape) << _MOST_LEVELS, np.arange(m)
+    key = _key(level, cells.tile, tiles)
+    order = np.argsort(key, kind="stable")
+    known, pairs = key[order], [np.zeros((0, 2), np.int64)]
+    for step in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        beyond, count = cells.tile + step, np.array(field.index.shape) << level[:, None]
+        beyond = np.where(field.closed, np.remainder(beyond, count), beyond)
+        on = ((beyond >= 0) & (beyond < count)).all(axis=1)
+        for up in range(int(level.max(initial=0)) + 1):
+            # The neighbour is as large, or larger: the smaller of two finds the other one.
+            mine = np.flatnonzero(on & (level >= up))
+            wanted = _key(level[mine] - up, beyond[mine] >> up, tiles)
+            at = np.minimum(np.searchsorted(known, wanted), m - 1)
+            there = known[at] == wanted
+            pairs.append(np.column_stack([which[mine[there]], order[at[there]]]))
+    pair = np.concatenate(pairs)
+    a, b = (pair if turning else pair[_alike(cells, pair)]).T
+    both, one = cells.whole[a] & cells.whole[b], cells.whole[a] != cells.whole[b]
+    # Of a cell that is cut, the first whole neighbour.
+    cut, neighbours = np.where(cells.whole[a[one]], b[one], a[one]), np.where(cells.whole[a[one]], a[one], b[one])
+    cut, first = np.unique(cut, return_index=True)
+    tail, head = np.concatenate([a[both], cut]), np.concatenate([b[both], neighbours[first]])
+    graph = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(m, m))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+
+
+def _key(level: Indices, tile: Indices, tiles: Indices) -> Indices:
+    """One number for each tile of each level."""
+    return np.asarray((level * tiles[0] + tile[:, 0]) * tiles[1] + tile[:, 1])
+
+
+def _alike(cells: CellContacts, pair: Indices) -> NDArray[np.bool_]:
+    """Pairs whose cutters are the same at a common contact."""
+    a, b = pair.T
+    same = (cells.axis[a] == cells.axis[b]).all(axis=1)
+    across = np.linalg.norm(np.cross(cells.axis, cells.normal), axis=1)
+    along = across <= _ALONG
+    apart = np.linalg.norm(cells.side[a] - cells.side[b], axis=1)
+    return np.asarray(same & (~(along[a] & along[b]) | (apart <= _ONE)))
+
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7
@@ -33,24 +92,16 @@ _STEPS = 1000
 class Cells(Record):
     """Cells of target faces that are served, each by one tool axis.
 
-    Attributes
-    ----------
-    face : (m,) int32
-    uv, span : (m, 2) float
-        Middle and full extent in surface parameters; what of it lies in the trim counts.
-    axis : (m, 3) float
-        Unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its bottom
-        centre lies from the contact along `n - (n.a) a`.
-    side : (m, 3) float
-        Unit tilt direction where the axis is the normal all over the cell: there the bottom centre lies against it.
-    whole : (m,) bool
-        It lies in the trim altogether.
-    area : (m,) float
-        Of what lies in the trim, mm2.
-    sample : (m,) int64
-        The one that it lies about, -1 for none.
-    piece : (m,) int64
-        Connected cells with one axis have the same number (`connected`).
+    `face` (m,) int32.
+    `uv`, `span` (m, 2) float: middle and full extent in surface parameters; what of it lies in the trim counts.
+    `axis` (m, 3) float: unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its
+        bottom centre lies from the contact along `n - (n.a) a`.
+    `side` (m, 3) float: unit tilt direction where the axis is the normal all over the cell: there the bottom centre lies against
+        it.
+    `whole` (m,) bool: it lies in the trim altogether.
+    `area` (m,) float: of what lies in the trim, mm2.
+    `sample` (m,) int64: the one that it lies about, -1 for none.
+    `piece` (m,) int64: connected cells with one axis have the same number (`connected`).
     """
 
     face: Ints
@@ -68,24 +119,14 @@ class Cells(Record):
 class Between(Record):
     """The search between samples proved this part of the target area.
 
-    Attributes
-    ----------
-    served, whole : float
-        Proved area, mm2, and that of all target faces whose area is known, sampled or not, without what surely lies inside other
-        bodies of the part.
-    contacts : int
-        Contacts looked at, samples included.
-    left : int
-        Contacts whose cells are not proved, when the budget or the levels ended, and samples of faces without cells.
-    short : int
-        Those of them for which the budget was spent.
-    dropped : int
-        Those of them that were not looked at more closely since too little was to be gained.
-    unknown : tuple of int
-        Target faces whose area is not known: none of them is proved, and they are not in `share`.
-    cells : Cells
-    around : (n,) float
-        Area of all cells about each sample, served or not, mm2.
+    `served`, `whole`: proved area, mm2, and that of all target faces whose area is known, sampled or not, without what surely
+        lies inside other bodies of the part.
+    `contacts`: contacts looked at, samples included.
+    `left`: contacts whose cells are not proved, when the budget or the levels ended, and samples of faces without cells.
+    `short`: those of them for which the budget was spent.
+    `dropped`: those of them that were not looked at more closely since too little was to be gained.
+    `unknown`: target faces whose area is not known: none of them is proved, and they are not in `share`.
+    `around` (n,) float: area of all cells about each sample, served or not, mm2.
     """
 
     served: float
@@ -127,32 +168,17 @@ def between(
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-        The faces in them, `empty` ones included, are the target.
-    verdicts : Verdicts
-        Of the cutter.
-    context : Context
-    part : Part
-    orientation : Orientation
-    budget : int
-        Most contacts to add to the samples.
-    most : float
-        Most work to do, counted as `Work` does.
-    work : Work, optional
-        Where it is counted.
-    covered_samples : (n,) bool, optional
-        Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
-    axes : Fixed or mapping of int to AxisField, optional
-        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact
-        has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without
-        a field are not looked at. No other posture is searched.
-    own : (n + 1,) bool, optional
-        Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
-        there, but `share` is of all the same.
-    progress : callable, optional
-        Called with how much is done of the most that may be.
+    `samples`: the faces in them, `empty` ones included, are the target.
+    `verdicts`: of the cutter.
+    `budget`: most contacts to add to the samples.
+    `most`: most work to do, counted as `Work` does.
+    `covered_samples` (n,) bool: samples that are no surface of the finished part: cells about them are left out where all around
+        them are such, too.
+    `axes`: of a Fixed, each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each
+        contact has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces
+        without a field are not looked at. No other posture is searched.
+    `own` (n + 1,) bool: samples whose cells are looked at, and behind them whether those about no sample are; the others are as
+        if they were not there, but `share` is of all the same.
     """
     whole, unknown = _areas(samples, part)
     fixed, turning = (axes, None) if axes is None or isinstance(axes, Fixed) else (None, axes)
@@ -250,14 +276,9 @@ def in_each(
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
-    Parameters
-    ----------
-    samples, verdicts, part, orientation, budget, most, covered_samples, progress
-        As for `between`; the verdicts are those over all setups.
-    which : (n,) int32
-        The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
-    contexts : sequence of Context
-        Of the cutter in each setup, the first one first.
+    `samples`, `verdicts`, `part`, `orientation`, `budget`, `most`, `covered_samples`, `progress`: as for `between`; the verdicts
+    are those over all setups. `which` (n,) int32: the setup that serves each sample, -1 for none: its cells go with the first
+    setup, as those about no sample do. `contexts`: of the cutter in each setup, the first one first.
     """
     place = np.append(np.maximum(which, 0), 0)
     cells = []
@@ -311,7 +332,7 @@ def _cells(faces: Sequence[FaceCells]) -> Cells:
     for face_cells in faces:
         if not face_cells.found:
             continue
-        each = CellContacts(*(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__))
+        each = CellContacts.joined(*face_cells.found)
         level = np.repeat(np.array(face_cells.levels, np.int64), [len(c) for c in face_cells.found])
         piece = last + connected(face_cells.field, each, level, turning=face_cells.turning is not None)
         last += len(each)

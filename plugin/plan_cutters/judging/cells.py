@@ -1,4 +1,5 @@
-"""Cells of a face: the tiles about its grid's nodes as far as they lie in the trim, and a contact in each of them.
+"""Cells of a face: the tiles about its grid's nodes as far as they lie in the trim, a contact in each of them, and how far they
+reach.
 
 A tile whose own node lies outside the trim has a contact of its own, in what the trim leaves of it. Every point of the
 face lies in a cell: their areas are counted from the trim, not from the nodes.
@@ -15,8 +16,71 @@ from cad_io.face.curvature import density, evaluate
 from cad_io.face.trim import Clipped, Trim, clipped
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts, not_reached
-from plan_cutters.judging.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 from plan_cutters.scene.conditions import Conditions
+
+#: The patch about a node is at least half the way to its diagonal neighbours; some more, for cells that are bent.
+WIDER = 1.1
+#: In a cell, the curvature tensor may differ from its node's this many times as much as half way to the next nodes.
+WILDER = 2.0
+
+
+def tensors(normal: Floats, direction_max: Floats, curvature: Floats) -> Floats:
+    """Second fundamental form (n, 3, 3) in part coordinates, 1/mm, concave positive."""
+    across = np.cross(normal, direction_max)
+    high, low = curvature[:, 0, None, None], curvature[:, 1, None, None]
+    e1, e2 = direction_max[:, :, None], across[:, :, None]
+    return np.asarray(high * e1 * e1.transpose(0, 2, 1) + low * e2 * e2.transpose(0, 2, 1))
+
+
+def steepest(tensor: Floats, variation: Floats) -> tuple[Floats, Floats]:
+    """Most that a principal curvature (n,) and the difference of two (n,) may be where tensors differ by a wobble, 1/mm."""
+    trace = np.einsum("nii->n", tensor)
+    spread = np.sqrt(np.maximum(0.0, 2.0 * np.einsum("nij,nij->n", tensor, tensor) - trace * trace))
+    return 0.5 * (np.abs(trace) + spread) + variation, spread + 2.0 * variation
+
+
+def from_neighbours(point: Floats, tensor: Floats, grid: FaceGrid, index: NDArray[np.integer]) -> tuple[Floats, Floats]:
+    """How far curvature may differ in each sample's cell, 1/mm, and how far the cell reaches, mm.
+
+    `point`, `tensor` (n, 3), (n, 3, 3) float: the samples of the face. `index` (nu, nv) int: row of the sample at each node,
+    negative where there is none. Returns `wobble, radius` (n,) float: nan where no neighbour tells them.
+    """
+    on = index >= 0
+    at = np.where(on[..., None], point[index], np.nan)
+    bend = tensor[index].reshape(*on.shape, 9)
+    differs_by = np.zeros(on.shape)
+    for axis, closed in ((0, grid.closed_u), (1, grid.closed_v)):
+        differs = np.linalg.norm(_next(bend, axis, closed) - bend, axis=2)
+        differs[~(on & (_next(on.astype(float), axis, closed) == 1))] = 0.0
+        differs_by += np.maximum(differs, np.roll(differs, 1, axis))
+    variation, radius = np.full(len(point), np.nan), np.full(len(point), np.nan)
+    variation[index[on]], radius[index[on]] = 0.5 * WILDER * differs_by[on], _radius(at, grid)[on]
+    return variation, radius
+
+
+def _next(field: Floats, axis: int, closed: bool) -> Floats:
+    """Each node's next one along an axis; nan past the end of a grid that is not closed."""
+    moved = np.roll(field, -1, axis)
+    if not closed:
+        moved[(-1,) if axis == 0 else (slice(None), -1)] = np.nan
+    return moved
+
+
+def _radius(point: Floats, grid: FaceGrid) -> Floats:
+    """Half the largest distance to the diagonal neighbours; beyond an end of the face, as on this side of it."""
+    next_u, next_v = _next(point, 0, grid.closed_u), _next(point, 1, grid.closed_v)
+    sides = []
+    for axis, following in ((0, next_u), (1, next_v)):
+        gap = np.linalg.norm(following - point, axis=2)
+        sides.append(np.fmax(gap, np.roll(gap, 1, axis)))
+    straight = np.hypot(*sides)
+    both = _next(next_u, 1, grid.closed_v)
+    down = np.linalg.norm(both - point, axis=2)
+    up = np.linalg.norm(next_u - next_v, axis=2)
+    corners = [down, np.roll(down, (1, 1), (0, 1)), np.roll(up, 1, 0), np.roll(up, 1, 1)]
+    longest = np.fmax(straight, np.fmax.reduce(corners))
+    return np.asarray(0.5 * WIDER * np.where(np.isfinite(straight), longest, np.nan))
+
 
 Indices = NDArray[np.int64]
 
@@ -60,8 +124,8 @@ class CellContacts:
         return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
 
     @staticmethod
-    def joined(first: "CellContacts", second: "CellContacts") -> "CellContacts":
-        return CellContacts(*(np.concatenate([getattr(first, n), getattr(second, n)]) for n in CellContacts.__slots__))
+    def joined(*parts: "CellContacts") -> "CellContacts":
+        return CellContacts(*(np.concatenate([getattr(each, n) for each in parts]) for n in CellContacts.__slots__))
 
     def __len__(self) -> int:
         return len(self.point)
@@ -71,17 +135,12 @@ class CellContacts:
 class Field:
     """A face, its grid's tiles and what is known of the surface at their nodes.
 
-    Attributes
-    ----------
-    part, orientation, number, trim
-        The face.
-    lines : list of (u, v)
-        Lines between tiles, level by level, each halving the one before.
-    index : (nu, nv) int32
-        Each tile's node, -1: nothing of it lies in the trim, or its node was not judged.
-    closed : (2,) bool
-    point, normal, tensor, wobble, radius : (k, ...) float
-        Of the nodes. How far the curvature may differ in the cell, 1/mm, and how far it reaches, mm; nan: not known.
+    `part`, `orientation`, `number`, `trim`: the face.
+    `lines` (list of (u, v)): lines between tiles, level by level, each halving the one before.
+    `index` (nu, nv) int32: each tile's node, -1: nothing of it lies in the trim, or its node was not judged.
+    `closed` (2,) bool.
+    `point`, `normal`, `tensor`, `wobble`, `radius` (k, ...) float: of the nodes. How far the curvature may differ in the cell,
+        1/mm, and how far it reaches, mm; nan: not known.
     """
 
     part: Part
@@ -131,11 +190,7 @@ def laid(
 ) -> tuple[Field, CellContacts, CellContacts]:
     """The cells of a face.
 
-    Returns
-    -------
-    field : Field
-    contacts, strips : CellContacts
-        At the samples, and of tiles whose node lies outside the trim.
+    Returns the field, the contacts at the samples, and those of tiles whose node lies outside the trim.
     """
     trim = part.trim(grid.face)
     assert trim is not None, "a face without a border has no samples"
@@ -165,7 +220,14 @@ def laid(
     area = field.weight(clip)
     area *= part.faces[grid.face - 1].area / max(area.sum(), 1e-300)
     node = index[tile[:, 0], tile[:, 1]]
-    _bare_nodes(field, node, clip)
+    # What is known of nodes without a neighbour along some line comes from the boxes of their cells.
+    lone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
+    if len(lone):
+        own = node[lone]
+        reaches, variation = field.around(clip.low[lone], clip.high[lone], field.point[own], field.tensor[own])
+        field.radius[own] = 0.0
+        np.maximum.at(field.radius, own, reaches)
+        np.maximum.at(field.variation, own, variation)
     judged = (node >= 0) & (samples.unjudged[rows[node]] < 0)
     mine = rows[node[judged]]
     middle, span = _rectangles((u, v), tile)
@@ -274,17 +336,6 @@ def _neighbours(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdi
         new = (neighbours < 0) & (node >= 0) & known[np.maximum(node, 0)]
         neighbours[new] = rows[node[new]]
     return neighbours
-
-
-def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
-    """Fill in what is known of nodes without a neighbour along some line, from the boxes of their cells."""
-    alone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
-    if len(alone):
-        rows = node[alone]
-        reach, variation = field.around(clip.low[alone], clip.high[alone], field.point[rows], field.tensor[rows])
-        field.radius[rows] = 0.0
-        np.maximum.at(field.radius, rows, reach)
-        np.maximum.at(field.variation, rows, variation)
 
 
 def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) -> None:

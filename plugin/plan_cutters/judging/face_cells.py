@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.judging.axis_field import AxisField, angle_between, held_within
+from plan_cutters.judging.axes import AxisField, angle_between, held_within, roomiest
 from plan_cutters.judging.cells import CellContacts, Field, quartered, tensors
-from plan_cutters.judging.margin import roomiest
 from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, search_postures
-from plan_cutters.scene.threads import CHUNK, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import CHUNK, Work, in_chunks
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.area.cover import Sweeping
@@ -50,12 +48,8 @@ _UNTOLD = 2
 class Fixed:
     """Tool axes that stay as they are: no other posture is tried.
 
-    Attributes
-    ----------
-    axis : (k, 3) float
-        Unit.
-    serves : (n, k) bool
-        At which samples each of them is tried, where the sample's own does not serve its cell.
+    `axis` (k, 3) float: unit. `serves` (n, k) bool: at which samples each of them is tried, where the sample's own does not serve
+    its cell.
     """
 
     axis: Floats
@@ -66,34 +60,19 @@ class Fixed:
 class FaceCells:
     """A face and its cells.
 
-    Attributes
-    ----------
-    field : Field
-    context : Context
-    work : Work
-        What was looked at, for this face and others.
-    fixed : Fixed, optional
-        Where postures are not searched.
-    turning : AxisField, optional
-        Each contact has its own axis: no other posture is tried.
-    reported : callable
-        Called as often as contacts were looked at.
-    found : list of CellContacts
-        Served.
-    levels : list of int
-        How often those were cut into four.
-    pools : list of (CellContacts, outlook)
-        Open, by how often they were cut into four.
-    unseen : int
-        Contacts that were not looked at, for the budget was spent.
-    short, dropped : int
-        Those, and open cells that would be cut if the budget were not spent; and those that are not for the gain is too small.
-    seen, spent : int
-        Contacts looked at, and the work that they took.
-    about : (k, 16) float
-        What kernels take of the nodes.
-    sweeping : Sweeping
-        What they take of the cutter.
+    `work`: what was looked at, for this face and others.
+    `fixed`: where postures are not searched.
+    `turning`: each contact has its own axis: no other posture is tried.
+    `reported`: called as often as contacts were looked at.
+    `found`: served.
+    `levels`: how often those were cut into four.
+    `pools` (list of (CellContacts, outlook)): open, by how often they were cut into four.
+    `unseen`: contacts that were not looked at, for the budget was spent.
+    `short`, `dropped`: those, and open cells that would be cut if the budget were not spent; and those that are not for the gain
+        is too small.
+    `seen`, `spent`: contacts looked at, and the work that they took.
+    `about` (k, 16) float: what kernels take of the nodes.
+    `sweeping`: what they take of the cutter.
     """
 
     field: Field

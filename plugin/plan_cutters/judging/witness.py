@@ -18,10 +18,9 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import INSIDE, REASONS, TOLERANCE, Verdicts, Witness, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, rotations_of, tool_of, verdict_arrays_of
-from plan_cutters.scene.deepest import deepest, deepest_of
+from plan_cutters.scene.distances import deepest, deepest_of
 from plan_cutters.scene.inside_material import cover
-from plan_cutters.scene.threads import in_chunks
-from plan_cutters.scene.work import METER
+from plan_cutters.scene.work import METER, in_chunks
 
 #: Witnesses kept for each group, samples tried in each to find them, and in all.
 _MOST, _TRIED, _TRIED_IN_ALL = 2, 6, 60

@@ -1,7 +1,8 @@
-"""Plans of a part that is a pattern, or nearly one: one copy is planned, and repeated.
+"""Plans of a part that is a pattern, or nearly one: one copy is planned, and its orientations are repeated about the axis.
 
-Samples of one sector alone are compared, each counted as often as there are copies. The plan that comes of it is tested at all
-samples, like any other (`docs/operations_proof.md`, lemmas P3 and P4).
+Orientations are chosen by what samples of one sector cost with the best image, each counted as often as there are copies. The
+plan that comes of it has ordinary operations and is tested at all samples, like any other (`docs/operations_proof.md`, lemmas P3,
+P4).
 """
 
 import math
@@ -12,26 +13,144 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.part.motion import Motion
 from cad_io.part.equal_faces import Motion
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.figures import count, duration
 from plan_cutters.domain.operations import Columns
-from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.canonical import canonical
+from plan_cutters.operations.choices import Worth, by_size, largest_first, worths
 from plan_cutters.operations.entries import Timed
-from plan_cutters.operations.fastest import against_bound, bounded, cheap
+from plan_cutters.operations.fastest import Costs, Problem, against_bound, bounded, cheap
+from plan_cutters.operations.fewest import spread
+from plan_cutters.operations.motion import few_enough, fewer, recommended
 from plan_cutters.operations.plans import plan_with, worth_their_turn
-from plan_cutters.operations.repeated import Copied, repeated, symmetric
-from plan_cutters.operations.rest_areas import Worth, by_size, largest_first, worths
-from plan_cutters.operations.symmetry import Symmetry
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.thinned import thinned
+from plan_cutters.operations.symmetry import Symmetry, symmetry_of
+from plan_cutters.operations.task import SOME, Task, costs_of, paces, shared_area, thinned
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
-from plan_cutters.scene.threads import Progress, part_of
+from plan_cutters.scene.work import Progress, evenly, part_of
 
 Rows = NDArray[np.int64]
+#: Columns and images that are compared; samples at first, of one copy at least so many, and those that join them; rounds until a
+#: choice serves all.
+_MOST_COLUMNS, _FIRST, _LEAST, _MORE, _ROUNDS = 4000, 400, 80, 60, 6
+#: What a choice may leave, as a share of the area.
+_LEAVES = 0.001
+
+
+def symmetric(task: Task) -> Task | None:
+    """The task with a symmetry under which its orientations may be repeated; None where there is none, or it is not to be used.
+
+    Where axes lock at whole multiples of an angle, and where a number of operations was requested, nothing is repeated.
+    """
+    options = task.ready.options
+    if not options.patterns or options.index_step is not None or options.most_operations is not None or not len(task.rows):
+        return None
+    symmetry = symmetry_of(task.ready.samples, task.ready.patterns, task.orientations, task.ready.somewhere)
+    return None if symmetry is None else replace(task, symmetry=symmetry)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Copied:
+    """One copy: columns that were compared for it, and those that were chosen.
+
+    `base`: all that were compared, each with its images.
+    `chosen`: of these; `Task.images` are what is set.
+    `problem`: what samples of one copy that are served cost, counted as often as there are copies.
+    `apart`: the same of all copies, each image a candidate of its own: what would be chosen if nothing were repeated.
+    `area`: that these stand for, mm2.
+    `not_served`: share of the area that no compared column serves.
+    """
+
+    base: Columns
+    chosen: Columns
+    problem: Problem
+    apart: Problem
+    area: float
+    not_served: float
+
+
+def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns], tell: Progress) -> Copied | None:
+    """Choose orientations that take little time with their images, each counted as often as it is set.
+
+    `task`: with its symmetry; of an exact pattern the samples may be those of one copy. `candidates`: those in the first sector
+    are compared. `stored`: gives columns for samples that no candidate serves: their own postures. None where nothing serves.
+    """
+    symmetry = task.symmetry
+    assert symmetry is not None
+    samples, wanted = task.ready.samples, task.rows
+    area = np.nan_to_num(samples.area)
+    base = candidates.of(evenly(symmetry.sector(candidates.axis), _MOST_COLUMNS // symmetry.order))
+    # One copy tells what all of them cost; where the part is no exact pattern, what is left elsewhere joins them.
+    copy = wanted[symmetry.sector(samples.point[wanted] - symmetry.place)]
+    copy = copy if len(copy) else wanted
+    tested = wanted[:: max(1, len(wanted) // SOME)]
+    rows, every = copy[:: max(1, len(copy) // max(_LEAST, _FIRST // symmetry.order))], symmetry.images(base)
+    cost = _costs(task, rows, every)
+    for turn in range(_ROUNDS):
+        part = part_of(tell, turn, _ROUNDS)
+        own = _of_images(cost, task.times)
+        bare = np.flatnonzero(~np.isfinite(own).any(axis=1))
+        if len(bare):
+            new = stored(rows[spread(bare, samples.point[rows], _MORE)])
+            new = new.of(np.flatnonzero(~np.isin(new.key, base.key)))
+            base, every = base.and_(new), every.and_(symmetry.images(new))
+            cost = np.concatenate([cost, _costs(task, rows, symmetry.images(new))], axis=1)
+            own = _of_images(cost, task.times)
+        if not len(base):
+            return None
+        open_ = np.isfinite(own).any(axis=1)
+        share = symmetry.order * shared_area(samples, np.union1d(copy, rows), rows)
+        scale = (share / np.maximum(area[rows], 1e-300))[open_, None]
+        problem = _problem(task, symmetry, base, own[open_] * scale)
+        chosen = base.of(cheap(problem))
+        part(1, 2)
+        served = task.probes.kept(tested, symmetry.images(chosen)).any(axis=1)
+        left = tested[~served]
+        more = np.setdiff1d(left, rows)
+        if area[left].sum() <= _LEAVES * area[tested].sum() or turn == _ROUNDS - 1 or not len(more):
+            break
+        more = spread(more, samples.point, _MORE)
+        rows = np.concatenate([rows, more])
+        cost = np.concatenate([cost, _costs(task, more, every)])
+    if not len(chosen):
+        return None
+    apart = _apart(task, symmetry.images(base), problem, cost[open_] * (scale / task.times))
+    return Copied(base, chosen, problem, apart, float(share[open_].sum()), float(share[~open_].sum() / max(1e-300, share.sum())))
+
+
+def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
+    """What samples cost with the best of the images of each column."""
+    return np.asarray(cost.reshape(len(cost), cost.shape[1] // times, times).min(axis=2))
+
+
+def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
+    """Seconds, or mm of path without a feed, of samples (r,) with columns (r, k): infinite where one does not serve it."""
+    samples = task.ready.samples
+    table = task.probes.table(rows, columns)
+    pace = paces(columns, rows, samples, task.cutters, task.paths, table)
+    pace = np.fmax(pace, task.walls.paces(columns, rows, table))
+    return costs_of(columns, pace, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
+
+
+def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float64]) -> Problem:
+    """What samples (r,) of one copy and their images cost with columns and their images (r, k), each by itself.
+
+    A turn that carries a sample onto its image carries what serves it: no tool is put down for that (lemma P4).
+    """
+    own = cost.reshape(len(cost), -1, task.times)
+    turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(task.times)]
+    each = Costs(problem.costs.operation / task.times, problem.costs.cutter, problem.costs.setup)
+    return Problem(np.concatenate(turned), images.cutter, images.setup, each, task.indexing.turning(images))
+
+
+def _problem(task: Task, symmetry: Symmetry, base: Columns, cost: NDArray[np.float64]) -> Problem:
+    """What samples cost with orientations and their images, each of which is set `order` times."""
+    options, indexing = task.ready.options, task.indexing
+    step = indexing.constant if indexing.rate is None else indexing.together(symmetry.images(base.of(np.zeros(1, np.int64))))
+    turns = symmetry.order * step if indexing.rate is None else step
+    return Problem(cost, base.cutter, base.setup, Costs(turns, options.change_time, options.setup_time))
+
+
 #: A plan of repeated steps may take so much more time, as a share: equal copies are cut alike, and are set up once.
 _DEARER = 0.25
 #: What a choice is reckoned to take is not quite what its plan does: by about so much, as a share.
@@ -51,16 +170,10 @@ PlansTimed = tuple[list[OperationPlan], Timed | None, tuple[Worth, ...], tuple[s
 class Repeated:
     """Orientations that may be repeated.
 
-    Attributes
-    ----------
-    task, one : Task
-        With their symmetry: of all samples, and of some of those of one copy, by which choices are compared.
-    choices : tuple of (Columns, float)
-        Fewer and fewer columns, each with its images, and about the seconds that they take.
-    copied : Copied
-        What they were chosen from.
-    exact : bool
-        Whether what is known of one copy holds for all: the part is a pattern, and nothing about it breaks that.
+    `task`, `one`: with their symmetry: of all samples, and of some of those of one copy, by which choices are compared. `choices`
+    (tuple of (Columns, float)): fewer and fewer columns, each with its images, and about the seconds that they take. `copied`:
+    what they were chosen from. `exact`: whether what is known of one copy holds for all: the part is a pattern, and nothing about
+    it breaks that.
     """
 
     task: Task
@@ -97,15 +210,8 @@ def repeated_orientations(
 ) -> Repeated | None:
     """Choose orientations for one copy of a part; None where it is no pattern, or one copy is not served.
 
-    Parameters
-    ----------
-    task : Task
-    candidates : callable
-        Gives the columns that are compared.
-    stored : callable
-        Gives columns for samples that none of these serves: their own postures.
-    tell : callable
-        Told the progress.
+    `candidates`: gives the columns that are compared. `stored`: gives columns for samples that none of these serves: their own
+    postures.
     """
     own = symmetric(task)
     if own is None or own.symmetry is None:
@@ -113,7 +219,10 @@ def repeated_orientations(
     symmetry, samples = own.symmetry, task.ready.samples
     sector = task.rows[symmetry.sector(samples.point[task.rows] - symmetry.place)]
     one = replace(own, rows=sector, copies=symmetry.order) if len(sector) else own
-    exact = symmetry.exact and _unbroken(task, symmetry)
+    ready, turn = task.ready, Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
+    # Machine, fixtures, and all else that verdicts depend on have to be the same for each copy, and no face clamped.
+    exact = symmetry.exact and not any(ready.there(s).clamped.any() for s in range(len(ready.setups)))
+    exact = exact and all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
     # What is no exact pattern is looked at everywhere.
     copied = repeated(one if exact else own, candidates(task), stored, part_of(tell, 0, 2))
     if copied is None:
@@ -122,15 +231,6 @@ def repeated_orientations(
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
     return Repeated(own, one, tuple(fewer(one, columns)), copied, exact)
-
-
-def _unbroken(task: Task, symmetry: Symmetry) -> bool:
-    """Whether machine, fixtures, and all else that verdicts depend on are the same for each copy, and no face is clamped."""
-    ready = task.ready
-    if any(ready.there(s).clamped.any() for s in range(len(ready.setups))):
-        return False
-    turn = Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
-    return all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
 
 
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
@@ -142,7 +242,9 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     if not offer.exact:
         return None
     copied, alone = offer.copied, cheap(offer.copied.apart)
-    single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, _single(task, offer, alone))))
+    images = offer.task.images(copied.base).of(alone)
+    each_once = recommended(task, worth_their_turn(task, images.of(images.first)))
+    single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, each_once)))
     # The first choice leaves least to simultaneous motion.
     again = next((offer.plan(columns) for columns, _ in offer.recommended), None)
     plan = single if again is None or _better(task, single, again) else again
@@ -154,7 +256,8 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
         compared.append(plan_with(offer.task, "fastest", columns))
         plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
     bound = bounded(copied.apart, alone).bound
-    timed = against_bound(plan.total, bound, copied.at_best, *copied.apart.cost.shape), copied.area
+    at_best = float(copied.problem.cost.min(axis=1, initial=np.inf).sum())
+    timed = against_bound(plan.total, bound, at_best, *copied.apart.cost.shape), copied.area
     words = [
         "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
         "well, by all samples."
@@ -162,13 +265,6 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     if plan is not single and known(single) < known(plan) and np.isfinite(single.total):
         words.append(_without_repeats(single))
     return [plan], timed, worths(task, compared), tuple(words)
-
-
-def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
-    """Orientations of which each is set once, no more than are recommended."""
-    images = offer.task.images(offer.copied.base).of(alone)
-    single = worth_their_turn(task, images.of(images.first))
-    return recommended(task, single)
 
 
 def _better(task: Task, plan: OperationPlan, repeated_plan: OperationPlan) -> bool:

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.operations.candidates import Orientations, face_directions
+from plan_cutters.operations.orientations import Orientations, face_directions
 from plan_cutters.operations.plans import clearance_of, costs_with
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation
-from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.work import Progress
 
 Served = NDArray[np.bool_]
 Rows = NDArray[np.int64]
@@ -35,16 +35,8 @@ _FIRST, _COMPARED = 48, 3
 class _Choice:
     """Columns with what each sample of a task costs with each: made by `_choice`.
 
-    Attributes
-    ----------
-    cost : (r, k) float
-        Infinite where a column does not serve.
-    best : (r,) int
-        The cheapest column of each sample.
-    served : (r,) bool
-        Samples that some column serves.
-    cutting : float
-        The cost of all samples that are served, each with its best column.
+    `cost` (r, k) float: infinite where a column does not serve. `best` (r,) int: the cheapest column of each sample. `served`
+    (r,) bool: samples that some column serves. `cutting`: the cost of all samples that are served, each with its best column.
     """
 
     task: Task
@@ -103,17 +95,7 @@ def canonical(task: Task, columns: Columns, *, progress: Progress | None = None)
     0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken.
     What lies within the accuracy of the axes is one orientation then, and is written as short as serves.
 
-    Parameters
-    ----------
-    task : Task
-    columns : Columns
-    progress : callable, optional
-        Called with how much is done, of how much.
-
-    Returns
-    -------
-    Columns
-        At most as many, in their order: the same where rotary axes lock at whole multiples of an angle alone.
+    Returns at most as many, in their order: the same where rotary axes lock at whole multiples of an angle alone.
     """
     if not len(columns) or task.ready.options.index_step is not None:
         return columns

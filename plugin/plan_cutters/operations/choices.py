@@ -1,23 +1,139 @@
-"""Choices of columns: made by some samples, tested at more of them, and made again by what they leave."""
+"""Choices of columns: made by some samples, tested at more of them, made again by what they leave, and compared with others: by a
+shop's habit, without each cutter, with other cutters at the same orientations, with one orientation more.
+"""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.operations import Columns
-from plan_cutters.operations.candidates import STEP
-from plan_cutters.operations.fastest import cheap, exchanged, promising
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Columns, columns_of
+from plan_cutters.domain.preference import by_radius
+from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
-from plan_cutters.operations.plans import MINOR_AREA
-from plan_cutters.operations.problem import Costs, Problem
-from plan_cutters.operations.rest_areas import by_size, largest_first
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import shared_area
-from plan_cutters.scene.threads import Progress
+from plan_cutters.operations.orientations import STEP
+from plan_cutters.operations.plans import MINOR_AREA, costs_with, plan_with, worth_their_turn
+from plan_cutters.operations.task import Task, at_some, shared_area
+from plan_cutters.outcome import OperationPlan
+from plan_cutters.plan_file.operations import OneMoreEntry
+from plan_cutters.scene.work import Progress
 
 Rows = NDArray[np.int64]
+
+
+class Worth(NamedTuple):
+    """A cutter is worth this beside the others that were compared.
+
+    `only` (n,) int64: samples that none of the others reaches. `saves`: seconds by which the fastest plan found with it is below
+    the fastest one without it, before its own change; None where no plan without it was found. `change`: seconds that its change
+    costs: 0 where it is the only one then.
+    """
+
+    cutter: Cutter
+    only: Rows
+    saves: float | None
+    change: float
+
+
+def by_size(task: Task) -> list[int]:
+    """Numbers of the cutters, the largest first."""
+    return [task.cutters.index(cutter) for cutter in by_radius(task.cutters)]
+
+
+def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
+    """Choose by the habit of a shop: each cutter, the largest first, takes all that it serves of what is left, but for crumbs.
+
+    Crumbs are what a cutter cuts in one orientation in less time than that takes to turn to, if a smaller cutter serves it:
+    nobody turns a large cutter there.
+
+    `order`: numbers of the cutters, the largest first. Returns (k,) int64: candidates, ascending, that serve all samples.
+    """
+    open_columns, picked = np.ones(len(problem.cost), bool), list[int]()
+    for place, cutter in enumerate(order):
+        own = np.flatnonzero(problem.cutter == cutter)
+        later = np.flatnonzero(np.isin(problem.cutter, order[place + 1 :]))
+        mine = open_columns & np.isfinite(problem.cost[:, own]).any(axis=1)
+        if not mine.any():
+            continue
+        part = problem.of(own, mine)
+        again = np.asarray(np.isfinite(problem.cost[np.ix_(mine, later)]).any(axis=1))
+        chosen = own[_without_minor_areas(part, cheap(part), again)]
+        open_columns &= ~np.isfinite(problem.cost[:, chosen]).any(axis=1)
+        picked += chosen.tolist()
+    return np.sort(np.array(picked, np.int64))
+
+
+def _without_minor_areas(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) -> Rows:
+    """A choice without candidates that cut less than they cost: `again` (n,) are samples that something else serves later."""
+    while len(chosen):
+        cost = problem.cost[:, chosen]
+        serves = np.isfinite(cost)
+        there = serves.any(axis=1)
+        cuts = np.bincount(cost.argmin(axis=1)[there], cost[there].min(axis=1), len(chosen))
+        needed = serves[(serves.sum(axis=1) == 1) & ~again].any(axis=0)
+        minor = np.flatnonzero((cuts < problem.costs.operation) & ~needed)
+        if not len(minor):
+            break
+        chosen = np.delete(chosen, minor[cuts[minor].argmin()])
+    return chosen
+
+
+def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:
+    """Compare the fastest of some plans with each cutter and without it; none for a single cutter, or where no time is known."""
+    plans = [plan for plan in plans if np.isfinite(plan.total)]
+    if len(task.cutters) < 2 or not plans:
+        return ()
+    reached = [np.logical_or.reduce([its[cutter].reached for its in task.everywhere])[task.rows] for cutter in task.cutters]
+    result = []
+    for c in by_size(task):
+        others = np.logical_or.reduce([mine for k, mine in enumerate(reached) if k != c])
+        saves, change = _saves(plans, task.cutters[c], task.ready.options.change_time)
+        result.append(Worth(task.cutters[c], task.rows[reached[c] & ~others], saves, change))
+    return tuple(result)
+
+
+def _saves(plans: Sequence[OperationPlan], cutter: Cutter, change: float) -> tuple[float | None, float]:
+    """Seconds that a cutter saves before its change, and what that costs."""
+    used = [(plan.total, {each.cutter for each in plan.operations}) for plan in plans]
+    with_it = [(seconds, len(cutters)) for seconds, cutters in used if cutter in cutters]
+    without = [seconds for seconds, cutters in used if cutter not in cutters]
+    if not with_it:
+        return 0.0, change
+    best, cutters = min(with_it)
+    # The first cutter is there anyway.
+    change = change if cutters > 1 else 0.0
+    return (max(0.0, min(without) - best + change) if without else None), change
+
+
+def with_and_without(problem: Problem, chosen: Rows) -> Iterator[Rows]:
+    """Choices to compare a choice with: for each cutter of it the best of the others, for each other one the best with it."""
+    for cutter in np.unique(problem.cutter).tolist() if len(chosen) else []:
+        others = np.flatnonzero(problem.cutter != cutter)
+        if not (problem.cutter[chosen] == cutter).any():
+            yield _with(problem, chosen, cutter)
+        elif len(others) and np.isfinite(problem.cost[:, others]).any(axis=1).all():
+            yield others[cheap(problem.of(others), np.flatnonzero(np.isin(others, chosen)))]
+
+
+def _with(problem: Problem, chosen: Rows, cutter: int) -> Rows:
+    """A choice with the orientations of a cutter that save most, though its change may cost more."""
+    own = np.flatnonzero(problem.cutter == cutter)
+    while len(own):
+        now = problem.cost[:, chosen].min(axis=1)
+        gain = np.maximum(0.0, now[:, None] - problem.cost[:, own]).sum(axis=0) - problem.costs.operation
+        if gain.max() <= 0.0:
+            break
+        chosen = np.append(chosen, own[int(gain.argmax())])
+    for each in chosen[problem.cutter[chosen] != cutter].tolist():
+        rest = chosen[chosen != each]
+        if problem.total(rest) < problem.total(chosen):
+            chosen = rest
+    return chosen
+
+
 #: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Samples that a choice leaves that are taken into the next one, at most.
@@ -32,20 +148,12 @@ _TRIES = 4
 class Choice:
     """Columns that were chosen among others.
 
-    Attributes
-    ----------
-    columns : Columns
-        All that were compared.
-    problem : Problem
-        What samples cost with them.
-    rows : (n,) int64
-        These samples.
-    area : float
-        That they stand for, mm2.
-    chosen, known : (k,) int64
-        The choice, and a choice that was known before: of the columns.
-    whole : bool
-        Whether the choice serves all samples that it was tested at.
+    `columns`: all that were compared.
+    `problem`: what samples cost with them.
+    `rows` (n,) int64: these samples.
+    `area`: that they stand for, mm2.
+    `chosen`, `known` (k,) int64: the choice, and a choice that was known before: of the columns.
+    `whole`: whether the choice serves all samples that it was tested at.
     """
 
     columns: Columns
@@ -112,14 +220,6 @@ def largest_first_choice(task: Task, search: Search, fewest: Columns, *, minor: 
     return tested.columns.of(tested.safe)
 
 
-def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
-    """As `_problem`, with samples all over the part."""
-    wanted = np.setdiff1d(task.rows, search.alone)
-    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)])
-    return _problem(task, search, fewest)
-
-
 def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
     """The candidates that are known whole, what the samples of a search cost with each, and the area that these stand for.
 
@@ -142,8 +242,12 @@ def _tested(
 
     What they leave joins these samples, and it is chosen again; with `minor`, they may leave a minor part of the area.
     """
+    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
     while True:
-        columns, problem, area = _timed(task, search, fewest)
+        # Samples all over the part.
+        wanted = np.setdiff1d(task.rows, search.alone)
+        search.require(wanted[:: max(1, len(wanted) // most)])
+        columns, problem, area = _problem(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
         rest = _remaining(task, columns.of(chosen), search, minor=minor)
@@ -162,3 +266,88 @@ def _remaining(task: Task, columns: Columns, search: Search, *, minor: bool) -> 
 def _few(rows: Rows) -> Rows:
     """Some of the samples, evenly taken."""
     return rows[:: max(1, len(rows) // _MORE)]
+
+
+def accompanied(task: Task, columns: Columns) -> Columns:
+    """Columns with those of other cutters at the same orientations that save more time than they take.
+
+    What is not worth its turn any more is left out. Without feeds, or with a most number of operations, all stays.
+    """
+    options = task.ready.options
+    if task.paths.feed is None or options.most_operations is not None:
+        return columns
+    every = columns.and_(_others(task, columns))
+    _, cost = costs_with(task, every)
+    chosen, open_ = list(range(len(columns))), list(range(len(columns), len(every)))
+    while open_:
+        own = cost[:, chosen].min(axis=1, initial=np.inf)
+        served = np.isfinite(own)
+        saved = np.maximum(0.0, own[served, None] - cost[np.ix_(served, open_)]).sum(axis=0)
+        spent = np.array([_turn(task, every, chosen, k) for k in open_])
+        best = int((saved - spent).argmax())
+        if saved[best] <= spent[best]:
+            break
+        chosen.append(open_.pop(best))
+    return columns if len(chosen) == len(columns) else worth_their_turn(task, every.of(np.array(chosen, np.int64)))
+
+
+def _others(task: Task, columns: Columns) -> Columns:
+    """The columns of all cutters at orientations of a choice that are not among it."""
+    others, there = columns.of(np.zeros(0, np.int64)), {*columns.key.tolist()}
+    for k in range(len(columns)):
+        for c in range(len(task.cutters)):
+            one = columns_of(columns.axis[[k]], columns.angle[[k]], c, int(columns.setup[k]))
+            if one.key[0] not in there:
+                there.add(one.key[0])
+                others = others.and_(one)
+    return others
+
+
+def _turn(task: Task, every: Columns, chosen: list[int], k: int) -> float:
+    """Seconds that a further column of some takes besides cutting: turning the part, and changing to a cutter that is new."""
+    before, after = (every.of(np.array(each, np.int64)) for each in (chosen, [*chosen, k]))
+    new = every.cutter[k] not in every.cutter[chosen]
+    turn = task.indexing.together(after) - task.indexing.together(before)
+    return turn + (task.ready.options.change_time if new else 0.0)
+
+
+#: Less is not worth a word, s and share of the plan's time; candidates that are planned with, at most.
+_SECONDS, _SHARE, _TRIED_MORE = 60.0, 0.1, 5
+
+
+def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, columns: Columns) -> OneMoreEntry | None:
+    """The orientation that saves most beside those of a plan, by plans with it and without it.
+
+    `task`, `some`: of all samples, and of some, by which candidates are compared. `search`: its candidates that are known whole
+    are tried. `columns`: those of its fixed operations. None where it would save no more than a minute, or a tenth of the time,
+    or times are not known, or a number of orientations was requested.
+    """
+    least = max(_SECONDS, _SHARE * plan.total)
+    options = task.ready.options
+    if task.paths.feed is None or options.most_operations is not None or not plan.total > least or not len(columns):
+        return None
+    few, (active, table) = at_some(task, search.rows), search.whole
+    area, now = costs_with(few, columns)
+    costs = Costs(task.indexing.constant if task.indexing.rate is None else 0.0, options.change_time, options.setup_time)
+    problem = task.problems.of(search.columns.of(active), active, table, search.rows, area, costs)
+    cheapest = now.min(axis=1)
+    served = np.flatnonzero(np.isfinite(cheapest))
+    saved = problem.gains(np.where(np.isfinite(cheapest), cheapest, 0.0), served) - costs.operation
+    saved -= costs.cutter * ~np.isin(problem.cutter, columns.cutter) + costs.setup * ~np.isin(problem.setup, columns.setup)
+    best, seconds = None, plan_with(some, plan.name, columns, times=True).total
+    for k in np.argsort(-saved, kind="stable")[:_TRIED_MORE].tolist():
+        with_it = columns.and_(search.columns.of(active[[k]]))
+        total = plan_with(some, plan.name, with_it, times=True).total if saved[k] > 0.0 else np.inf
+        if total < seconds:
+            best, seconds = with_it, total
+    if best is None:
+        return None
+    saves = plan.total - plan_with(task, plan.name, best, times=True).total
+    if not saves > least:
+        return None
+    new = len(columns)
+    names, angles = task.orientations[0].names, best.angle[new].tolist()
+    return OneMoreEntry(
+        saves_seconds=saves, cutter=task.cutters[best.cutter[new]].id, setup=int(best.setup[new]),
+        angles_deg=dict(zip(names, angles, strict=True)),
+    )  # fmt: skip

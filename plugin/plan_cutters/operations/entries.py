@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
-from plan_cutters.operations.rest_areas import Worth
+from plan_cutters.operations.choices import Worth
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
@@ -35,22 +35,13 @@ _UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s
 
 
 def operations_entry(
-    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str] = (),
-    fewest: FewestEntry | None = None, timed: Timed | None = None, worth: Sequence[Worth] = (),
+    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str],
+    fewest: FewestEntry | None, timed: Timed | None, worth: Sequence[Worth],
 ) -> OperationsEntry:  # fmt: skip
     """Make the entry of plans.
 
-    Parameters
-    ----------
-    task : Task
-    plans : sequence of OperationPlan
-    reason : (n,) uint8
-        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
-    notes : sequence of str
-    fewest : FewestEntry, optional
-    timed : (FastestEntry, float), optional
-    worth : sequence of Worth
-        Of each cutter, the largest first.
+    `reason` (n,) uint8: why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON. `worth`: of
+    each cutter, the largest first.
     """
     options, feed = task.ready.options, task.paths.feed
     area = np.where(task.ready.finished, np.nan_to_num(task.ready.samples.area), 0.0)

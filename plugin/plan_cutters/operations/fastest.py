@@ -8,18 +8,110 @@ Prices are made better by steps along the mean of what samples are served too of
 choice can have are left out on the way.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
-from plan_cutters.operations.problem import Problem
+from cad_io.arrays import Floats, Ints
 from plan_cutters.plan_file.operations import FastestEntry
 
 Which = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit.
+
+    Where candidates turn, the cost of an operation only leads the choice.
+    """
+
+    operation: float
+    cutter: float
+    setup: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turning:
+    """Operations of a choice cost what the rotary axes take from one to the next.
+
+    `together`: what the operations (k,) of a choice cost together. `reach` (m,) float: whatever else is chosen, those of the same
+    cutter and setup cost at least this together with a candidate.
+    """
+
+    together: Callable[[Which], float]
+    reach: Floats
+
+
+class Problem:
+    """Samples and candidates, with what each costs.
+
+    `cost` (n, m) float: of each sample with each candidate; infinite where the candidate does not serve it. Each row has a finite
+    one. `cutter`, `setup` (m,) int. Without `turning` each operation costs the same.
+    """
+
+    def __init__(self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None) -> None:
+        self.cost, self.cutter, self.setup, self.costs, self.turning = cost, cutter, setup, costs, turning
+        finite = cost[np.isfinite(cost)]
+        #: Costs more than any choice.
+        self.dear = float(cost.min(axis=1, initial=np.inf).sum() + finite.max(initial=0.0) * len(cost)) + 10.0 * sum(
+            (costs.operation, costs.cutter, costs.setup)
+        )
+
+    def total(self, chosen: Which) -> float:
+        """Sum up the costs of a choice; infinite where it leaves a sample."""
+        if not len(chosen):
+            return 0.0 if not len(self.cost) else np.inf
+        return self.priced(chosen, self.cost[:, chosen].min(axis=1, initial=np.inf))
+
+    def priced(self, chosen: Which, samples: Floats) -> float:
+        """As `total`, for a choice with which the samples (n,) are known to cost so much."""
+        if not len(chosen):
+            return self.total(chosen)
+        return float(samples.sum()) + self.costs.operation * len(chosen) + self._changes(chosen)
+
+    def turned(self, chosen: Which) -> float:
+        """As `total`, but with what the rotary axes take in truth."""
+        if self.turning is None or not len(chosen):
+            return self.total(chosen)
+        return self.cutting(chosen) + self.turning.together(chosen) + self._changes(chosen)
+
+    def _changes(self, chosen: Which) -> float:
+        cutters, setups = len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
+        return self.costs.cutter * (cutters - 1) + self.costs.setup * (setups - 1)
+
+    def cutting(self, chosen: Which) -> float:
+        """Sum up the costs of the samples, each with the best of a choice."""
+        return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
+
+    def gains(self, now: Floats, rows: Which | None = None) -> Floats:
+        """Sum up what each candidate (m,) saves on samples that cost so much now (n,), on some rows or all."""
+        cost = self.cost if rows is None else self.cost[rows]
+        saved = np.subtract((now if rows is None else now[rows])[:, None], cost)
+        return np.asarray(np.maximum(0.0, saved, out=saved).sum(axis=0))
+
+    def regained(self, gains: Floats, before: Floats, now: Floats) -> Floats:
+        """Find gains for costs of now from those of before: only samples whose costs differ are looked at."""
+        rows = np.flatnonzero(before != now)
+        return gains + self.gains(now, rows) - self.gains(before, rows)
+
+    def added(self, chosen: Which, gains: Floats) -> tuple[int, float]:
+        """The candidate that saves most beside a choice, with its own costs, and how much."""
+        gain = gains - self.costs.operation
+        if len(chosen):
+            gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
+            gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
+        best = int(gain.argmax())
+        return best, float(gain[best])
+
+    def of(self, which: Which, rows: NDArray[np.bool_] | None = None) -> "Problem":
+        """Some of the candidates, each of which costs the same, with the samples or some (n,) of them."""
+        cost = self.cost[:, which] if rows is None else self.cost[np.ix_(rows, which)]
+        return Problem(cost, self.cutter[which], self.setup[which], self.costs)
+
+
 #: Rounds of leaving out and exchanging.
 _ROUNDS = 12
 #: Costs looked at for the bound, at most, and a gap at which it is good enough, as a share.
@@ -51,24 +143,13 @@ def against_bound(seconds: float, bound: float, at_best: float, samples: int, ca
 class Location:
     """A choice of operations.
 
-    Attributes
-    ----------
-    chosen : (k,) int64
-        Ascending.
-    cost : float
-        Of all samples, each with the best of the chosen, of operations, and of cutters and setups after the first.
-    bound : float
-        No choice costs less.
+    `chosen` (k,) int64: ascending. `cost`: of all samples, each with the best of the chosen, of operations, and of cutters and
+    setups after the first. `bound`: no choice costs less.
     """
 
     chosen: Which
     cost: float
     bound: float
-
-
-def fastest(problem: Problem, start: Which | None = None) -> Location:
-    """Choose operations of little cost, from a choice that serves all or from nothing, and bound what the best costs."""
-    return bounded(problem, cheap(problem, start))
 
 
 def cheap(problem: Problem, start: Which | None = None) -> Which:
@@ -166,12 +247,8 @@ def _improved(problem: Problem, chosen: Which) -> Which:
 class _Without:
     """What samples (n,) cost without one of a choice.
 
-    Attributes
-    ----------
-    best : (n,) int64
-        The candidate of the choice that is the best for each.
-    first, second : (n,) float
-        What it costs, and the next best one; infinite where there is none.
+    `best` (n,) int64: the candidate of the choice that is the best for each. `first`, `second` (n,) float: what it costs, and the
+    next best one; infinite where there is none.
     """
 
     best: Which
@@ -215,12 +292,7 @@ def exchanged(problem: Problem, chosen: Which) -> Which:
 class Reach:
     """The operations of one cutter in one setup cost at least as much together as the candidate that costs most.
 
-    Attributes
-    ----------
-    least : (m,) float
-        By candidate, ascending in each group.
-    first : (g,) int64
-        Of each group, its first candidate.
+    `least` (m,) float: by candidate, ascending in each group. `first` (g,) int64: of each group, its first candidate.
     """
 
     least: Floats
@@ -249,24 +321,11 @@ def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None 
     Whatever the prices, a choice pays for each sample its price, less what its candidates gain on that: what they can gain at
     most leaves the bound.
 
-    Parameters
-    ----------
-    cost : (m, n) float
-        Of each sample with each candidate.
-    operation : float
-        What each candidate costs beside.
-    price : (n,) float
-    reach : Reach, optional
-        What some candidates cost together at least, beside.
+    Returns the bound; (m,) float: reduced costs of the candidates: those below 0 gain something; (n,) float: how much more often
+    than once the candidates that gain serve each sample, below 0 where none does.
 
-    Returns
-    -------
-    float
-        The bound.
-    (m,) float
-        Reduced costs of the candidates: those below 0 gain something.
-    (n,) float
-        How much more often than once the candidates that gain serve each sample, below 0 where none does.
+    `cost` (m, n) float: of each sample with each candidate. `operation`: what each candidate costs beside. `price` (n,) float.
+    `reach`: what some candidates cost together at least, beside.
     """
     gain = np.subtract(cost, price)
     np.minimum(gain, 0.0, out=gain)
@@ -286,12 +345,7 @@ class _Ascent:
     Each step raises prices of samples that the candidates taken do not serve, and lowers those that several of them serve; its
     length follows from how far the bound is from a choice that is known.
 
-    Attributes
-    ----------
-    bound : float
-        Of choices with all these cutters and setups.
-    work : int
-        Costs looked at.
+    `bound`: of choices with all these cutters and setups. `work`: costs looked at.
     """
 
     def __init__(self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which) -> None:

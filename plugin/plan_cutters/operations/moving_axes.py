@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import FaceGrid, Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, Verdicts
-from plan_cutters.judging.axis_field import AxisField, angle_between
-from plan_cutters.judging.margin import margin
-from plan_cutters.judging.nodes import tensors
+from plan_cutters.judging.axes import AxisField, angle_between, margin
+from plan_cutters.judging.cells import tensors
 from plan_cutters.operations.passes import Paths, cut_by_tip
 from plan_cutters.scene.conditions import Conditions, Context
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 Rows = NDArray[np.int64]
 #: How often axes are drawn to their neighbours', at most, and which shares of the way are tried in turn.
@@ -81,14 +80,7 @@ class _Test:
 class MovingAxes:
     """Axes for simultaneous motion of each cutter in each setup, found once for all plans of a part.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters : sequence of Cutter
-    setups : sequence of Conditions
-    everywhere : sequence of mapping
-        Of each setup the verdicts by cutter.
-    paths : Paths
+    `everywhere`: of each setup the verdicts by cutter.
     """
 
     def __init__(
@@ -122,10 +114,7 @@ class MovingAxes:
     def smooth(self, cutter: int, setup: int, rows: Rows) -> Floats:
         """The same, drawn to the mean of those around them as far as the tool stays free and the passes wide.
 
-        Returns
-        -------
-        (n, 3) float
-            Unit; nan at other samples.
+        Returns (n, 3) float: unit; nan at other samples.
         """
         axis, pace = np.full((len(self._samples), 3), np.nan), np.full(len(self._samples), np.nan)
         axis[rows], pace[rows] = self.widest(cutter, setup, rows)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,10 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.own_process import Nearest, OwnProcess, OwnResult, OwnStep, cutter_of
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
-from plan_cutters.operations.candidates import DIGITS, Orientations, apart, directions, neighbours
+from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
-from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import Problems
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.task import Problems, Task
 from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
@@ -33,77 +31,48 @@ _ALL = 0.001
 _SHARED = -1
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Judged:
-    """Steps as far as they were judged.
-
-    Attributes
-    ----------
-    outcome : tuple of OwnResult
-        In their order; of those that share, with all that they could take.
-    owner : (n,) int64
-        The number of the step that each sample goes with, `_SHARED`, or 0 for none.
-    """
-
-    outcome: tuple[OwnResult, ...]
-    owner: NDArray[np.int64]
-
-
 def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]) -> tuple[OperationPlan, tuple[OwnResult, ...]]:
     """Make the plan of a process that a person wrote.
 
-    Parameters
-    ----------
-    task : Task
-        Its cutters are all that the steps name, and others.
-    process : OwnProcess
-    planned : callable
-        Gives the fixed orientations of what the steps leave, as a task of its own.
-
-    Returns
-    -------
-    OperationPlan
-        Called `process`; its operations know their steps.
-    tuple of OwnResult
-        What each step does, in their order.
+    `task`: its cutters are all that the steps name, and others. `planned`: gives the fixed orientations of what the steps leave,
+    as a task of its own. The plan is called `process`, and its operations know their steps; behind it is what each step does, in
+    their order.
     """
-    judged = _judged(task, process)
+    outcome, owner = _judged(task, process)
     barred = {
         task.cutters.index(cutter_of(each.cutter, task.cutters, "forbid")): np.isin(task.ready.samples.face, each.faces)
         for each in process.forbidden
     }
     others, columns = replace(task, everywhere=_masked(task, barred)), columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
     step = list[int]()
-    for each in judged.outcome:
+    for each in outcome:
         if each.axis is not None and each.angle is not None and len(each.rows):
             cutter = task.cutters.index(each.cutter)
             columns = columns.and_(columns_of(each.axis[None], each.angle[None], cutter, each.setup))
             step.append(each.number)
     if process.rest == "plan":
-        more = planned(_rest(others, judged.owner, barred))
+        more = planned(_rest(others, owner, barred))
         columns, step = columns.and_(more), [*step, *([0] * len(more))]
     number = np.array(step, np.int64)
 
-    taken = {each.number: each.rows for each in judged.outcome}
+    taken = {each.number: each.rows for each in outcome}
 
     def rule(serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Each sample goes with the step that takes it, or one of those that share it; what none takes, with what was planned."""
-        may = serves & (judged.owner[:, None] == number[None, :])
+        may = serves & (owner[:, None] == number[None, :])
         for j, rows in ((j, taken[each]) for j, each in enumerate(step) if each):
             may[rows, j] = serves[rows, j]
         for c, samples in barred.items():
-            may[np.ix_(samples & (judged.owner == 0), (columns.cutter == c) & (number == 0))] = False
+            may[np.ix_(samples & (owner == 0), (columns.cutter == c) & (number == 0))] = False
         return may
 
     moving = tuple(
-        (each.number, task.cutters.index(each.cutter), each.setup, each.rows)
-        for each in judged.outcome
-        if each.mode == "simultaneous"
+        (each.number, task.cutters.index(each.cutter), each.setup, each.rows) for each in outcome if each.mode == "simultaneous"
     )
     reserved = Reserved(tuple(step), moving, process.rest == "leave", others.everywhere)
     plan = plan_with(task, "process", columns, rule, reserved)
     place = {each.step: k for k, each in enumerate(plan.operations)}
-    return plan, tuple(replace(each, rows=np.flatnonzero(plan.label == place.get(each.number, -2))) for each in judged.outcome)
+    return plan, tuple(replace(each, rows=np.flatnonzero(plan.label == place.get(each.number, -2))) for each in outcome)
 
 
 def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:
@@ -130,7 +99,7 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
     return replace(task, rows=rows[reached[rows]], probes=probes, walls=walls, problems=problems)
 
 
-def _judged(task: Task, process: OwnProcess) -> _Judged:
+def _judged(task: Task, process: OwnProcess) -> tuple[tuple[OwnResult, ...], NDArray[np.int64]]:
     """Judge the steps in their order: each takes what it serves of its faces, if no step before it has taken that.
 
     Behind them come those that share: what fixed ones serve is divided later, and simultaneous ones take what is left.
@@ -145,7 +114,7 @@ def _judged(task: Task, process: OwnProcess) -> _Judged:
         owner[one.rows] = _SHARED if divided else step.number
         outcome.append(one)
     outcome.sort(key=lambda each: each.number)
-    return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in outcome), owner)
+    return tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in outcome), owner
 
 
 def _moving(task: Task, step: OwnStep, rows: Rows) -> OwnResult:

@@ -1,4 +1,4 @@
-"""The plan of operations of a part that was judged: the order of its steps."""
+"""The plan of operations of a part that was judged: its cutters, and the order of its steps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -12,47 +12,71 @@ from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, duration, percent, reporting
 from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.domain.own_process import OwnProcess, cutter_of
+from plan_cutters.domain.own_process import OwnResult, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
-from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker, served
-from plan_cutters.operations.companions import accompanied
+from plan_cutters.operations.choices import (
+    COARSE,
+    accompanied,
+    fastest_choice,
+    largest_first_choice,
+    one_more,
+    quicker,
+    served,
+    with_and_without,
+    worths,
+)
 from plan_cutters.operations.entries import operations_entry
-from plan_cutters.operations.extent import Extents
 from plan_cutters.operations.fastest import against_bound, bounded
-from plan_cutters.operations.fewer_steps import WHOLE_FACE
-from plan_cutters.operations.fewest import FINEST, Fewest, Search, search_fewest
-from plan_cutters.operations.flow_faces import chosen_for_others, flowing, with_moved
-from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.fewest import FINEST, Search, search_fewest
+from plan_cutters.operations.labels import WHOLE_FACE, Seams
+from plan_cutters.operations.motion import chosen_for_others, few_enough, flowing, recommended, with_moved
 from plan_cutters.operations.moving_axes import MovingAxes
-from plan_cutters.operations.one_more import one_more
+from plan_cutters.operations.orientations import STEP, Indexing, Orientations, apart, candidates
 from plan_cutters.operations.own_steps import own_plan
-from plan_cutters.operations.passes import Paths
+from plan_cutters.operations.passes import Extents, Paths
 from plan_cutters.operations.plans import (
     MINOR_AREA,
     best_area,
     considered,
     costs_with,
-    orientations_of,
+    of_wanted_kinds,
     plan_with,
     small_pieces,
     worth_their_turn,
 )
-from plan_cutters.operations.priced import comparable, feeds, without_feed
-from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.probes import Probes, Walls
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import with_and_without, worths
-from plan_cutters.operations.seams import Seams
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.thinned import at_some, thinned
-from plan_cutters.operations.timing import Problems
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.task import Problems, Task, at_some, thinned
+from plan_cutters.options import Options
 from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress, part_of
+from plan_cutters.scene.work import Progress, part_of
+
+
+def comparable(ready: Prepared, least: LeastSet | None) -> list[Cutter]:
+    """The cutters with a feed, without kinds that come after all that are needed, if these have feeds."""
+    unpriced = without_feed(ready)
+    priced, needed = [each for each in ready.cutters if each not in unpriced], [run.cutter for run in least.runs] if least else []
+    if not needed or any(each in unpriced for each in needed):
+        return priced
+    return of_wanted_kinds(priced, needed, ready.chosen.free_form)
+
+
+def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
+    """The feed of each cutter, mm/min; None where one has none."""
+    stated = options.feeds if options.feed is None else dict.fromkeys(cutters, options.feed)
+    return {each: stated[each] for each in cutters} if all(each in stated for each in cutters) else None
+
+
+def without_feed(ready: Prepared) -> tuple[Cutter, ...]:
+    """The cutters that no operation is planned with, for times are requested and they have no feed."""
+    if ready.options.operations not in ("fastest", "both"):
+        return ()
+    stated = ready.options.feeds
+    return tuple(each for each in ready.cutters if each not in stated)
+
 
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
@@ -80,62 +104,55 @@ def plan_operations(
 ) -> Operations:
     """Plan the operations that finish together all that the cutters reach.
 
-    Parameters
-    ----------
-    ready : Prepared
-    everywhere : sequence of mapping
-        Of each setup, the first one first, the verdicts by cutter.
-    least : LeastSet, optional
-        The fewest cutters that reach all that any reaches: they are considered before others.
-    stage : callable
-        Opens a stage of work by its name; what it gives is told how much of how much is done.
-    over : mapping
-        Of each cutter by its id the verdicts over all setups, with the reasons.
-    searched : int
-        As for `proved`.
+    `everywhere`: of each setup, the first one first, the verdicts by cutter. `least`: the fewest cutters that reach all that any
+    reaches: they are considered before others. `stage`: opens a stage of work by its name; what it gives is told how much of how
+    much is done. `over`: of each cutter by its id the verdicts over all setups, with the reasons. `searched`: as for `proved`.
     """
-    options = ready.options
-    task = _task(ready, everywhere, least)
-    if options.process is not None:
-        return _own(task, options.process, stage, over, searched)
-    fewest, alone, more = None, 0, None
+    options, task = ready.options, _task(ready, everywhere, least)
+    fewest, alone, more, outcomes = None, 0, None, tuple[OwnResult, ...]()
+    made: PlansTimed
     with stage("operations") as tell:
-        offer = _offer(task, part_of(tell, 0, _PARTS))
-        quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
-        if quick is not None:
-            plans, timed, worth, instead = _in_motion(task, quick)
+        parts = [part_of(tell, k, _PARTS) for k in range(_PARTS)]
+        offer = _offer(task, parts[0]) if options.process is None else None
+        quick = planned_by_pattern(task, offer) if offer is not None and options.operations == "fastest" else None
+        if options.process is not None:
+            plan, outcomes = own_plan(task, options.process, partial(_planned_rest, parts=parts))
+            made = [plan], None, (), ()
+        elif quick is not None:
+            made = _in_motion(task, quick)
         elif options.operations == "fastest":
-            some = thinned(task)
-            search, few = _served(some, part_of(tell, 1, _PARTS))
-            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
+            made, search, some = _plans_by_some(task, offer, parts)
             alone = len(search.alone) * (len(task.rows) // max(1, len(some.rows)))
             task.probes.made += some.probes.made if some is not task else 0
         else:
-            search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
-            few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
-            some = thinned(task)
-            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
-            more = one_more(task, some, search, plans[0], _columns_of(task, plans[0]))
-        plans = _proved(task, plans, searched, part_of(tell, 3, _PARTS))
-    notes = (*instead, *_notes(task, least, plans, None if instead else alone))
+            finest = FINEST if options.index_step is None else options.index_step
+            search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(parts[1], 0, 2))
+            fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(parts[1], 1, 2))
+            few, alone, some = fewest.columns.of(fewest.chosen), len(fewest.alone), thinned(task)
+            made = _plans(task, some, search, few, offer, parts[2])
+            more = one_more(task, some, search, made[0][0], _columns_of(task, made[0][0]))
+        plans, timed, worth, instead = made
+        plans = _proved(task, plans, searched, parts[3])
+    notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
     columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
-    return Operations(entry, task.cutters, tuple(plans), columns, chosen)
+    return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 
 
-def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
-    """The fewest orientations among candidates, with the search that found them."""
-    options = task.ready.options
-    finest = FINEST if options.index_step is None else options.index_step
-    search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(tell, 0, 2))
-    return search, search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, 2))
+def _plans_by_some(task: Task, offer: Repeated | None, parts: Sequence[Progress]) -> tuple[PlansTimed, Search, Task]:
+    """Plans from few orientations among coarse candidates that serve some samples, with the search, and the task of these."""
+    some = thinned(task)
+    search = Search(some.probes, _first(some, COARSE), some.rows, partial(_stored, some), parts[1], _PRICED)
+    return _plans(task, some, search, served(some, search), offer, parts[2]), search, some
 
 
-def _served(task: Task, tell: Progress) -> tuple[Search, Columns]:
-    """Few orientations among coarse candidates that serve all samples of a task, with the search that found them."""
-    search = Search(task.probes, _first(task, COARSE), task.rows, partial(_stored, task), tell, _PRICED)
-    return search, served(task, search)
+def _planned_rest(rest: Task, parts: Sequence[Progress]) -> Columns:
+    """The fixed orientations of the best plan for what the steps of the planner's own process leave."""
+    if not len(rest.rows):
+        return _NONE
+    (plans, *_), _, _ = _plans_by_some(rest, _offer(rest, parts[0]), parts)
+    return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
 
 def _offer(task: Task, tell: Progress) -> Repeated | None:
@@ -152,7 +169,7 @@ def _proved(task: Task, plans: Sequence[OperationPlan], searched: int, tell: Pro
         same = next((other for other in result if each.like(other)), None)
         mine = part_of(tell, k, len(plans))
         if same is None:
-            each = proved(task.ready, task.everywhere, each, searched, progress=mine)
+            each = proved(task.ready, task.everywhere, each, searched, mine)
         result.append(each if same is None else replace(same, name=each.name))
     return result
 
@@ -192,32 +209,6 @@ def _moving_for_rest(ready: Prepared, plan: OperationPlan) -> int:
     mine, whole = np.bincount(face[rows], area[rows], most), np.bincount(face[cut], area[cut], most)
     taken = (mine >= WHOLE_FACE * whole) & (whole >= MINOR_AREA * whole.sum())
     return int((~taken[face[rows]]).sum())
-
-
-def _own(
-    task: Task,
-    process: OwnProcess,
-    stage: Callable[[str], AbstractContextManager[Progress]],
-    over: Mapping[str, Verdicts],
-    searched: int,
-) -> Operations:
-    """The planner's own process, with the rest planned behind it as it was requested."""
-    ready = task.ready
-
-    def planned(rest: Task) -> Columns:
-        """The fixed orientations of the best plan for what the steps leave."""
-        if not len(rest.rows):
-            return _NONE
-        some = thinned(rest)
-        search, few = _served(some, part_of(tell, 1, _PARTS))
-        plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 0, _PARTS)), part_of(tell, 2, _PARTS))
-        return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
-
-    with stage("operations") as tell:
-        plan, outcomes = own_plan(task, process, planned)
-        plan = proved(ready, task.everywhere, plan, searched, progress=part_of(tell, 3, _PARTS))
-    entry = operations_entry(task, [plan], over[task.cutters[0].id].reason)
-    return Operations(entry, task.cutters, (plan,), _NONE, np.zeros(0, np.int64), outcomes)
 
 
 def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
@@ -337,7 +328,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         machine.acceleration,
     )  # fmt: skip
     walls = Walls.of(probes, paths)
-    where = orientations_of(ready)
+    where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls,

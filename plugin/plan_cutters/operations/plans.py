@@ -1,4 +1,4 @@
-"""A plan made of chosen columns: what each sample goes with, region by region."""
+"""A plan made of chosen columns: what each sample goes with, region by region, and the tilted plane of each operation."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -13,20 +13,59 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.fewer_steps import MINOR_SECONDS, MINOR_SHARE, Steps, in_one_step, without_minor_steps
-from plan_cutters.operations.labels import joined, labelled, regions_of
+from plan_cutters.operations.labels import (
+    MINOR_SECONDS,
+    MINOR_SHARE,
+    Steps,
+    in_one_step,
+    joined,
+    labelled,
+    regions_of,
+    without_minor_steps,
+)
+from plan_cutters.operations.orientations import Indexing
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
-from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import costs_of, paces
-from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
-from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.operations import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Prepared, places
+
+
+def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Indexing) -> list[Operation]:
+    """Operations with the tilted plane of each one with a fixed axis: the plane that a control turns to, and what that takes.
+
+    Operations of one cutter in one setup follow each other, in the order in which the rotary axes need least time; the first one
+    starts with these at zero.
+    """
+    options = ready.options
+    placements = places(options)
+    planned = list(operations)
+    groups: dict[tuple[int, str], list[int]] = {}
+    for i, each in enumerate(operations):
+        if each.axis is not None:
+            groups.setdefault((each.setup, each.cutter.id), []).append(i)
+    for (s, _), mine in groups.items():
+        where = indexing.orientations[s]
+        conditions, moved = where.conditions, where.kinematics
+        known = [[each for each in (operations[i].angle, operations[i].other_angle) if each is not None] for i in mine]
+        origin = np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
+        across = conditions.frame[0]
+        for i, seconds in zip(mine, indexing.times(s, known).tolist(), strict=True):
+            axis, angle = operations[i].axis, operations[i].angle
+            assert axis is not None, "a group holds fixed axes"
+            assert angle is not None, "a fixed axis has angles"
+            x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
+            frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
+            planned[i] = operations[i].with_fields(frame=frame, index_s=seconds, index_from=indexing.source)
+    return planned
+
 
 Rows = NDArray[np.int64]
 #: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
@@ -39,16 +78,10 @@ MINOR_AREA = 0.001
 class Reserved:
     """The planner's own steps take this of a plan.
 
-    Attributes
-    ----------
-    step : tuple of int
-        Of each column the number of the step that it is of; 0: it was planned.
-    moving : tuple of (int, int, int, (r,) int64)
-        Simultaneous steps: their number, cutter, setup, and the samples that they take.
-    leave : bool
-        Whether what no step takes is left, and not given to simultaneous operations.
-    others : tuple of mapping
-        Of each setup the verdicts by cutter for these: without those of cutters where they are forbidden.
+    `step`: of each column the number of the step that it is of; 0: it was planned. `moving` (tuple of (int, int, int, (r,)
+    int64)): simultaneous steps: their number, cutter, setup, and the samples that they take. `leave`: whether what no step takes
+    is left, and not given to simultaneous operations. `others`: of each setup the verdicts by cutter for these: without those of
+    cutters where they are forbidden.
     """
 
     step: tuple[int, ...]
@@ -109,8 +142,11 @@ def plan_with(
             strip, length = moving, area / moving
         links = sum(_to_pieces(task, region[each.rows]) for each in operations)
     else:
-        operations = [_moving_in_a_field(task, each) for each in operations]
         for k, operation in enumerate(operations):
+            if operation.axis is None:
+                # Simultaneous motion goes with the axes of its field.
+                axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
+                operation = replace(operation, moving=(axis, np.full(n, -1, np.int32)))
             stands, mine = _stands(task, operation), operation.rows
             strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
             if task.paths.feed is not None:
@@ -128,14 +164,6 @@ def plan_with(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
         links, other, short, mark * task.seams.marks(number),
     )  # fmt: skip
-
-
-def _moving_in_a_field(task: Task, operation: Operation) -> Operation:
-    """A simultaneous operation with the axes of its field; others as they are."""
-    if operation.axis is not None:
-        return operation
-    axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
-    return replace(operation, moving=(axis, np.full(len(axis), -1, np.int32)))
 
 
 def _to_pieces(task: Task, region: Ints) -> float:
@@ -182,7 +210,7 @@ def _fixed(
     operations = [
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
-            task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
+            task.orientations[columns.setup[k]].others(columns.axis[[k]], columns.angle[[k]])[0], np.flatnonzero(label == k),
             step=step[k], orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
@@ -332,18 +360,11 @@ def _made_of(operations: Sequence[Operation], number: Ints, made: _Made, pace: F
 class _Stands:
     """How a tool stands at the samples of an operation.
 
-    Attributes
-    ----------
-    samples : SurfaceSamples
-        All n, with the contact in the place of those that are cut along a wall.
-    held : Verdicts
-        Postures at its samples; those of others are not looked at.
-    strategy : (r,) uint8
-        How its samples are cut, in STRATEGIES.
-    contact : (r, 3) float
-        As in the plan.
-    cut : Cut
-        What it takes.
+    `samples`: all n, with the contact in the place of those that are cut along a wall.
+    `held`: postures at its samples; those of others are not looked at.
+    `strategy` (r,) uint8: how its samples are cut, in STRATEGIES.
+    `contact` (r, 3) float: as in the plan.
+    `cut`: what it takes.
     """
 
     samples: SurfaceSamples
@@ -500,11 +521,6 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
             break
         columns_left = np.delete(columns_left, minor[saved[minor].argmin()])
     return columns.of(columns_left)
-
-
-def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:
-    """Those of each setup."""
-    return tuple(Orientations.of(conditions) for conditions in ready.setups)
 
 
 def considered(cutters: Sequence[Cutter], needed: Sequence[Cutter], most: int) -> tuple[Cutter, ...]:

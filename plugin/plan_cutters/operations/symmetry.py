@@ -17,7 +17,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.operations import Columns
-from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.orientations import Orientations
 
 #: Orders of a symmetry that are looked for, the share of the area that must agree, how well normals must, rad, and how many
 #: samples near to a place are looked at.
@@ -36,16 +36,8 @@ _ONE = 1e-6
 class Symmetry:
     """Turns about an axis under which orientations are repeated.
 
-    Attributes
-    ----------
-    place, direction : (3,) float
-        The axis.
-    order : int
-        How many turns make a whole one.
-    exact : bool
-        Whether the part is a pattern; else its samples nearly are.
-    orientations : tuple of Orientations
-        Of each setup.
+    `place`, `direction` (3,) float: the axis. `order`: how many turns make a whole one. `exact`: whether the part is a pattern;
+    else its samples nearly are. `orientations`: of each setup.
     """
 
     place: Floats

@@ -1,56 +1,128 @@
-"""One task for all plans of operations of a part: samples, cutters, setups, and the tests and prices of columns."""
+"""One task for all plans of operations of a part: samples, cutters, setups, what samples cost with candidates, and the same for
+fewer samples, by which choices are compared.
+"""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
+from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.fastest import Costs, Problem
+from plan_cutters.operations.labels import Seams
 from plan_cutters.operations.moving_axes import MovingAxes
-from plan_cutters.operations.passes import Paths
-from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.seams import Seams
+from plan_cutters.operations.orientations import Indexing, Orientations
+from plan_cutters.operations.passes import Paths, cut_by_tip
+from plan_cutters.operations.probes import Probes, Walls
 from plan_cutters.operations.symmetry import Symmetry
-from plan_cutters.operations.timing import Problems
-from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
+#: How much farther apart samples of two faces count than those of one, in lengths of the part.
+_OTHER_FACE = 10.0
+#: Paces that are found at once.
+_AT_ONCE = 100_000
+
+
+def paces(
+    columns: Columns,
+    rows: Rows,
+    samples: SurfaceSamples,
+    cutters: Sequence[Cutter],
+    paths: Paths,
+    where: NDArray[np.bool_] | None = None,
+) -> Floats:
+    """Find what a mm of path by the tip cuts (rows, columns), mm2, wherever a column serves; nan where it does not touch.
+
+    With `where` (rows, columns) it is nan elsewhere, too.
+    """
+    result = np.full((len(rows), len(columns)), np.nan)
+    wanted = np.ones(result.shape, bool) if where is None else where
+    for c, cutter in enumerate(cutters):
+        row, column = np.nonzero(wanted & (columns.cutter == c))
+        for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
+            i, k = row[part], column[part]
+            at = rows[i]
+            result[i, k] = cut_by_tip(cutter, samples, at, columns.axis[k], paths).pace(paths, cutter)
+    return result
+
+
+def costs_of(
+    columns: Columns, pace: Floats, serves: NDArray[np.bool_], area: Floats, cutters: Sequence[Cutter], paths: Paths
+) -> Floats:
+    """Seconds with links, or mm of path without a feed, of samples with columns; infinite where one does not serve a sample."""
+    speed = paths.speeds(cutters)[columns.cutter]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        costs = area[:, None] / (pace * speed)
+    return np.where(serves & np.isfinite(costs), costs, np.inf)
+
+
+def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
+    """The area (r,) that some samples stand for when each of all gives its own to the nearest of them, on its face if it can."""
+    if not len(rows):
+        return np.zeros(0)
+    return np.bincount(nearest(samples, all_rows, rows), np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
+
+
+def nearest(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> NDArray[np.intp]:
+    """Which of some samples (r,) is the nearest to each of all (m,), on its face if it can."""
+    size = float(np.linalg.norm(np.ptp(samples.point[all_rows], axis=0))) or 1.0
+    place = np.column_stack([samples.point, samples.face * (_OTHER_FACE * size)])
+    return np.asarray(cKDTree(place[rows]).query(place[all_rows])[1])
+
+
+class Problems:
+    """Say what samples cost with candidates, as both become more: paces that were found once are kept."""
+
+    def __init__(
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing, walls: Walls
+    ) -> None:
+        self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
+        self._walls = walls
+        self._rows: Rows = np.zeros(0, np.int64)
+        self._active: Rows = np.zeros(0, np.int64)
+        self._pace: Floats = np.zeros((0, 0))
+        self._known: NDArray[np.bool_] = np.zeros((0, 0), bool)
+
+    def of(self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs) -> Problem:
+        """Say what some samples, weighted by area, cost with columns.
+
+        `active` (m,) int64: their numbers, ascending: what had one keeps it. `table` (r, m) bool: where they serve. `rows` (r,)
+        int64: those of the time before come first. `area` (r,) float: that each of `rows` stands for, mm2.
+        """
+        pace, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
+        if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():
+            there = np.searchsorted(active, self._active)
+            pace[: len(self._rows), there], known[: len(self._rows), there] = self._pace, self._known
+        new = table & ~known
+        result = paces(columns, rows, self._samples, self._cutters, self._paths, new)
+        result = np.fmax(result, self._walls.paces(columns, rows, new))
+        pace[new] = result[new]
+        self._rows, self._active, self._pace, self._known = rows, active, pace, known | new
+        cost = costs_of(columns, pace, table, area, self._cutters, self._paths)
+        # What is served and nowhere timed is served by whatever serves it, in no time that is known.
+        untimed = ~np.isfinite(cost).any(axis=1)
+        cost[untimed] = np.where(table[untimed], 0.0, np.inf)
+        return Problem(cost, columns.cutter, columns.setup, costs, self._indexing.turning(columns))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Task:
     """The same for all plans of a part.
 
-    Attributes
-    ----------
-    ready : Prepared
-    cutters : tuple of Cutter
-        Those that are compared; columns count in them.
-    orientations : tuple of Orientations
-        Of each setup.
-    everywhere : tuple of mapping
-        Of each setup, the verdicts by cutter.
-    rows : (r,) int64
-        Samples that are reached by one of the cutters in one of the setups.
-    probes : Probes
-    paths : Paths
-    indexing : Indexing
-    problems : Problems
-    walls : Walls
-    moving : MovingAxes
-    seams : Seams
-    symmetry : Symmetry, optional
-        Under which each column stands for itself and its images; None: for itself alone.
-    copies : int
-        How many equal copies the samples stand for: their areas and times count so often.
-    moved : (n,) bool, optional
-        Samples that go with simultaneous motion whatever else serves them; None: none.
+    `cutters`: those that are compared; columns count in them.
+    `orientations`: of each setup.
+    `everywhere`: of each setup, the verdicts by cutter.
+    `rows` (r,) int64: samples that are reached by one of the cutters in one of the setups.
+    `symmetry`: under which each column stands for itself and its images; None: for itself alone.
+    `copies`: how many equal copies the samples stand for: their areas and times count so often.
+    `moved` (n,) bool: samples that go with simultaneous motion whatever else serves them; None: none.
     """
 
     ready: Prepared
@@ -87,3 +159,32 @@ class Task:
     def times(self) -> int:
         """How many columns each one stands for."""
         return 1 if self.symmetry is None else self.symmetry.order
+
+
+#: Samples at which choices are compared, at most about.
+SOME = 2500
+
+
+def thinned(task: Task, most: int = SOME) -> Task:
+    """The same task for some of its samples, evenly taken, each with the area of those that it stands for.
+
+    `most`: about how many samples; where the task has no more, it is the task itself. Its plans reckon what the plans of
+    all samples take; where it is served, others need not be.
+    """
+    every = len(task.rows) // most
+    return task if every < 2 else at_some(task, task.rows[::every])
+
+
+def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
+    """The same task for some of its samples (r,), each with the area of those that it stands for."""
+    ready = task.ready
+    area = np.zeros(len(ready.samples))
+    area[rows] = shared_area(ready.samples, task.rows, rows)
+    samples, stands_for = replace(ready.samples, area=area), np.full(len(area), -1, np.int64)
+    stands_for[task.rows] = rows[nearest(ready.samples, task.rows, rows)] if len(rows) else -1
+    probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred)
+    walls = task.walls.of_probes(probes)
+    return replace(
+        task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls, seams=task.seams.among(stands_for),
+        problems=Problems(samples, task.cutters, task.paths, task.indexing, walls),
+    )  # fmt: skip

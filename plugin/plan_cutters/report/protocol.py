@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from plan_cutters.domain.verdicts import Verdicts
     from plan_cutters.outcome import Answers
     from plan_cutters.plan_file.model import CutterEntry, Plan
-    from plan_cutters.scene.clearance import Clearances
     from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.distances import Clearances
     from plan_cutters.scene.preparation import Prepared
     from plan_cutters.scene.scene import Scene
 

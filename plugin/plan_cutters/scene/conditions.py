@@ -19,8 +19,7 @@ from plan_cutters.kernels.codes import BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.scene.threads import Progress, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, in_chunks
 
 #: Where material over a contact proves that it is blocked: shares of the length that the tool holds of the normal, and no nearer
 #: than so many blocked depths, for there is the contact's own surface.
@@ -31,30 +30,16 @@ _PROVED_AT, _CLEAR = np.array([1.0, 0.3, 0.1, 0.03]), 4.0
 class Conditions(Record):
     """The same for all cutters of a plan, in one setup.
 
-    Attributes
-    ----------
-    machine : Machine
-    setup : (3,) float
-        Unit setup axis.
-    postures : PostureRange
-    surroundings : Surroundings
-        What is, and what may be, in the way.
-    tolerance : float
-        Gouge tolerance that is kept, mm.
-    jobs : int
-        Threads.
-    x : (3,) float, optional
-        Unit direction of the part along the machine's X, as `Placement` has it.
-    accuracy : float
-        Of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
-    obstacles : Obstacles
-        Everything that may be in the way. It follows from the fields above, as the next three do.
-    frame : (3, 3) float
-        The machine's X, Y and Z in part coordinates, as rows, at zero angles.
-    kinematics : Kinematics, optional
-        The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
-    ranges : Ranges
-        The postures and the limits of the machine, in the form that kernels take.
+    `setup` (3,) float: unit setup axis.
+    `surroundings`: what is, and what may be, in the way.
+    `tolerance`: gouge tolerance that is kept, mm.
+    `jobs`: threads.
+    `x` (3,) float: unit direction of the part along the machine's X, as `Placement` has it.
+    `accuracy`: of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
+    `obstacles`: everything that may be in the way. It follows from the fields above, as the next three do.
+    `frame` (3, 3) float: the machine's X, Y and Z in part coordinates, as rows, at zero angles.
+    `kinematics`: the machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
+    `ranges`: the postures and the limits of the machine, in the form that kernels take.
     """
 
     machine: Machine
@@ -99,22 +84,13 @@ class Conditions(Record):
 class Context(Record):
     """One cutter under the conditions of one setup: what every judgement of it needs, made once and handed on.
 
-    Attributes
-    ----------
-    cutter : Cutter
-    conditions : Conditions
-    outer_tool : Assembly
-        A triangle that does not reach into it lets the surface come no deeper than allowed.
-    inner_tool : Assembly
-        A triangle that reaches into it proves that a point of the surface is too deep in the cutter.
-    outer, inner : Tool
-        The same two in the form that kernels take.
-    dummy : (k, COLUMNS) float
-        Of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
-    proved_at : (k,) float
-        Distances along the normal, mm, at which material proves that every posture is blocked, those that are tried.
-    judges : bool
-        Whether the tolerance that is kept is fine enough to say anything about the cutter.
+    `outer_tool`: a triangle that does not reach into it lets the surface come no deeper than allowed.
+    `inner_tool`: a triangle that reaches into it proves that a point of the surface is too deep in the cutter.
+    `outer`, `inner`: the same two in the form that kernels take.
+    `dummy` (k, COLUMNS) float: of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
+    `proved_at` (k,) float: distances along the normal, mm, at which material proves that every posture is blocked, those that are
+        tried.
+    `judges`: whether the tolerance that is kept is fine enough to say anything about the cutter.
     """
 
     cutter: Cutter
@@ -217,9 +193,7 @@ def verdict_arrays_of(verdicts: VerdictBuffer) -> VerdictArrays:
 def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
     """Refuse contacts that are no points with a normal, a direction and curvatures: kernels say nothing of them.
 
-    Raises
-    ------
-    ValueError
+    Raises ValueError.
     """
     if not all(np.isfinite(column[rows]).all() for column in contacts):
         raise ValueError("contacts to search a posture for must be finite")
@@ -231,28 +205,11 @@ def search_postures(
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Contacts to decide.
-    context : Context
-    verdicts : VerdictBuffer
-    fixed : bool
-        As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
-    strict : bool
-        Only postures that curvature at the contact allows, as if there were no tolerance.
-    progress : callable, optional
-        Called with the number of pieces of work that are done, and the number of all.
-    work : Work, optional
-        Where what is looked at is counted.
-    brief : bool
-        What takes long is left undecided: enough for a reason, not for a verdict.
+    Raises ValueError: a contact is not a point with a normal and a curvature: nothing can be said of it.
 
-    Raises
-    ------
-    ValueError
-        A contact is not a point with a normal and a curvature: nothing can be said of it.
+    `rows` (m,) int64: contacts to decide. `fixed`: as for `in_chunks`: each contact starts from what was found at the one before
+    it in its piece. `strict`: only postures that curvature at the contact allows, as if there were no tolerance. `brief`: what
+    takes long is left undecided: enough for a reason, not for a verdict.
     """
     from plan_cutters.kernels.search.search import search
 
@@ -276,15 +233,7 @@ def free_in_posture(
 ) -> NDArray[np.bool_]:
     """Contacts (n,) of some rows (m,) at which the tool stands free in a posture that is known from elsewhere.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Contacts with a posture: its axis is one that the machine holds.
-    axis, tilt_direction : (n, 3) float
-    context : Context
-    work : Work, optional
-        Where what is looked at is counted.
+    `rows` (m,) int64: contacts with a posture: its axis is one that the machine holds. `axis`, `tilt_direction` (n, 3) float.
     """
     from plan_cutters.kernels.search.search import free
 

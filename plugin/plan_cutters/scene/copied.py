@@ -14,8 +14,7 @@ from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.scene.conditions import Conditions, rotations_of
-from plan_cutters.scene.copies import Copies, Rows
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Copies, Prepared, Rows
 
 #: Samples correspond within this share of the part's size, cosines of their normals within this, and rotations within this, rad.
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6
@@ -62,17 +61,13 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     unchanged = tuple(tuple(keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
     frames = _same_frames(samples, master, number, motions, ready.options.postures)
     group = np.where(number >= 0, number * (int(samples.face.max()) + 1) + samples.face, -1).astype(np.int64)
-    return Copies(master, number, motions, unchanged, frames, _verified(group, frames), group)
-
-
-def _verified(group: Rows, frames: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Of the copies of each group at which frames agree the first one, and every tenth after it."""
+    # Of the copies of each group at which frames agree the first one, and every tenth after it.
     rows = np.flatnonzero(frames)
     rows = rows[np.argsort(group[rows], kind="stable")]
-    _, first, size = np.unique(group[rows], return_index=True, return_counts=True)
-    chosen = np.zeros(len(group), bool)
-    chosen[rows[(np.arange(len(rows)) - np.repeat(first, size)) % _VERIFIED == 0]] = True
-    return chosen
+    _, first, count = np.unique(group[rows], return_index=True, return_counts=True)
+    verified = np.zeros(n, bool)
+    verified[rows[(np.arange(len(rows)) - np.repeat(first, count)) % _VERIFIED == 0]] = True
+    return Copies(master, number, motions, unchanged, frames, verified, group)
 
 
 def _same_frames(

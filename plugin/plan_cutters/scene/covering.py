@@ -1,8 +1,7 @@
 """Find the covers of the part's surface: bodies that overlap others or stand on them, and open shells that lie on a body."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
 from typing import Literal
 
 import numpy as np
@@ -12,6 +11,7 @@ from cad_io.arrays import Record
 from cad_io.kernel.shapes import component_of, faces_of
 from cad_io.part import Part
 from cad_io.part.bodies import Body
+from plan_cutters.domain.figures import consecutive
 from plan_cutters.scene.inside_material import balls_inside
 from plan_cutters.scene.obstacles import weights
 from plan_cutters.scene.preparation import Prepared
@@ -28,23 +28,14 @@ _FEW = 300
 class Covering(Record):
     """A body, and what of the samples lies inside it.
 
-    Attributes
-    ----------
-    index : int
-        Into the part's bodies.
-    rows : (m,) int64
-        Samples, those of sheets that lie on bodies not among them.
-    how : str
-        `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
-        Otherwise neither is sure.
-    faces : tuple of int
-        Of the body, ascending.
-    largest : bool
-        No other body is larger.
-    name : str
-        Of its component; empty where it has none of its own.
-    selection : str
-        Words for faces that choose this body and no other one.
+    `index`: into the part's bodies.
+    `rows` (m,) int64: samples, those of sheets that lie on bodies not among them.
+    `how`: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its
+        skin. Otherwise neither is sure.
+    `faces`: of the body, ascending.
+    `largest`: no other body is larger.
+    `name`: of its component; empty where it has none of its own.
+    `selection`: words for faces that choose this body and no other one.
     """
 
     index: int
@@ -61,7 +52,12 @@ def coverings(ready: Prepared) -> tuple[Covering, ...]:
     inside, surroundings, samples = ready.inside_bodies, ready.conditions.surroundings, ready.samples
     rows = np.flatnonzero(inside & ~np.isin(samples.face, surroundings.on_bodies))
     result = []
-    sizes = [_volume(ready, body) for body in surroundings.bodies]
+    sizes = list[float]()
+    for body in surroundings.bodies:
+        triangles, own_rows = surroundings.certain.triangles, surroundings.certain.rows_of(body.faces)
+        sign, (a, b, c) = weights(triangles.take(own_rows), [body]), np.moveaxis(triangles.vertex[own_rows], 1, 0)
+        # The volume that its triangles enclose.
+        sizes.append(abs(float((sign * (np.cross(a, b) * c).sum(axis=1)).sum())) / 6.0)
     for index in np.unique(ready.inside[rows]).tolist():
         mine = rows[ready.inside[rows] == index]
         own = sorted(number for number in surroundings.bodies[index].faces if number > 0)
@@ -93,15 +89,6 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     return "stands_on" if on.all() else "touches_or_overlaps"
 
 
-def _volume(ready: Prepared, body: Body) -> float:
-    """Volume that a body's triangles enclose, mm3."""
-    certain = ready.conditions.surroundings.certain
-    triangles, mine = certain.triangles, certain.rows_of(body.faces)
-    sign = weights(triangles.take(mine), [body])
-    a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)
-    return abs(float((sign * (np.cross(a, b) * c).sum(axis=1)).sum())) / 6.0
-
-
 def _named(part: Part, own: Sequence[int], others: set[int]) -> tuple[str, str]:
     """The name of a body's component, and the words for faces that choose this body and no other one."""
     components = component_of(part.tree)
@@ -121,10 +108,4 @@ def numbers(faces: Sequence[int]) -> str:
     >>> numbers([7, 8, 9, 12])
     'F7-9,F12'
     """
-    return ",".join(_runs(sorted(faces)))
-
-
-def _runs(faces: Sequence[int]) -> Iterator[str]:
-    for _, run in groupby(enumerate(faces), lambda each: each[1] - each[0]):
-        mine = [number for _, number in run]
-        yield f"F{mine[0]}" if len(mine) == 1 else f"F{mine[0]}-{mine[-1]}"
+    return ",".join(f"F{run[0]}" if len(run) == 1 else f"F{run[0]}-{run[-1]}" for run in consecutive(faces))

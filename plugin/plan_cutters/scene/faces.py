@@ -40,24 +40,14 @@ _LONGEST = 60
 class Chosen:
     """The choice makes some faces of a part targets and ignores some; those in neither list are other faces.
 
-    Attributes
-    ----------
-    targets, ignored : tuple of int
-        Face numbers, ascending.
-    asked : str
-        The words for `targets`.
-    ignore : tuple of str
-        The words for `ignored`.
-    unshaped : bool
-        The targets are all faces for which no list was given, and none of them that can be judged is sculptured.
-    clamped : tuple of int
-        Targets that are held in all setups.
-    blends : frozenset of int
-        Faces of the part that are fillets and rounds, whether chosen or not.
-    free_form : float
-        Share of the targets' area that is bent in both directions (`preference.free_form_share`).
-    repeated : mapping of int to int
-        Ignored faces that lie where others lie: which face stands for each.
+    `targets`, `ignored`: face numbers, ascending.
+    `asked`: the words for `targets`.
+    `ignore`: the words for `ignored`.
+    `unshaped`: the targets are all faces for which no list was given, and none of them that can be judged is sculptured.
+    `clamped`: targets that are held in all setups.
+    `blends`: faces of the part that are fillets and rounds, whether chosen or not.
+    `free_form`: share of the targets' area that is bent in both directions (`preference.free_form_share`).
+    `repeated`: ignored faces that lie where others lie: which face stands for each.
     """
 
     targets: tuple[int, ...]
@@ -82,26 +72,15 @@ def choose(
 ) -> Chosen:
     """Target and ignored faces of a part.
 
-    Parameters
-    ----------
-    part : Part
-    faces : str, objects or None
-        None: the faces picked on the host's object, else `DEFAULT`.
-    ignored : collection of int
-        Faces to leave out.
-    ignore : tuple of str
-        The words for these.
-    placed : Placement, optional
-        Its clamped faces stay targets: they are left for another setup, and named.
-    others : sequence of (Placement or None)
-        Of other setups: only what is clamped in all of them, too, is left.
-    repeated : mapping of int to int
-        Faces, ignored too, that lie where others lie: which face stands for each.
+    Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all
+    setups.
 
-    Raises
-    ------
-    OptionError
-        A choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all setups.
+    `faces`: without it those picked on the host's object, else `DEFAULT`.
+    `ignored`: faces to leave out.
+    `ignore`: the words for these.
+    `placed`: its clamped faces stay targets: they are left for another setup, and named.
+    `others` (sequence of (Placement or None)): of other setups: only what is clamped in all of them, too, is left.
+    `repeated`: faces, ignored too, that lie where others lie: which face stands for each.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
@@ -119,12 +98,8 @@ def repeated_groups(
 ) -> tuple[list[tuple[int, tuple[int, ...], int, tuple[int, ...]]], frozenset[int]]:
     """What is left out because it lies where others of the part lie.
 
-    Returns
-    -------
-    bodies : list of (int, tuple of int, int, tuple of int)
-        A body and its faces, and the body that stands for it and its faces.
-    faces : frozenset of int
-        Faces of none of these bodies.
+    Returns `bodies` list of (int, tuple of int, int, tuple of int): a body and its faces, and the body that stands for it and its
+    faces; `faces`: faces of none of these bodies.
     """
     from cad_io.part.patterns import repeats
 
@@ -143,10 +118,7 @@ def repeated_groups(
 def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
     """Numbers of the faces that are held in a setup; of what is `repeated`, those that stand for it.
 
-    Raises
-    ------
-    OptionError
-        A word selects no face of the part.
+    Raises OptionError: a word selects no face of the part.
     """
     if placed is None:
         return frozenset()
@@ -167,10 +139,7 @@ def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
 def face_numbers(part: "Part", value: Any) -> tuple[int, ...]:
     """Numbers of faces, ascending, from a number, a face's name, the words of `--faces`, or objects of a kernel or CAD host.
 
-    Raises
-    ------
-    OptionError
-        It selects no face of the part.
+    Raises OptionError: it selects no face of the part.
     """
     text = _word(part, value, "faces")
     if named := tuple(f.number for f in part.faces if f.name and f.name == text):
@@ -189,27 +158,16 @@ def select_faces(
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
-    Parameters
-    ----------
-    faces : sequence of FaceInfo
-        All faces of the part.
-    text : str
-        `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
+    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
+
+    `faces`: all faces of the part.
+    `text`: `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
         `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
         sculptured.
-    tree : sequence of Node
-        Components of the part.
-    ignored : iterable of int
-        Faces that cannot be targets.
-    blends : collection of int
-        Numbers of the faces that are fillets and rounds.
-    repeated : mapping of int to int
-        Faces that lie where others lie, and which one is taken for each.
-
-    Raises
-    ------
-    OptionError
-        The text is not of that form, selects nothing, or names an ignored face by its number.
+    `tree`: components of the part.
+    `ignored`: faces that cannot be targets.
+    `blends`: numbers of the faces that are fillets and rounds.
+    `repeated`: faces that lie where others lie, and which one is taken for each.
     """
     out = frozenset(ignored)
     remaining = [f for f in faces if f.number not in out]
@@ -275,7 +233,10 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
     else:
-        chosen = _numbered(plain, len(faces), where) | _of_kinds(plain, faces, blends)
+        sculptured = {f.number for f in faces if f.shape == "sculptured"}
+        kinds = {"all": every, "blends": set(blends), "sculptured": sculptured}
+        words = {each.strip() for each in plain.split(",")} & set(_KINDS)
+        chosen = _numbered(plain, len(faces), where).union(*(kinds[each] for each in words))
     # All but what a mistyped name selects would be everything.
     known_word = bool(chosen) or plain in _KINDS or _finished(plain)
     if word != plain:
@@ -283,14 +244,6 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     if not (known_word and chosen):
         raise OptionError(f"{where} selects no face of this part")
     return chosen
-
-
-def _of_kinds(plain: str, faces: Sequence[FaceInfo], blends: Collection[int]) -> set[int]:
-    """Numbers of the faces of each kind in a list."""
-    sculptured = {f.number for f in faces if f.shape == "sculptured"}
-    kinds = {"all": {f.number for f in faces}, "blends": set(blends), "sculptured": sculptured}
-    words = {word.strip() for word in plain.split(",")} & set(_KINDS)
-    return set[int]().union(*(kinds[word] for word in words))
 
 
 def _numbered(word: str, count: int, where: str) -> set[int]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
-from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Progress, in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9
@@ -42,11 +42,7 @@ def served_by(
 ) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
-    Returns
-    -------
-    free : (k, m) bool
-    made : int
-        How many times the tool was put down.
+    Returns `free` (k, m) bool; `made`: how many times the tool was put down.
     """
     way, made, _ = _tested(rows, axes, samples, context, progress)
     return way >= 0, made

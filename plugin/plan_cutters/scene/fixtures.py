@@ -1,12 +1,13 @@
-"""Fixtures in the scene: read once, placed, and joined with what stands around the part.
+"""Fixtures in the scene: read once, placed, joined with what stands around the part, and refused where they stand in it.
 
 The part's own surroundings stay as they are and are kept beside the joined ones: another fixture costs another tree, but no
-tessellation.
+tessellation. How deep a fixture may stand in the part all the same is `docs/operations_proof.md`, lemma K2.
 """
 
 import math
 from collections.abc import Callable, MutableMapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +24,13 @@ from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.fixture import CAD, MESH, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
-from plan_cutters.errors import UnjudgeableError
+from plan_cutters.errors import FixtureError, UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
-from plan_cutters.scene.triangles import AddedTriangles, pieces
-from plan_cutters.setups.gripped import material_bodies, unheld_bodies
-from plan_cutters.setups.holds import Hold
-from plan_cutters.setups.solids import box, cylinder, sides_of, triangles_of
+from plan_cutters.scene.triangles import AddedTriangles, divided, pieces
+from plan_cutters.setups.clamping import Hold
+from plan_cutters.setups.solids import box, cylinder, insides, sides_of, triangles_of
+from plan_cutters.setups.workpiece import material_bodies, unheld_bodies
 
 #: A table reaches this much farther than the part, mm: as far as a cutter may.
 TABLE = 2000.0
@@ -53,10 +54,7 @@ class _Body(Record):
 def read(fixture: Fixture, cache: FixtureCache, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
     """Read the source of a fixture; the result is None where words describe the fixture.
 
-    Raises
-    ------
-    ReadError
-        It cannot be read, or holds nothing that could be in the way.
+    Raises ReadError: it cannot be read, or holds nothing that could be in the way.
     """
     if fixture.kind:
         return None
@@ -104,28 +102,17 @@ def joined(
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
-    Parameters
-    ----------
-    surroundings : Surroundings
-        Of the part alone.
-    fixtures : sequence of Fixture
-    chord : float
-        Chord error to ask for, mm.
-    cache : mapping, changed
-        Fixtures that are known, by their sources: they are not read again.
-    setup : sequence of float
-        Unit setup axis, across which tables lie.
-    own, own_setup : sequence of Fixture, sequence of float
-        More fixtures, whose tables lie across another unit setup axis.
-    hold : callable, optional
-        Places a vise or chuck for a unit setup axis. None: there is none to be placed.
-    sign : (faces,) float, optional
-        Side of each face of the part that is out of the material. None: nobody asks which bodies a vise or chuck holds.
+    Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has nothing
+    to grip.
 
-    Raises
-    ------
-    ReadError, UnjudgeableError, FixtureError
-        A fixture cannot be read, or has no triangles; a vise or chuck has nothing to grip.
+    `surroundings`: of the part alone.
+    `chord`: chord error to ask for, mm.
+    `cache`: fixtures that are known, by their sources: they are not read again.
+    `setup`: unit setup axis, across which tables lie.
+    `own`, `own_setup`: more fixtures, whose tables lie across another unit setup axis.
+    `hold`: places a vise or chuck for a unit setup axis. None: there is none to be placed.
+    `sign` (faces,) float: side of each face of the part that is out of the material. None: nobody asks which bodies a vise or
+        chuck holds.
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
@@ -204,7 +191,18 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
     """A fixture in its own frame, as close to what it stands for as is asked."""
     source = read(fixture, cache)
     if isinstance(source, Mesh):
-        return _of_mesh(source, fixture.chord_error)
+        shells, notes = source.shells, list(source.notes)
+        if shells.open and shells.closed:
+            notes.append(
+                f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
+                "is in the way, not what may lie within"
+            )
+        elif shells.open:
+            notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
+        if shells.turned:
+            notes.append(f"{shells.turned} of its skins run the wrong way round: what lies within counts as material")
+        whole = Obstacles(_triangles(source.vertex, fixture.chord_error), shells.weight)
+        return _Body(whole, whole, (), tuple(notes))
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
     if key not in cache:
         cache[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
@@ -232,21 +230,6 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     missing += [(str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in boundary.lost]
     notes = [] if boundary.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
     return _Body(boundary.possible, boundary.certain, tuple(missing), (*part.warnings, *notes))
-
-
-def _of_mesh(mesh: Mesh, error: float) -> _Body:
-    shells, notes = mesh.shells, list(mesh.notes)
-    if shells.open and shells.closed:
-        notes.append(
-            f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
-            "is in the way, not what may lie within"
-        )
-    elif shells.open:
-        notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
-    if shells.turned:
-        notes.append(f"{shells.turned} of its skins run the wrong way round: what lies within counts as material")
-    whole = Obstacles(_triangles(mesh.vertex, error), shells.weight)
-    return _Body(whole, whole, (), tuple(notes))
 
 
 def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:
@@ -297,3 +280,121 @@ def _solid(vertex: Floats, error: float) -> _Body:
 
 def _triangles(vertex: Floats, error: float) -> Triangles:
     return Triangles(vertex, np.zeros(len(vertex), np.int32), error, ())
+
+
+#: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
+_APART, _MOST = 1 / 64, 200_000
+#: The depth is found to this share of itself, at first of about so many points.
+_PRECISION, _FEW = 0.002, 400
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Overlap(Record):
+    """Where a fixture and the part are deepest in each other, of the points looked at.
+
+    `depth`, mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface. `point` (3,) float.
+    """
+
+    depth: float
+    point: Floats
+
+
+def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
+    """Refuse fixtures that stand in the part.
+
+    Raises FixtureError: it names the fixture, the depth and the place.
+    """
+    part = (surroundings.alone or surroundings).certain
+    for each in surroundings.fixtures:
+        clamping, near = each.fixture.clamping, each.obstacles
+        if clamping is not None:
+            near = body_near(clamping, each.fixture, near.triangles.chord_error, part)
+        result = overlap(part, near, tolerance)
+        if result is not None:
+            x, y, z = (f"{value + 0.0:.4g}" for value in np.round(result.point, 6))
+            raise FixtureError(
+                f"{each.name} and the part stand {result.depth:.3g} mm deep in each other at {x},{y},{z} mm: check "
+                "its placement and its unit"
+            )
+
+
+def overlap(part: Obstacles, fixture: Obstacles, tolerance: float) -> Overlap | None:
+    """How deep a fixture stands in a part, or the part in it; None where they touch at most.
+
+    Only what is closed has an inside: two surfaces that enclose nothing are not compared.
+
+    `part`: the part alone, with what it surely encloses. `fixture`: in its place. `tolerance`: depth that is no fault, mm, beside
+    the chord errors of both.
+    """
+    deep, pairs = _compared(part, fixture, tolerance)
+    overlaps = [_deepest(points, other, deep) for points, other in pairs]
+    return max((each for each in overlaps if each is not None), key=lambda each: each.depth, default=None)
+
+
+def overlaps(part: Obstacles, fixture: Obstacles, tolerance: float) -> bool:
+    """Whether there is an overlap: of many points a few are looked at first, and its depth is not found."""
+    deep, pairs = _compared(part, fixture, tolerance)
+    each = [(points[:: 1 + len(points) // _FEW], points, other) for points, other in pairs]
+    return any(len(_within(few, deep, other)) for few, _, other in each) or any(
+        len(_within(points, deep, other)) for _, points, other in each
+    )
+
+
+def entered(part: Obstacles, fixture: Fixture, clamping: Clamping, deep: float) -> bool:
+    """Whether some point of a part's faces surely lies deeper in a vise or chuck in its place than a length, mm.
+
+    Corners and middles of triangles are looked at: no does not mean that nothing lies in it.
+    """
+    from plan_cutters.kernels.linear.within import Space, any_within
+
+    spaces = (Space(fixture.shift, fixture.rotation, *each) for each in insides(clamping, deep))
+    return any(any_within(part.tree, part.faces, each) for each in spaces)
+
+
+def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[float, list[tuple[Floats, Obstacles]]]:
+    """Depth that is no fault, mm, and points of each of two with the other in which they are searched; none where these are
+    apart."""
+    deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
+    ends = [o.corners for o in (part, fixture)]
+    low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
+    if (high - low < 0).any():
+        return deep, []
+    apart = max(_APART * float(np.linalg.norm(high - low)), deep)
+    return deep, [(_points(one, low, high, apart), other) for one, other in ((fixture, part), (part, fixture))]
+
+
+def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
+    """Points (n, 3) of triangles within a box, no farther apart than asked, if they are not too many."""
+    small = divided(obstacles.triangles.vertex[obstacles.rows_in(low, high)], low, high, apart, _MOST)
+    points = np.concatenate([*np.moveaxis(small, 1, 0), small.mean(axis=1)])
+    return points[((points >= low) & (points <= high)).all(axis=1)]
+
+
+def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
+    """The point (of n, 3) that is deepest in what obstacles enclose; None if none is deeper than a least depth, mm."""
+    within = partial(_within, solid=solid)
+    remaining, low, point = within(points, least), least, None
+    while len(remaining):
+        # Of some, the deepest; then only what is deeper.
+        few = remaining[:: 1 + len(remaining) // _FEW]
+        while len(deeper := within(few, 2.0 * low)):
+            few, low = deeper, 2.0 * low
+        high = 2.0 * low
+        while high - low > _PRECISION * low:
+            middle = 0.5 * (low + high)
+            deeper = within(few, middle)
+            few, low, high = (deeper, middle, high) if len(deeper) else (few, low, middle)
+        point = few[0]
+        remaining, low = within(remaining, high), high
+    return None if point is None else Overlap(low, point)
+
+
+def _within(points: Floats, clear: float, solid: Obstacles) -> Floats:
+    """Those of some points (n, 3) that are deeper in what obstacles enclose than a length, mm."""
+    from plan_cutters.kernels.material import far_inside
+
+    points = np.ascontiguousarray(points)
+    inside = np.zeros(len(points), bool)
+    if len(points) and solid.weight.any():
+        far_inside(points, clear, solid.solids, inside)
+    return np.ascontiguousarray(points[inside])

@@ -8,7 +8,7 @@ with the axis as it is given.
 
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, I
 from plan_cutters.kernels.codes import BEYOND, PARALLEL
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Conditions, Context, rotations_of, search_postures
-from plan_cutters.scene.threads import Progress, in_chunks
-from plan_cutters.scene.work import Work
+from plan_cutters.scene.work import Progress, Work, in_chunks
 
 Rows = NDArray[np.int64]
 #: Tilts and rotations this close to an end of a range are on it, rad.
@@ -43,13 +42,8 @@ def search(
 ) -> None:  # fmt: skip
     """Search a posture for contacts as `search_postures` does, and then with a flat or a flank of the tool on them.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    face : (n,) int32
-        Numbers of the faces that they lie on.
-    rows, context, verdicts, progress, fixed, work, brief
-        As for `search_postures`.
+    `face` (n,) int32: numbers of the faces that they lie on. `rows`, `context`, `verdicts`, `progress`, `fixed`, `work`, `brief`:
+    as for `search_postures`.
     """
     search_postures(contacts, rows, context, verdicts, progress, fixed=fixed, work=work, brief=brief)
     on_the_flat(contacts, rows[verdicts.not_reached[rows]], context, verdicts)
@@ -62,14 +56,7 @@ def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: Verd
     Its edge need not touch there: what the flat lies on is cut as well. Where that is not found, a contact is inaccessible only
     if it is proved that there is no place for the axis.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Those for which `search_postures` has found no posture.
-    context : Context
-    verdicts : VerdictBuffer
-        Read and written.
+    `rows` (m,) int64: those for which `search_postures` has found no posture. `verdicts`: read and written.
     """
     conditions = context.conditions
     if not conditions.postures.full_turn:
@@ -94,7 +81,8 @@ def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context:
     axis[rows] = along * contacts.normal[rows]
     off = np.flatnonzero(~conditions.allows(axis[rows]))
     axis[rows[off]] = _nearest(axis[rows[off]], conditions)
-    most = max(conditions.accuracy, _angle(2.0 * flat, conditions.tolerance))
+    # By how much the flat may lean and stay within the tolerance.
+    most = max(conditions.accuracy, min(BEYOND, math.asin(min(1.0, conditions.tolerance / (2.0 * flat)))))
     near = _between(axis[rows], along * contacts.normal[rows]) <= most
     rows = rows[near & conditions.allows(axis[rows])]
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
@@ -126,21 +114,13 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
 
     Of a contact that only the axis limit seemed to lose, the reason becomes that of the flank.
 
-    Parameters
-    ----------
-    contacts : Contacts
-    face : (n,) int32
-        Numbers of the faces that they lie on.
-    rows : (m,) int64
-        Those for which neither `search_postures` nor `on_the_flat` has found a posture.
-    context : Context
-    verdicts : VerdictBuffer
-        Read and written.
+    `face` (n,) int32: numbers of the faces that they lie on. `rows` (m,) int64: those for which neither `search_postures` nor
+    `on_the_flat` has found a posture. `verdicts`: read and written.
     """
     conditions = context.conditions
     rows = rows[verdicts.reason[rows] != INSIDE]
     low, high = conditions.postures.tilt
-    hints = _Hints.of(len(contacts.normal))
+    hints = np.full((2, len(contacts.normal)), -1)
     for flank in context.outer_tool.flanks:
         if not low - _WHOLE <= flank.tilt <= high + _WHOLE:
             continue
@@ -151,18 +131,6 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
         rows = rows[verdicts.not_reached[rows]]
 
 
-class _Hints(NamedTuple):
-    """Triangles that were in the way of samples (n,) at the axis before, or -1: of what surely is, and of what may be."""
-
-    certain: NDArray[np.int64]
-    possible: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, n: int) -> "_Hints":
-        """None yet."""
-        return cls(np.full(n, -1), np.full(n, -1))
-
-
 def _on_flank(
     contacts: Contacts,
     rows: Rows,
@@ -171,9 +139,12 @@ def _on_flank(
     whole: bool,
     context: Context,
     verdicts: VerdictBuffer,
-    hints: _Hints,
+    hints: Rows,
 ) -> None:
-    """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
+    """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that.
+
+    `hints` (2, n): triangles that were in the way at the axis before, or -1: of what surely is, and of what may be.
+    """
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
     from plan_cutters.kernels.search.flats_and_flanks import FREE, NONE, along_flank
 
@@ -199,7 +170,7 @@ def _on_flank(
         return state
 
     def surely(some: Rows) -> NDArray[np.int8]:
-        return tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, some, hints.certain)
+        return tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, some, hints[0])
 
     # What is surely in the way of the smaller tool leaves nothing to look for. Why the larger one does not stand is looked at
     # where only the axis limit seemed to lose the contact.
@@ -207,8 +178,8 @@ def _on_flank(
     proved = inaccessible & ~unknown
     sure = surely(np.flatnonzero(proved))
     open_ = np.flatnonzero(~(proved & (sure == NONE)))
-    hints.possible[rows[unknown]] = -1
-    state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints.possible)
+    hints[1, rows[unknown]] = -1
+    state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints[1])
     free = state == FREE
     at = rows[free]
     f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])
@@ -350,11 +321,6 @@ def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions
         turn = rotations_of(contacts.normal[rows], contacts.direction_max[rows], f)
         held &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
     return rows[held], axis[held]
-
-
-def _angle(length: float, tolerance: float) -> float:
-    """By how much a line of a length, mm, may lean and stay within the tolerance, mm; rad, no more than `BEYOND`."""
-    return min(BEYOND, math.asin(min(1.0, tolerance / length)))
 
 
 def _between(axis: Floats, normal: Floats) -> Floats:

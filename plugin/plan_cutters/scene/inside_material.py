@@ -17,19 +17,14 @@ from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
 from plan_cutters.kernels.codes import AWAY, BALL
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cover(Record):
     """A contact inside material lies under this face.
 
-    Attributes
-    ----------
-    face : int
-        Number of the face at which the way out along the normal leaves the body.
-    point : (3,) float
-        Where that is, mm.
+    `face`: number of the face at which the way out along the normal leaves the body. `point` (3,) float: where that is, mm.
     """
 
     face: int
@@ -42,25 +37,11 @@ def inside_material(
 ) -> Ints:  # fmt: skip
     """In which body contacts lie so deep that every posture is blocked.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    orientation : Orientation
-        Side of each face.
-    bodies : sequence of Body
-    certain : Obstacles
-    tolerance : float
-        Gouge tolerance that is kept, mm.
-    jobs : int, optional
-        Threads.
-    known : (n,) int32, optional
-        The same of another setup: the part has the same bodies there, the first of all, and fixtures alone are looked at again.
+    Returns (n,) int32: index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material
+    besides, that void (`voids`).
 
-    Returns
-    -------
-    (n,) int32
-        Index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material besides,
-        that void (`voids`).
+    `orientation`: side of each face. `tolerance`: gouge tolerance that is kept, mm. `jobs`: threads. `known` (n,) int32: the same
+    of another setup: the part has the same bodies there, the first of all, and fixtures alone are looked at again.
     """
     _, deep = certain.depths(tolerance)
     point = samples.point + AWAY * deep * samples.normal
@@ -149,13 +130,7 @@ def inside_bodies(within: Ints, bodies: Sequence[Body], orientation: Orientation
 
     The wall of a void is one, though no cutter gets there.
 
-    Parameters
-    ----------
-    within : (n,) int32
-        As `buried` gives it.
-    bodies : sequence of Body
-        Of the part, without fixtures.
-    orientation : Orientation
+    `within` (n,) int32: as `inside_material` gives it. `bodies`: of the part, without fixtures.
     """
     mine = (within >= 0) & (within < len(bodies))
     if mine.any():

@@ -41,25 +41,15 @@ _MARGIN = 0.5
 class Obstacles(Record):
     """Triangles with their bounding tree.
 
-    Attributes
-    ----------
-    triangles : Triangles
-        As tessellated.
-    weight : (n,) int8
-        How often each counts as part of a skin that encloses something; default: nothing is enclosed.
-    open_boxes : (k, 2, 3) float
-        Boxes of skins that are not quite closed: nothing in them is surely outside.
-    gap : float
-        Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
-    near : (2, 3) float, optional
-        Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
-    first : int, optional
-        So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
+    Raises UnjudgeableError: there are no triangles, or one has a corner that is no point: nothing could be called safe.
 
-    Raises
-    ------
-    UnjudgeableError
-        There are no triangles, or one has a corner that is no point: nothing could be called safe.
+    `triangles`: as tessellated.
+    `weight` (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
+    `open_boxes` (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
+    `gap`: widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+    `near` (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
+    `first`: so many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds
+        all.
     """
 
     triangles: Triangles
@@ -313,9 +303,20 @@ class Obstacles(Record):
     def skin_of(self, body: Body) -> "Obstacles":
         """The triangles of one body; their tree is built once."""
         key = (tuple(body.faces), tuple(body.sign))
-        if key not in self._skins:
-            self._skins[key] = self._skin_of(body)
-        return self._skins[key]
+        if key in self._skins:
+            return self._skins[key]
+        own = self._own
+        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
+            result = own.skin_of(body)
+        else:
+            mine = self.rows_of(body.faces)
+            triangles = self.triangles.take(mine)
+            # A fixture is one body whatever it consists of, and its triangles know what they count.
+            weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
+            whole = len(mine) == len(self.triangles) and (weight == self.weight).all()
+            result = self if whole else Obstacles(triangles, weight)
+        self._skins[key] = result
+        return result
 
     @cached_property
     def _skins(self) -> "dict[tuple[tuple[int, ...], tuple[int, ...]], Obstacles]":
@@ -331,31 +332,12 @@ class Obstacles(Record):
         none = np.zeros(0, np.int64)
         return np.sort(np.concatenate([none, *(self._rows.get(number, none) for number in set(faces))]))
 
-    def _skin_of(self, body: Body) -> "Obstacles":
-        own = self._own
-        if own is not None and not np.isin(self.triangles.face[self.first :], list(body.faces)).any():
-            return own.skin_of(body)
-        mine = self.rows_of(body.faces)
-        triangles = self.triangles.take(mine)
-        # A fixture is one body whatever it consists of, and its triangles know what they count.
-        weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
-        if len(mine) == len(self.triangles) and (weight == self.weight).all():
-            return self
-        return Obstacles(triangles, weight)
-
     def holds(
         self, tool: Assembly, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats, *, certain: bool = False
     ) -> NDArray[np.bool_]:
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
-        Parameters
-        ----------
-        tool : Assembly
-        contact, normal, tilt_direction : (n, 3) float
-        tilt : (n,) float
-            rad.
-        certain : bool
-            Only those of which it is sure.
+        `contact`, `normal`, `tilt_direction` (n, 3) float. `tilt` (n,) float: rad. `certain`: only those of which it is sure.
         """
         from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
 

@@ -1,22 +1,161 @@
-"""A part that is ready to be judged, cutter by cutter."""
+"""A part that is ready to be judged, cutter by cutter: its samples, how it stands in each setup, and which samples are copies."""
 
+import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import SurfaceSamples
-from cad_io.arrays import Ints, Record
+from cad_io import Orientation, Part, SurfaceSamples
+from cad_io.arrays import Floats, Ints, Record
+from cad_io.part.equal_faces import Motion
 from cad_io.part.patterns import Pattern
+from cad_io.sample import bends, sample
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement, axis_words
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
+from plan_cutters.errors import FixtureError, OptionError, TooManySamplesError
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.scene.copies import Copies
-from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.faces import Chosen, clamped_faces
+from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.spacing import Spacing
+from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
+
+Rows = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Copies(Record):
+    """Samples that are images of others under motions of the whole part.
+
+    `master` (n,) int64: the sample whose image each one is; itself where it is none.
+    `motion` (n,) int32: which motion carries the master onto it, -1 for none.
+    `unchanged`: of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is
+        ignored.
+    `frames` (n,) bool: copies whose postures that are searched are the images of those searched at the master.
+    `verified` (n,) bool: those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion
+        carries onto another.
+    `group` (n,) int64: the same for copies of one motion on one face, -1 for none.
+    `setup`: counted from 0, in which the part is looked at.
+    """
+
+    master: Rows
+    motion: Ints
+    motions: tuple[Motion, ...]
+    unchanged: tuple[tuple[bool, ...], ...]
+    frames: NDArray[np.bool_]
+    verified: NDArray[np.bool_]
+    group: Rows
+    setup: int = 0
+
+    @property
+    def copy(self) -> NDArray[np.bool_]:
+        """Samples (n,) that are images of others."""
+        return np.asarray(self.motion >= 0)
+
+    @property
+    def follow(self) -> NDArray[np.bool_]:
+        """Copies (n,) of which it may follow that they are not reached, where their master is not."""
+        follows = np.append(np.array(self.unchanged[self.setup], bool), False)
+        return np.asarray(self.frames & self.copy & follows[self.motion])
+
+    def moved(self, rows: Rows, vector: Floats) -> Floats:
+        """Vectors (m, 3) at the masters of copies, as the motions carry them."""
+        result = np.full((len(rows), 3), np.nan)
+        for k, motion in enumerate(self.motions):
+            mine = self.motion[rows] == k
+            result[mine] = motion.directions(vector[mine])
+        return result
+
+
+#: Spacing of samples, mm: one, by face number, or none where they are taken on a grid.
+Spacing = float | dict[int, float] | None
+
+#: Samples that a plan may take.
+MOST_SAMPLES = 5_000_000
+#: Environment variable by which whoever runs a service allows fewer.
+MOST = "PLAN_CUTTERS_MOST_SAMPLES"
+#: Samples that a default plan may take, in all.
+BUDGET = 40_000
+#: Share of the smallest radius, and turn of the normal (rad), between neighbouring samples.
+_SHARE, _TURN = 0.25, 0.2
+#: Curvature makes the spacing finer by no more than this.
+_FINEST = 4.0
+
+
+def default_spacing(
+    part: Part, orientation: Orientation, faces: Sequence[int], cutters: Sequence[Cutter]
+) -> tuple[dict[int, float], float]:
+    """Spacing of each target face, mm, and how many times as coarse as it should be, for the budget.
+
+    A quarter of the smallest cutter's radius, finer (up to four times) where the surface bends within it, coarser for
+    all faces alike where the budget binds.
+    """
+    base = _SHARE * min(c.radius for c in cutters)
+    scout = bends(part, orientation, faces, 9)
+    spacing: dict[int, float] = {}
+    for number in faces:
+        here = np.nan_to_num(scout.get(number, np.zeros(0)))
+        # A median: a point at an apex or a crease says nothing about the face.
+        typical = float(np.median(here)) if len(here) else 0.0
+        spacing[number] = min(base, max(base / _FINEST, _TURN / typical if typical else base))
+    wanted = sum(part.faces[number - 1].area / spacing[number] ** 2 for number in faces)
+    coarser = max(1.0, (wanted / BUDGET) ** 0.5)
+    return {number: value * coarser for number, value in spacing.items()}, coarser
+
+
+class Sampled(NamedTuple):
+    """Samples, and what `Prepared` says of their spacing."""
+
+    samples: SurfaceSamples
+    spacing: Spacing
+    coarser: float
+
+
+def sampled(
+    part: Part,
+    orientation: Orientation,
+    options: Options,
+    faces: Sequence[int],
+    cutters: Sequence[Cutter],
+    at: Callable[[int], None] = lambda face: None,
+) -> Sampled:
+    """Sample faces as the options ask; `at` as in `sample`."""
+    spacing: Spacing = options.spacing
+    coarser = 1.0
+    if options.grid is None and options.spacing is None:
+        spacing, coarser = default_spacing(part, orientation, faces, cutters)
+    return Sampled(sample(part, orientation, grid=options.grid, spacing=spacing, faces=faces, at=at), spacing, coarser)
+
+
+def spacing_key(options: Options, cutters: Sequence[Cutter]) -> tuple[float | None, ...]:
+    """All that samples follow from, beside the part, its faces and their sides."""
+    least = min(cutter.radius for cutter in cutters) if options.grid is None and options.spacing is None else None
+    return options.grid, options.spacing, least
+
+
+def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
+    """Refuse to sample more than memory holds, before it is tried."""
+    stated, wanted = os.environ.get(MOST, "") or str(MOST_SAMPLES), 0.0
+    if not stated.isdecimal():
+        raise OptionError(f"{MOST} in the environment must be a whole number, not {stated!r}")
+    most = min(MOST_SAMPLES, int(stated))
+    if options.grid is not None:
+        wanted = len(faces) * float(options.grid) ** 2
+    elif options.spacing is not None:
+        wanted = sum(part.faces[n - 1].area for n in faces) / options.spacing / options.spacing
+    if wanted > most:
+        raise TooManySamplesError(
+            f"that would take about {wanted:.2g} samples, at most {most:.0e} are taken: sample more coarsely, "
+            "or choose faces with --faces",
+            file=part.file,
+        )
+
 
 #: A unit direction of the part.
 Axis = tuple[float, float, float]
@@ -26,14 +165,8 @@ Axis = tuple[float, float, float]
 class OtherSetup(Record):
     """Another setup than the first has its own conditions, and its own samples that no cutter gets to.
 
-    Attributes
-    ----------
-    conditions : Conditions
-        With the obstacles of that setup.
-    inside : (n,) int32
-        The body that each sample lies within there, -1 for none.
-    clamped : (n,) bool
-        Samples of faces that are held there.
+    `conditions`: with the obstacles of that setup. `inside` (n,) int32: the body that each sample lies within there, -1 for none.
+    `clamped` (n,) bool: samples of faces that are held there.
     """
 
     conditions: Conditions
@@ -45,39 +178,21 @@ class OtherSetup(Record):
 class Prepared(Record):
     """Everything that is needed to judge a cutter.
 
-    Attributes
-    ----------
-    scene : Scene
-    options : Options
-    chosen : Chosen
-        Target and ignored faces.
-    spacing : float, dict or None
-        Of the samples: one, by face number, or none where they were taken on a grid.
-    samples : SurfaceSamples
-    surface_class : (n,) uint8
-    region : (n,) int32
-        Connected samples of one class.
-    inside : (n,) int32
-        The body that each sample lies within in the first setup, -1 for none.
-    inside_bodies : (n,) bool
-        Samples that lie inside another body of the part (`inside_material.inside_bodies`).
-    conditions : Conditions
-    cutters : tuple of Cutter
-        From the most wanted down.
-    coarser : float
-        How many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
-    held : (n,) bool, optional
-        Samples of faces that are clamped in the first setup; None: none of them is.
-    others : tuple of OtherSetup
-        The setups beside the first.
-    exempt : (n,) bool, optional
-        Samples at sharp inside edges that no cutter has to reach (`judging.sharp_edges.exempt`); None: all are required.
-    patterns : tuple of Pattern
-        Equal faces of the part, and motions that carry it onto itself.
-    copies : Copies, optional
-        Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
-    cache : Cache
-        What stages make of this part is kept there.
+    `chosen`: target and ignored faces.
+    `spacing`: of the samples: one, by face number, or none where they were taken on a grid.
+    `surface_class` (n,) uint8.
+    `region` (n,) int32: connected samples of one class.
+    `inside` (n,) int32: the body that each sample lies within in the first setup, -1 for none.
+    `inside_bodies` (n,) bool: samples that lie inside another body of the part (`inside_material.inside_bodies`).
+    `cutters`: from the most wanted down.
+    `coarser`: how many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
+    `held` (n,) bool: samples of faces that are clamped in the first setup; None: none of them is.
+    `others`: the setups beside the first.
+    `exempt` (n,) bool: samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are
+        required.
+    `patterns`: equal faces of the part, and motions that carry it onto itself.
+    `copies`: samples that these motions carry onto others; None where there are few, or patterns are not to be used.
+    `cache`: what stages make of this part is kept there.
     """
 
     scene: Scene
@@ -102,9 +217,8 @@ class Prepared(Record):
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
         """Give the setup axis and, where it is known, the direction along the machine's X, of each requested setup."""
-        options, axes = self.options, (self.scene.setup, *self.options.other_setups)
-        places = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
-        return tuple((axis, None if place is None else place.x) for axis, place in zip(axes, places, strict=True))
+        axes = self.scene.setup, *self.options.other_setups
+        return tuple((axis, None if at is None else at.x) for axis, at in zip(axes, places(self.options), strict=True))
 
     @property
     def setups(self) -> tuple[Conditions, ...]:
@@ -116,7 +230,7 @@ class Prepared(Record):
         if setup == 0:
             return self
         other = self.others[setup - 1]
-        copies = None if self.copies is None else self.copies.there(setup)
+        copies = None if self.copies is None else replace(self.copies, setup=setup)
         return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped, copies=copies)
 
     def alone(self, setup: int) -> "Prepared":
@@ -167,3 +281,77 @@ class Prepared(Record):
     def not_required(self) -> NDArray[np.bool_]:
         """Samples (n,) that no cutter has to reach: inside other bodies of the part, or exempt."""
         return self.inside_bodies if self.exempt is None else self.inside_bodies | self.exempt
+
+
+def places(options: Options) -> tuple[Placement | None, ...]:
+    """How the part stands in each setup, as far as it is known, the first one first."""
+    return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
+
+
+def fixtures_of(options: Options) -> list[Fixture]:
+    """The fixtures of all setups."""
+    return [*options.fixtures, *(each for place in places(options) if place is not None for each in place.fixtures)]
+
+
+def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
+    """The conditions of each setup, the first one first: with the obstacles of each, and one tolerance that all of them keep.
+
+    Raises FixtureError: a fixture stands in the part, or faces of one of another setup could not be read.
+    """
+    first, shared = scene.surround(), options.shared_fixtures
+    axes = (scene.setup, *options.other_setups)
+    own = [() if place is None else place.fixtures for place in places(options)]
+    each_setup: list[Surroundings] = [first]
+    for axis, mine in zip(axes[1:], own[1:], strict=True):
+        each_setup.append(scene.surround_in(axis, shared, mine))
+        if doubts := [each for each in each_setup[-1].doubts if each not in first.doubts]:
+            # What is missing there would have to be told of each setup by itself.
+            raise FixtureError(
+                f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this setup the first"
+            )
+    tolerance = max(each.tolerance(scene.asked) for each in each_setup)
+    along = [None if place is None or place.x is None else np.array(place.x) for place in places(options)]
+    return [
+        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, x, options.accuracy)
+        for axis, each, x in zip(axes, each_setup, along, strict=True)
+    ]
+
+
+def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
+    """Add what is held in the first setup, and the other setups with what cannot be machined there."""
+    held, others = list[NDArray[np.bool_]](), list[OtherSetup]()
+    for place, each in zip(places(ready.options), conditions, strict=True):
+        # Faces that the setup clamps, or with which the part rests in a vise or chuck.
+        rests_on = [number for one in each.surroundings.fixtures if one.hold is not None for number in one.hold.rests_on]
+        faces = sorted({*clamped_faces(ready.scene.part, place, ready.scene.repeated), *rests_on})
+        held.append(np.isin(ready.samples.face, faces))
+    for each, clamped in zip(conditions[1:], held[1:], strict=True):
+        inside = ready.inside
+        if each.surroundings is not ready.conditions.surroundings:
+            inside = inside_material(
+                ready.samples, ready.scene.orientation, each.surroundings.enclosing, each.surroundings.certain, each.tolerance,
+                each.jobs, inside,
+            )  # fmt: skip
+        others.append(OtherSetup(each, inside, clamped))
+    return replace(ready, held=held[0], others=tuple(others))
+
+
+def stood_on(ready: Prepared) -> NDArray[np.bool_]:
+    """Samples (n,) that what was proposed may hide: of faces that stand on a proposed table, or that a vise or chuck holds which
+    was placed for a setup; of all faces where nothing but such vises and chucks stands anywhere."""
+    faces, clamped = set[int](), True
+    for place, conditions in zip(places(ready.options), ready.setups, strict=True):
+        faces.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+        proposed = place is not None and place.proposed
+        for each in conditions.surroundings.fixtures:
+            faces.update(() if each.hold is None else each.hold.faces)
+            clamped &= each.hold is not None or (proposed and each.fixture.clamping is not None)
+    return np.isin(ready.samples.face, sorted(faces)) | (clamped and bool(faces))
+
+
+def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
+    """The same verdicts with a reason of its own where fixtures alone are in the way, on faces that what was proposed holds."""
+    mine = stood_on(ready) & verdicts.not_reached & (verdicts.reason == FIXTURE)
+    if not mine.any():
+        return verdicts
+    return replace(verdicts, reason=np.where(mine, ANOTHER_SETUP, verdicts.reason).astype(np.uint8))

@@ -20,12 +20,10 @@ from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
-from plan_cutters.scene.overlap import entered, overlaps, refuse_overlaps
+from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
-from plan_cutters.setups.clamping import Workpiece, held
-from plan_cutters.setups.gripped import material_bodies
-from plan_cutters.setups.holds import Hold
+from plan_cutters.setups.clamping import Hold, Workpiece, held
+from plan_cutters.setups.workpiece import material_bodies
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
@@ -210,6 +208,14 @@ class Scene(Record):
         for each in self.fixtures:
             read(each, self._memory.sources, timeout=timeout)
 
+    def _joined(
+        self, alone: Surroundings, fixtures: Sequence[Fixture], chord: float, setup: Sequence[float] | None = None,
+        own: Sequence[Fixture] = (), own_setup: Sequence[float] = (0.0, 0.0, 1.0),
+    ) -> Surroundings:  # fmt: skip
+        """Join surroundings without fixtures with some, as `joined` does, for this setup axis or another one."""
+        sources, axis, sign = self._memory.sources, setup or self.setup, self.orientation.sign
+        return joined(alone, fixtures, chord, sources, axis, own, own_setup, self.hold, sign)
+
     def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1, cache: Cache = NO_CACHE) -> Surroundings:
         """Gather the possible and the certain obstacles, unless that was done before.
 
@@ -231,9 +237,7 @@ class Scene(Record):
                     # What is missing may be so for a limit of time.
                     lambda made: not made.missing,
                 ).sharing()
-            obstacles = joined(
-                memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign
-            )
+            obstacles = self._joined(memory.alone, self.fixtures, chord)
             refuse_overlaps(obstacles, obstacles.tolerance(self.asked))
             memory.around = obstacles
         return memory.around
@@ -258,17 +262,7 @@ class Scene(Record):
         alone = memory.alone
         if alone is None or (mine == self.fixtures and not (setup != self.setup and any(f.follows_setup for f in own))):
             return self.surround()
-        surroundings = joined(
-            alone,
-            mine[: len(shared)],
-            chord,
-            memory.sources,
-            self.setup,
-            mine[len(shared) :],
-            setup,
-            hold=self.hold,
-            sign=self.orientation.sign,
-        )
+        surroundings = self._joined(alone, mine[: len(shared)], chord, self.setup, mine[len(shared) :], setup)
         refuse_overlaps(surroundings, surroundings.tolerance(self.asked))
         return surroundings
 
@@ -290,9 +284,7 @@ class Scene(Record):
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
-        return joined(
-            memory.alone, Fixture.each_of(word), chord, memory.sources, setup, hold=self.hold, sign=self.orientation.sign
-        )
+        return self._joined(memory.alone, Fixture.each_of(word), chord, setup)
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
         """Place a vise or chuck for a unit setup axis; `surround` must have been called.
@@ -332,4 +324,4 @@ class Scene(Record):
         alone, memory = surroundings(self.part, chord, ignored=self.ignored), self._memory
         # A vise stays where it is, however close triangles are.
         memory.alone = alone if memory.alone is None else memory.alone
-        return joined(alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign)
+        return self._joined(alone, self.fixtures, chord)

@@ -19,8 +19,8 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
-from plan_cutters.scene.thickened import boxed, thickened
-from plan_cutters.setups.holds import Hold
+from plan_cutters.scene.triangles import boxed, thickened
+from plan_cutters.setups.clamping import Hold
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
@@ -31,29 +31,17 @@ _LOOKED_AT = 50
 class PlacedFixture(Record):
     """A fixture where it stands.
 
-    Attributes
-    ----------
-    number : int
-        Face number of all its triangles, negative.
-    fixture : Fixture
-    source : Part or Mesh, optional
-        What was read of it; None for words.
-    obstacles : Obstacles
-        Its own, in part coordinates.
-    body : Body, optional
-        That it surely encloses something.
-    missing : tuple of (str, str, str)
-        Faces of it that stand in the way only as a guess, with the reason and what stands in for each.
-    notes : tuple of str
-        What the plan must say of it.
-    shown : (n, 3, 3) float
-        Triangles to draw of it, mm.
-    requested : Fixture, optional
-        What was requested where it was placed for the setup; None: `fixture` itself.
-    hold : Hold, optional
-        What it grips, where it was placed for the setup.
-    unheld : tuple of int
-        Of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
+    `number`: face number of all its triangles, negative.
+    `source`: what was read of it; None for words.
+    `obstacles`: its own, in part coordinates.
+    `body`: that it surely encloses something.
+    `missing` (tuple of (str, str, str)): faces of it that stand in the way only as a guess, with the reason and what stands in
+        for each.
+    `notes`: what the plan must say of it.
+    `shown` (n, 3, 3) float: triangles to draw of it, mm.
+    `requested`: what was requested where it was placed for the setup; None: `fixture` itself.
+    `hold`: what it grips, where it was placed for the setup.
+    `unheld`: of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
     """
 
     number: int
@@ -78,25 +66,16 @@ class PlacedFixture(Record):
 class Surroundings(Record):
     """The surroundings hold the possible and the certain obstacles of a part in one setup.
 
-    Attributes
-    ----------
-    possible : Obstacles
-        Everything that may be in the way: a posture that misses it is safe.
-    certain : Obstacles
-        Everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is uncertain.
-    bodies : tuple of Body
-        Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
-    missing : tuple of (int, str, str)
-        Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a
-        `box`, or `none` where its place is not known.
-    on_bodies : tuple of int
-        Faces of no body that lie on the faces of one, as construction geometry does.
-    lost : tuple of LostFace
-        Faces of the file that the part does not have; those it has in another form are in `missing`.
-    fixtures : tuple of PlacedFixture
-        Fixtures that stand among the obstacles; nothing else here is about them.
-    alone : Surroundings, optional
-        The part's own, without the fixtures; None where there are none.
+    `possible`: everything that may be in the way: a posture that misses it is safe.
+    `certain`: everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is
+        uncertain.
+    `bodies`: bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
+    `missing` (tuple of (int, str, str)): faces that stand in the way only as a guess, with the reason and the proxy geometry of
+        each: its own `triangles`, a `box`, or `none` where its place is not known.
+    `on_bodies`: faces of no body that lie on the faces of one, as construction geometry does.
+    `lost`: faces of the file that the part does not have; those it has in another form are in `missing`.
+    `fixtures`: fixtures that stand among the obstacles; nothing else here is about them.
+    `alone`: the part's own, without the fixtures; None where there are none.
     """
 
     possible: Obstacles
@@ -171,22 +150,10 @@ def surroundings(
 ) -> Surroundings:
     """Gather all that stands in a cutter's way.
 
-    Parameters
-    ----------
-    part : Part
-    chord : float
-        Chord error to ask for, mm.
-    ignored : collection of int
-        Numbers of faces to leave out.
-    jobs : int, optional
-        Faces that are worked on at a time.
-    at : callable, optional
-        Told whose work is under way and at which face, as in `tessellate`.
+    Raises UnjudgeableError: no face has triangles.
 
-    Raises
-    ------
-    UnjudgeableError
-        No face has triangles.
+    `chord`: chord error to ask for, mm. `ignored`: numbers of faces to leave out. `jobs`: faces that are worked on at a time.
+    `at`: told whose work is under way and at which face, as in `tessellate`.
     """
     faces = [f.number for f in part.faces if f.number not in ignored]
     triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)

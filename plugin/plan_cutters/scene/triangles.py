@@ -1,4 +1,6 @@
-"""Triangles that are added to others, so that those of a part are there once however it stands; and triangles that are halved."""
+"""Triangles: added to others, so that those of a part are there once however it stands; halved; and thickened to proxy geometry,
+all places in which a surface may be that they are not close to.
+"""
 
 from typing import Any
 
@@ -10,13 +12,8 @@ from cad_io.arrays import Floats, Ints, Triangles
 class AddedTriangles(Triangles):
     """Triangles, of which the first ones are shared and the others are added. `vertex` is put together where it is asked for.
 
-    Parameters
-    ----------
-    shared, added : (n, 3, 3), (m, 3, 3) float
-        mm.
-    face : (n + m,) int32
-    chord_error, missing, measured, loose, errors
-        As of `Triangles`.
+    `shared`, `added` (n, 3, 3), (m, 3, 3) float: mm. `face` (n + m,) int32. `chord_error`, `missing`, `measured`, `loose`,
+    `errors`: as of `Triangles`.
     """
 
     __slots__ = ("added", "shared")
@@ -73,3 +70,59 @@ def halved(vertex: Floats, side: Floats) -> Floats:
     a, b, c = (vertex[np.arange(len(vertex)), (side.argmax(axis=1) + k) % 3] for k in range(3))
     middle = 0.5 * (a + b)
     return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+
+#: Triangles of a prism with six sides, outward, by the numbers of its corners: those below, then those above, counter-clockwise.
+_CAPS = [(0, k + 1, k) for k in range(1, 5)] + [(6, k + 6, k + 7) for k in range(1, 5)]
+_SIDES = [each for k in range(6) for each in ((k, (k + 1) % 6, k + 6), ((k + 1) % 6, (k + 1) % 6 + 6, k + 6))]
+_PRISM = np.array(_CAPS + _SIDES)
+#: Corners of a box, and its triangles, outward.
+_CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+_BOX = np.array([(1, 3, 0), (4, 1, 0), (0, 3, 2), (2, 4, 0), (1, 7, 3), (5, 1, 4),
+                 (5, 7, 1), (3, 7, 2), (6, 4, 2), (2, 7, 6), (6, 5, 4), (7, 5, 6)])  # fmt: skip
+#: A triangle whose height is a smaller share of its longest side has no normal that is known well enough.
+_THIN = 1e-6
+
+
+def thickened(vertex: Floats, error: float) -> Floats:
+    """Closed skins around all that is within a distance of triangles.
+
+    Around each triangle stands a prism: above and below at that distance, its sides along the triangle's sides and across its
+    corners. That for an error encloses those for smaller ones. A needle has the box around it.
+
+    `vertex` (n, 3, 3) float: mm. `error`: mm, not negative. Returns (t, 3, 3) float: triangles, counter-clockwise seen from
+    outside; none where there are none.
+    """
+    # What rounding takes from a skin is given back.
+    error += 1e-12 * float(np.abs(vertex).max(initial=0.0)) + np.finfo(float).tiny
+    side = np.roll(vertex, -1, axis=1) - vertex
+    length = np.linalg.norm(side, axis=2)
+    normal = np.cross(side[:, 0], side[:, 1])
+    twice = np.linalg.norm(normal, axis=1)
+    flat = (twice > _THIN * length.max(axis=1, initial=0.0) ** 2) & (length.min(axis=1, initial=np.inf) > 0.0)
+    needles = vertex[~flat]
+    boxes = [boxed(low - error, high + error) for low, high in zip(needles.min(axis=1), needles.max(axis=1), strict=True)]
+    return np.concatenate([_prisms(vertex[flat], error), *boxes])
+
+
+def boxed(low: Floats, high: Floats) -> Floats:
+    """The box between two corners (3,), as `thickened` gives it."""
+    return np.asarray((low + _CORNERS * (high - low))[_BOX])
+
+
+def _prisms(vertex: Floats, error: float) -> Floats:
+    side = np.roll(vertex, -1, axis=1) - vertex
+    normal = np.cross(side[:, 0], side[:, 1])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    outward = np.cross(side, normal[:, None])
+    outward /= np.linalg.norm(outward, axis=2)[:, :, None]
+    # At a corner the prism is cut off at the distance, across the middle between the sides before and behind it.
+    before = np.roll(outward, 1, axis=1)
+    across = before + outward
+    across = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    # Two lines at distance 1 from a point, with unit normals, meet at twice their sum over its square.
+    meets = (2.0 * (one + across) / ((one + across) ** 2).sum(axis=2, keepdims=True) for one in (before, outward))
+    corner = [vertex + error * each for each in meets]
+    ring = np.stack(corner, axis=2).reshape(-1, 6, 3)
+    high = error * normal[:, None]
+    return np.asarray(np.concatenate([ring - high, ring + high], axis=1)[:, _PRISM].reshape(-1, 3, 3))

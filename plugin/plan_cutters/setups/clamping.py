@@ -5,7 +5,7 @@ No safety rests on the place (`docs/operations_proof.md`, lemma K1); how deep ja
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,11 +14,39 @@ from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_
 from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.setups.chuck_places import chuck_places
-from plan_cutters.setups.gripped import held_bodies, on_ledges
-from plan_cutters.setups.holds import Hold, NothingToGripError
-from plan_cutters.setups.vise_places import vise_places
-from plan_cutters.setups.workpiece import Place, Refused, Workpiece
+from plan_cutters.errors import FixtureError
+from plan_cutters.setups.places import chuck_places, vise_places
+from plan_cutters.setups.workpiece import Place, Refused, Workpiece, held_bodies, on_ledges
+
+
+class NothingToGripError(FixtureError):
+    """A vise or chuck has nothing to grip in a setup; `why` is the cause alone."""
+
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """A vise or chuck that was placed for a setup.
+
+    `fixture`: in its place, with all its numbers.
+    `grips`: numbers of the faces that its jaws touch.
+    `rests_on`: numbers of the planar faces with which the part rests in it.
+    `hidden`: area of the faces to machine that its jaws touch, mm2.
+    `words`: what it is and what it grips, for people.
+    """
+
+    fixture: Fixture
+    grips: tuple[int, ...]
+    rests_on: tuple[int, ...]
+    hidden: float
+    words: str
+
+    @property
+    def faces(self) -> tuple[int, ...]:
+        """All faces that it holds, ascending."""
+        return tuple(sorted({*self.grips, *self.rests_on}))
+
 
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
 _EVEN, _TRIED = 0.05, 12
@@ -28,20 +56,9 @@ Overlaps = Callable[[Fixture, Clamping], bool]
 def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0) -> Hold:
     """Place a vise or chuck.
 
-    Parameters
-    ----------
-    fixture : Fixture
-        With `to_place`.
-    part : Workpiece
-    plainly, overlaps : callable
-        Whether a fixture in its place, a vise or chuck, stands in the part: where that is seen at once, and by a search.
-    slack : float, optional
-        How far the part's triangles may be off, mm.
-
-    Raises
-    ------
-    NothingToGripError
-        There is nothing that it can grip, in a line that says why and what to try.
+    `fixture`: with `to_place`. `plainly`, `overlaps`: whether a fixture in its place, a vise or chuck, stands in the part: where
+    that is seen at once, and by a search. `slack`: how far the part's triangles may be off, mm. Raises NothingToGripError: there
+    is nothing that it can grip, in a line that says why and what to try.
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"

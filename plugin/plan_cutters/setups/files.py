@@ -56,17 +56,11 @@ class SetupTable(BaseModel):
 def read_setup(path: str | os.PathLike[str]) -> Placement:
     """The placement that a setup file describes.
 
-    Parameters
-    ----------
-    path : path
-        TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
+    Raises OptionError: the file is none, or contradicts itself.
+
+    `path`: TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
         machine's Z and X, three numbers or a word as `+z`; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those
         of `--fixture`: files are looked for in the setup file's folder.
-
-    Raises
-    ------
-    OptionError
-        The file is none, or contradicts itself.
 
     Examples
     --------

@@ -42,17 +42,8 @@ def setups_requested(
 ) -> dict[str, Any]:
     """Give the values of the options about setups by their names.
 
-    Parameters
-    ----------
-    setup, placement, others, other_placements, fixtures
-        As `Options` takes them.
-    propose : bool
-        Setups are to be proposed.
-
-    Raises
-    ------
-    OptionError
-        A value has no meaning, or setups are to be proposed beside some that are given.
+    `setup`, `placement`, `others`, `other_placements`, `fixtures`: as `Options` takes them. `propose`: setups are to be proposed.
+    Raises OptionError: a value has no meaning, or setups are to be proposed beside some that are given.
     """
     common = Fixture.each_of(fixtures)
     if is_auto(setup):
@@ -69,7 +60,10 @@ def setups_requested(
         raise OptionError(f"{len(places)} other placements were given for {len(listed)} other setups")
     if any(is_auto(each) for each in listed) or (propose and (listed or placed is not None)):
         raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
-    if propose and not _proposable(common):
+    # What may be proposed with a setup is one word without a place at most.
+    if propose and (len(common) > 1 or not all(
+        each.to_place or (each.kind == TABLE and not each.sizes and not any(each.placement)) for each in common
+    )):  # fmt: skip
         raise OptionError(
             "setup auto tries a table, a vise and a chuck in each setup, or the one that --fixture says: leave out other "
             "fixtures, or name the setup"
@@ -86,14 +80,6 @@ def setups_requested(
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
             "other_setups": tuple(each for each, _ in setups),
             "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
-
-
-def _proposable(fixtures: Sequence[Fixture]) -> bool:
-    """Whether fixtures are what may be proposed with a setup: nothing, or one word without a place."""
-    if not fixtures:
-        return True
-    (first, *more) = fixtures
-    return not more and (first.to_place or (first.kind == TABLE and not first.sizes and not any(first.placement)))
 
 
 def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.clamping import Block, Chuck, Clamping, Disc, Solid
+from plan_cutters.domain.clamping import Chuck, Clamping, Disc
 
 #: Sides of a disc, at most.
 _SIDES = 720
@@ -21,30 +21,22 @@ def sides_of(radius: float, chord: float) -> int:
 def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above: float = -math.inf) -> tuple[Floats, float]:
     """Triangles of a vise or chuck in its own frame, each body closed by itself.
 
-    Parameters
-    ----------
-    clamping : Vise or Chuck
-        In its place: how far its jaws stand apart is known.
-    chord : float
-        Chord error to ask for, mm.
-    shown : bool
-        Of the table, what is drawn alone.
-    above : float
-        Bodies that end below this height, mm, are left out, unless all do.
+    Returns `vertex` (n, 3, 3) float: mm, counter-clockwise from outside; `error`: how far they are from what they stand for, mm.
 
-    Returns
-    -------
-    vertex : (n, 3, 3) float
-        mm, counter-clockwise from outside.
-    error : float
-        How far they are from what they stand for, mm.
+    `clamping`: in its place: how far its jaws stand apart is known. `chord`: chord error to ask for, mm. `shown`: of the table,
+    what is drawn alone. `above`: bodies that end below this height, mm, are left out, unless all do.
     """
     every = clamping.solids(chord, shown=shown)
     solids = [each for each in every if each.high > above] or every
-    off = [_off(each, chord) for each in solids]
-    if isinstance(clamping, Chuck):
-        off.append(clamping.off(chord))
-    return np.concatenate([_of(each, chord) for each in solids]), max(off)
+    off, made = [clamping.off(chord)] if isinstance(clamping, Chuck) else [0.0], list[Floats]()
+    for each in solids:
+        if isinstance(each, Disc):
+            sides = sides_of(each.radius, chord)
+            off.append(each.radius * (1.0 - math.cos(math.pi / sides)))
+            made.append(cylinder(each.radius, each.high - each.low, sides) + np.array([0.0, 0.0, each.low]))
+        else:
+            made.append(strip(np.array(each.inner), np.array(each.outer), each.low, each.high))
+    return np.concatenate(made), max(off)
 
 
 def insides(clamping: Clamping, deep: float) -> Iterator[tuple[Floats, Floats, float]]:
@@ -64,19 +56,6 @@ def insides(clamping: Clamping, deep: float) -> Iterator[tuple[Floats, Floats, f
         else:
             continue
         yield np.append(low, solid.low + deep), np.append(high, solid.high - deep), radius
-
-
-def _off(solid: Solid, chord: float) -> float:
-    if isinstance(solid, Block):
-        return 0.0
-    return solid.radius * (1.0 - math.cos(math.pi / sides_of(solid.radius, chord)))
-
-
-def _of(solid: Solid, chord: float) -> Floats:
-    if isinstance(solid, Disc):
-        sides = sides_of(solid.radius, chord)
-        return cylinder(solid.radius, solid.high - solid.low, sides) + np.array([0.0, 0.0, solid.low])
-    return strip(np.array(solid.inner), np.array(solid.outer), solid.low, solid.high)
 
 
 def strip(inner: Floats, outer: Floats, low: float, high: float) -> Floats:

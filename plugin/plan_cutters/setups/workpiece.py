@@ -1,9 +1,10 @@
-"""A part as it stands in a setup: what may be gripped of it, and what of its triangles lies where.
+"""A part as it stands in a setup: what may be gripped of it, what of its triangles lies where, what rests on the ledges of jaws,
+and which bodies they hold.
 
 All is looked at in a frame of the setup: z along the setup axis, counted from the part's lowest point.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -12,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from cad_io.arrays import Floats, Ints, Record
-from plan_cutters.domain.clamping import Clamping
+from cad_io.arrays import Floats, Ints, Record, Triangles
+from cad_io.part.bodies import Body
+from plan_cutters.domain.clamping import Clamping, Vise
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import frame_of
 
 #: Faces that are off the setup axis, or off each other, by a smaller sine are parallel: 0.1 deg.
@@ -28,26 +31,15 @@ _OUT = 6.0
 class Workpiece(Record):
     """A part as it stands in a setup, as far as clamping it matters.
 
-    Attributes
-    ----------
-    frame : (3, 3) float
-        The setup's x, y and z in part coordinates, as rows.
-    lowest : float
-        Height of the part's lowest point along z, mm.
-    vertex : (n, 3, 3) float
-        Triangles in that frame, z from the lowest point, mm.
-    normal : (n, 3) float
-        Outward normals of them, as long as twice their area.
-    face : (n,) int
-        Face numbers of them.
-    planes : set of int
-        Planar faces.
-    targets : set of int
-        Faces to machine.
-    flat : float
-        Heights that differ by less are one, mm.
-    bodies : tuple of frozenset of int
-        The faces of each body that is material.
+    `frame` (3, 3) float: the setup's x, y and z in part coordinates, as rows.
+    `lowest`: height of the part's lowest point along z, mm.
+    `vertex` (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
+    `normal` (n, 3) float: outward normals of them, as long as twice their area.
+    `face` (n,) int: face numbers of them.
+    `planes`: planar faces.
+    `targets`: faces to machine.
+    `flat`: heights that differ by less are one, mm.
+    `bodies`: the faces of each body that is material.
     """
 
     frame: Floats
@@ -133,23 +125,13 @@ class Wall:
 class Place:
     """A vise or chuck at a place of a setup's frame, and what it grips there.
 
-    Attributes
-    ----------
-    clamping : Vise or Chuck
-    x, origin : (3,) float
-        Its x axis and its origin.
-    grips : tuple of int
-        Numbers of the faces that its jaws touch.
-    touched, hidden : float
-        Area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
-    above : float
-        Height of what it rests on over the part's lowest point, mm.
-    size : float
-        Area of what could be gripped if jaws were as large, on the side where that is less, mm2.
-    off : float
-        How far its middle is from the middle of the part, seen from above, mm.
-    farthest : float
-        How far the part reaches from its middle across the jaws, mm.
+    `x`, `origin` (3,) float: its x axis and its origin.
+    `grips`: numbers of the faces that its jaws touch.
+    `touched`, `hidden`: area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
+    `above`: height of what it rests on over the part's lowest point, mm.
+    `size`: area of what could be gripped if jaws were as large, on the side where that is less, mm2.
+    `off`: how far its middle is from the middle of the part, seen from above, mm.
+    `farthest`: how far the part reaches from its middle across the jaws, mm.
     """
 
     clamping: Clamping
@@ -221,23 +203,114 @@ def area_of(vertex: Floats) -> float:
 def clipped(vertex: Floats, face: Ints, direction: Floats, low: float, high: float) -> tuple[Floats, Ints]:
     """Cut triangles (n, 3, 3) of faces (n,) to what lies between two heights along a direction."""
     for way, limit in ((direction, low), (-direction, -high)):
-        vertex, face = _beyond(vertex, face, way, limit)
+        height = vertex @ way - limit
+        count = (height > 0.0).sum(axis=1)
+        parts, faces = [vertex[count == 3]], [face[count == 3]]
+        for number in (1, 2):
+            some, tall = vertex[count == number], height[count == number]
+            # The corner that is alone on its side comes first.
+            alone = np.argmax(tall > 0.0, axis=1) if number == 1 else np.argmax(tall <= 0.0, axis=1)
+            a, b, c = (np.take_along_axis(some, ((alone + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3))
+            p, q, r = (np.take_along_axis(tall, ((alone + k) % 3)[:, None], axis=1) for k in range(3))
+            ab, ac = a + (b - a) * (p / (p - q)), a + (c - a) * (p / (p - r))
+            corners = [(a, ab, ac)] if number == 1 else [(ab, b, c), (ab, c, ac)]
+            pieces = [np.stack(each, axis=1) for each in corners]
+            parts += pieces
+            faces += [face[count == number]] * len(pieces)
+        vertex, face = np.concatenate(parts), np.concatenate(faces)
     return vertex, face
 
 
-def _beyond(vertex: Floats, face: Ints, direction: Floats, limit: float) -> tuple[Floats, Ints]:
-    """Cut triangles to what lies above a height along a direction."""
-    height = vertex @ direction - limit
-    count = (height > 0.0).sum(axis=1)
-    parts, faces = [vertex[count == 3]], [face[count == 3]]
-    for number in (1, 2):
-        some, tall = vertex[count == number], height[count == number]
-        # The corner that is alone on its side comes first.
-        alone = np.argmax(tall > 0.0, axis=1) if number == 1 else np.argmax(tall <= 0.0, axis=1)
-        a, b, c = (np.take_along_axis(some, ((alone + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3))
-        p, q, r = (np.take_along_axis(tall, ((alone + k) % 3)[:, None], axis=1) for k in range(3))
-        ab, ac = a + (b - a) * (p / (p - q)), a + (c - a) * (p / (p - r))
-        pieces = [np.stack([a, ab, ac], axis=1)] if number == 1 else [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
-        parts += pieces
-        faces += [face[count == number]] * len(pieces)
-    return np.concatenate(parts), np.concatenate(faces)
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: float) -> Iterator[tuple[Ints, Floats]]:
+    """Cut triangles to what lies between the jaws, before each of them and between two heights: their faces, and how far each of
+    them reaches towards it.
+
+    Yields `face` (k,) int: of the triangles that lie there at least in part; `reach` (k,) float: how far they are from the middle
+    at most: in a vise across the jaws, in a chuck from its axis; mm. Jaws grip at `0.5 * gap` or `0.5 * diameter`.
+
+    `clamping`: in its place. `vertex` (n, 3, 3) float: triangles in its own frame, mm. `face` (n,) int: face numbers of them.
+    `low`, `high`: mm.
+    """
+    vertex, face = clipped(vertex, face, _UP, low, high)
+    for turn in clamping.turns:
+        towards = np.array([np.cos(turn), np.sin(turn), 0.0])
+        along = np.array([-towards[1], towards[0], 0.0])
+        piece, mine = clipped(vertex, face, along, -clamping.half_width, clamping.half_width)
+        piece, mine = clipped(piece, mine, towards, 0.0, 0.5 * clamping.numbers[-1] + TOGETHER)
+        away = piece @ towards if isinstance(clamping, Vise) else np.linalg.norm(piece[..., :2], axis=-1)
+        yield mine, away.max(axis=1, initial=-np.inf)
+
+
+def on_ledges(clamping: Clamping, vertex: Floats, face: Ints, flat: float) -> frozenset[int]:
+    """Faces of triangles in the frame of a vise or chuck that lie on its ledges: some of their area does, to a height `flat`, mm.
+
+    >>> from plan_cutters.domain.clamping import Vise
+    >>> square = np.array([[[15.0, 0, 0], [20, 0, 0], [20, 5, 0]], [[-5, 0, 0], [5, 0, 0], [5, 5, 0]]])
+    >>> sorted(on_ledges(Vise(46.0, 25.0, 65.0, gap=40.0), square, np.array([7, 8]), 1e-6))
+    [7]
+    """
+    inner = 0.5 * clamping.numbers[-1] - clamping.ledge + flat
+    each = at_jaws(clamping, vertex, face, -flat, flat)
+    return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach > inner]))
+
+
+def held_bodies(clamping: Clamping, vertex: Floats, face: Ints, bodies: Sequence[frozenset[int]], slack: float) -> frozenset[int]:
+    """Which bodies jaws hold, as numbers in `bodies`: all jaws touch them.
+
+    Where no body has all jaws on it, those are held that lie one against the other from jaw to jaw; none where there is a gap
+    between them.
+
+    `clamping`, `vertex`, `face`: as for `at_jaws`. `bodies`: the faces of each. `slack`: how far triangles may be off, mm.
+    """
+    owner = {number: k for k, faces in enumerate(bodies) for number in faces}
+    inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
+    touched = [
+        {owner[n] for n in np.unique(mine[reach >= inner]).tolist() if n in owner}
+        for mine, reach in at_jaws(clamping, vertex, face, 0.0, clamping.grip)
+    ]
+    if every := set.intersection(*touched):
+        return frozenset(every)
+    if not all(touched) or (isinstance(clamping, Vise) and not _pressed(clamping, vertex, face, owner, slack)):
+        return frozenset()
+    return frozenset(set.union(*touched))
+
+
+def unheld_bodies(
+    clamping: Clamping, fixture: Fixture, triangles: Triangles, bodies: Sequence[frozenset[int]]
+) -> tuple[int, ...]:
+    """Bodies of a part that a vise or chuck in its place does not hold, each by its first face."""
+    vertex = (triangles.vertex - fixture.shift) @ fixture.rotation
+    held = held_bodies(clamping, vertex, triangles.face, bodies, triangles.chord_error)
+    return tuple(sorted(min(faces) for k, faces in enumerate(bodies) if k not in held))
+
+
+def material_bodies(bodies: Sequence[Body], sign: Floats) -> tuple[frozenset[int], ...]:
+    """The faces of each body that is material, without the voids in them; bodies that share a face are one.
+
+    `sign` (faces,): side of each face that is out of the material.
+    """
+    joined = list[frozenset[int]]()
+    for body in bodies:
+        if float(np.dot(body.sign, sign[np.array(body.faces) - 1])) > 0.0:
+            mine = frozenset(body.faces)
+            touching = [each for each in joined if each & mine]
+            joined = [each for each in joined if each not in touching] + [mine.union(*touching)]
+    return tuple(joined)
+
+
+def _pressed(vise: Vise, vertex: Floats, face: Ints, owner: dict[int, int], slack: float) -> bool:
+    """Whether bodies lie one against the other from jaw to jaw, by the intervals across the jaws that they take between these."""
+    vertex, face = clipped(vertex, face, _UP, 0.0, vise.grip)
+    vertex, face = clipped(vertex, face, np.array([0.0, 1.0, 0.0]), -vise.half_width, vise.half_width)
+    body = np.array([owner.get(n, -1) for n in face.tolist()], np.int64)
+    of = {k: vertex[body == k][..., 0] for k in set(body.tolist()) - {-1}}
+    spans = sorted((float(x.min()), float(x.max())) for x in of.values())
+    reached = -0.5 * (vise.gap or 0.0)
+    for low, high in spans:
+        if low > reached + TOGETHER + slack:
+            return False
+        reached = max(reached, high)
+    return reached >= 0.5 * (vise.gap or 0.0) - TOGETHER - slack

@@ -1,4 +1,8 @@
-"""A field of tool axes over a face: one axis at every contact, that turns steadily from each node of its grid to the next."""
+"""Tool axes between samples: a field that turns steadily from each node of a face's grid to the next, and how much room axes
+leave.
+
+Room tells what to try first, never what is safe: what is tried goes through the proof.
+"""
 
 import math
 from dataclasses import dataclass
@@ -7,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, Floats
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.kernels.codes import OFFSET_OF, RISE
+from plan_cutters.scene.conditions import Conditions, Context
 
 #: Axes of neighbouring nodes that are farther apart, rad, have none between them that is worth looking at.
 _APART = math.radians(60.0)
@@ -21,12 +26,8 @@ class AxisField:
 
     Beyond the grid the field stays as at its rim.
 
-    Attributes
-    ----------
-    u, v : (nu,), (nv,) float
-        Grid lines; those of a closed direction have the first one again, a period later.
-    axis : (nu, nv, 3) float
-        Unit, part coordinates; nan where a node has none, and then in all that is next to it.
+    `u`, `v` (nu,), (nv,) float: grid lines; those of a closed direction have the first one again, a period later. `axis` (nu, nv,
+    3) float: unit, part coordinates; nan where a node has none, and then in all that is next to it.
     """
 
     u: Floats
@@ -108,3 +109,46 @@ def held_within(axis: Floats, swing: Floats, conditions: Conditions) -> NDArray[
         good &= away + swing <= math.acos(min(1.0, conditions.ranges.limit_cos))
     held[known] = good
     return held
+
+
+#: Tilts, rad, and rotations that are compared.
+_TILTS, _ROTATIONS = np.radians([20.0, 30.0, 40.0, 50.0, 60.0, 70.0]), 12
+#: What room to the gouging bound is worth beside nearness to the posture that is known, both from 0 to about 1.
+_WORTH = 3.0
+
+
+def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> NDArray[np.float64]:
+    """Room (n,) to the local gouging bound across the lean, in sines of the tilt of a flat end; -inf where it does not touch.
+
+    `axis`, `normal` (n, 3) float: unit. `tensor` (n, 3, 3) float: second fundamental form in part coordinates, 1/mm, concave
+    positive.
+    """
+    mode = context.outer_tool.mode[0]
+    cosine = (axis * normal).sum(axis=1)
+    across = np.cross(normal, axis)
+    sine = np.linalg.norm(across, axis=1)
+    t = across / np.maximum(sine, 1e-12)[:, None]
+    bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)
+    # Upright, a ball has the curvature of its tip.
+    ratio = np.maximum(sine, 1e-12)
+    remainder = ratio / (mode[OFFSET_OF] + mode[RISE] * ratio) - bend
+    return np.asarray(np.where(cosine > -1e-9, context.cutter.radius * remainder, -np.inf))
+
+
+def roomiest(normal: Floats, direction: Floats, tensor: Floats, axis: Floats, context: Context) -> tuple[Floats, Floats]:
+    """Of some postures the one with most room that is not far from a known one; that one where there is none.
+
+    `normal`, `direction` (n, 3) float: unit normals and larger principal directions. `tensor` (n, 3, 3) float. `axis` (n, 3)
+    float: of the postures that are known. Returns `axis, tilt_direction` (n, 3) float.
+    """
+    (low, high), other = context.conditions.postures.tilt, np.cross(normal, direction)
+    best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)
+    for tilt in (each for each in _TILTS if low <= each <= high):
+        for turn in np.arange(_ROTATIONS) * (2.0 * np.pi / _ROTATIONS):
+            tilt_direction = np.cos(turn) * direction + np.sin(turn) * other
+            tried = np.cos(tilt) * normal + np.sin(tilt) * tilt_direction
+            worth = (tried * axis).sum(axis=1) + _WORTH * margin(tried, normal, tensor, context)
+            better = np.flatnonzero(worth > most)
+            better = better[context.conditions.allows(tried[better])]
+            best[better], side[better], most[better] = tried[better], tilt_direction[better], worth[better]
+    return best, side

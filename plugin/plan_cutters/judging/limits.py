@@ -1,6 +1,8 @@
-"""Find the samples within the axis limits of one setup or another: there no cutter at all can reach the other samples."""
+"""Limits of a machine: samples within those of the rotary axes of one setup or another, where alone any cutter can reach them;
+and where the linear axes stand at the postures found.
+"""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +11,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import modes
+from plan_cutters.domain.travel import Travel, tips, travel, unjudged
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import in_chunks
 
 #: Setup axes that are compared: both ways along the part's own.
 AXES = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0))
@@ -25,14 +30,8 @@ def within_limits(
 ) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine can hold some tool axis at which any of the cutters touches.
 
-    Parameters
-    ----------
-    samples : SurfaceSamples
-    cutters, conditions
-    setup : (float, float, float), optional
-        Another setup axis than that of the conditions, a unit direction.
-    rows : (m,) int64, optional
-        The samples to look at, all by default.
+    `setup` (float, float, float): another setup axis than that of the conditions, a unit direction. `rows` (m,) int64: the
+    samples to look at, all by default.
     """
     if setup is not None:
         conditions = replace(conditions, setup=np.array(setup), x=None)
@@ -53,3 +52,16 @@ def within_limits(
         lambda piece: any_axis(piece, samples.normal, samples.direction_max, ranges, low, high, held), rows, conditions.jobs
     )
     return held
+
+
+def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, Verdicts]) -> dict[str, Travel]:
+    """By the id of a cutter where the linear axes stand; empty where that is not judged."""
+    placement = options.placement
+    if placement is None or unjudged(options.machine, placement) is not None:
+        return {}
+    return {
+        cutter.id: travel(
+            options.machine, placement, tips(cutter, samples.point, samples.normal, reach), reach.axis, cutter.length
+        )
+        for cutter, reach in reaches.items()
+    }

@@ -1,18 +1,22 @@
-"""Where many fixed orientations would be set, simultaneous motion takes their area: which orientations stay then.
+"""Where simultaneous motion takes the area of fixed orientations: which stay where there are many, and which sculptured faces it
+takes as a whole for less than fixed orientations and their borders cost.
 
 A machinist sets few orientations. Where a plan has more than the most that are recommended, those stay without which the rest
 takes the most time; where simultaneous motion cuts faster than a fixed axis by more than it costs, orientations go as well.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Columns
-from plan_cutters.operations.plans import costs_with, moving_over
+from plan_cutters.operations.choices import Choice
+from plan_cutters.operations.fastest import cheap
+from plan_cutters.operations.labels import sampled_faces
+from plan_cutters.operations.plans import costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan
 
@@ -28,15 +32,8 @@ _TRIED = 12
 class _Times:
     """What samples of a task (r,) take with columns and with simultaneous motion.
 
-    Attributes
-    ----------
-    cost : (r, k) float
-        s, or mm without a feed; infinite where a column does not serve.
-    moving : (r,) float
-        The same with simultaneous motion.
-    cutter : (r,) int
-        Of that motion, counted as in the task.
-    setup : (r,) int
+    `cost` (r, k) float: s, or mm without a feed; infinite where a column does not serve. `moving` (r,) float: the same with
+    simultaneous motion. `cutter` (r,) int: of that motion, counted as in the task. `setup` (r,) int.
     """
 
     task: Task
@@ -91,16 +88,8 @@ class _Times:
 def recommended(task: Task, columns: Columns) -> Columns:
     """The columns of a plan that stay where simultaneous motion takes the area of the others.
 
-    Parameters
-    ----------
-    task : Task
-    columns : Columns
-
-    Returns
-    -------
-    Columns
-        All of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
-        orientations were requested otherwise.
+    Returns all of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
+    orientations were requested otherwise.
     """
     options = task.ready.options
     if not len(columns) or options.most_operations is not None or options.index_step is not None:
@@ -135,3 +124,58 @@ def few_enough(task: Task, plan: OperationPlan) -> bool:
     options = task.ready.options
     fixed = plan.orientations
     return options.most_operations is not None or options.index_step is not None or fixed <= options.max_orientations
+
+
+def with_moved(task: Task, faces: Sequence[int]) -> Task:
+    """The same task with some faces for simultaneous motion alone."""
+    return replace(task, moved=np.isin(task.ready.samples.face, faces))
+
+
+def flowing(task: Task, others: Callable[[Task], Columns], plan: OperationPlan) -> tuple[list[int], OperationPlan] | None:
+    """The faces that simultaneous motion takes as a whole, and the plan that follows; None where no such plan costs less.
+
+    `others`: gives fixed orientations for the samples that are not moved in a task. `plan`: the best one without.
+    """
+    options = task.ready.options
+    if options.most_operations is not None or options.index_step is not None or task.paths.feed is None:
+        return None
+    made = []
+    for faces in _faces_tried(task, plan):
+        own = with_moved(task, faces)
+        columns = recommended(own, worth_their_turn(own, others(own)))
+        made.append((faces, plan_with(own, "fastest", columns, times=True)))
+    best = min(made, key=lambda each: each[1].price, default=None)
+    return best if best is not None and best[1].price < (1.0 - WORTH) * plan.price else None
+
+
+def chosen_for_others(task: Task, choice: Choice) -> Columns:
+    """Columns among those of a choice that cost little for the samples that are not moved."""
+    assert task.moved is not None
+    rest = ~task.moved[choice.rows]
+    if not rest.any():
+        return choice.columns.of(np.zeros(0, np.int64))
+    return choice.columns.of(cheap(choice.problem.of(np.arange(len(choice.columns)), rest)))
+
+
+def _faces_tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
+    """Faces that motion may take together: all that are sculptured, and those that it cuts for less than a plan.
+
+    Rounds and spheres are none: nobody turns while cutting for a fillet.
+    """
+    samples, faces = task.ready.samples, sampled_faces(task.ready, "sculptured".__eq__)
+    rows = task.rows[np.isin(samples.face[task.rows], faces)]
+    if not len(rows):
+        return
+    seconds = moving_over(task, rows).costs(task, samples.area[rows])
+    known = [face for face in faces.tolist() if np.isfinite(seconds[samples.face[rows] == face]).all()]
+    if known:
+        yield known
+    less = [face for face in known if seconds[samples.face[rows] == face].sum() < _cost(task, plan, face)]
+    if less and less != known:
+        yield less
+
+
+def _cost(task: Task, plan: OperationPlan, face: int) -> float:
+    """Seconds that a plan takes for a face, with what its borders count."""
+    own = np.where(task.ready.samples.face == face, plan.label, -1)
+    return float(np.nansum(plan.seconds[own >= 0])) + task.ready.options.border_cost * task.seams.marks(own)
