@@ -241,11 +241,11 @@ def test_dummies_and_searches_of_some_samples(keeps):
     around = made.conditions.surroundings
     triangles = replace(around.certain.triangles, loose=((2, 0.1), (3, 0.1000001), (5, 9.0)))
     loose = replace(around, certain=replace(around.certain, triangles=triangles))
-    doubtful = context.under(replace(made.conditions, surroundings=loose))
+    doubtful = Context.of(context.cutter, replace(made.conditions, surroundings=loose))
     said["loose"] = access(samples, free, doubtful, inside=made.inside)
     buried = np.where(samples.face == 5, np.arange(len(samples)) % 2 - 1, made.inside).astype(np.int32)
     said["some loose"] = [access(samples, free, doubtful, inside=each, rows=rows) for each in (made.inside, buried)]
-    coarse = replace(context.under(replace(made.conditions, tolerance=0.5)))
+    coarse = replace(Context.of(context.cutter, replace(made.conditions, tolerance=0.5)))
     said["coarse"] = [coarse.judges, access(samples, free, coarse, rows=rows)]
     said["rows"] = judge(made, made.cutters[0], rows=rows[5:90])
     said["edge"] = [may_be_at_edge(said["some"], each) for each in (FLAT_END, BALL, Cutter.parse("D3L20"))]

@@ -84,7 +84,7 @@ def test_copies_follow_the_motions_that_leave_a_setup_as_it_is():
     )  # fmt: skip
     assert copies.copy.tolist() == [False, True, True, False, True]
     assert copies.follow.tolist() == [False, True, False, False, False]
-    assert copies.there(1).follow.tolist() == [False, False, True, False, False]
+    assert replace(copies, setup=1).follow.tolist() == [False, False, True, False, False]
     vectors = np.arange(9.0).reshape(3, 3)
     made = copies.moved(np.array([1, 4, 0]), vectors)
     assert made[0].tolist() == [-1.0, 0.0, 2.0]

@@ -471,7 +471,7 @@ def test_copies(keeps):
         "copies",
         {
             "copies": replace(copies, motions=()),
-            "follow": [copies.there(k).follow for k in range(3)],
+            "follow": [replace(copies, setup=k).follow for k in range(3)],
             "moved": moved,
             "linear": np.array([each.linear for each in motions]),
             "shift": np.array([each.shift for each in motions]),

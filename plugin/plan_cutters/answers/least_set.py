@@ -35,7 +35,13 @@ def least_set(
     open_ = _on_a_proposed_table(ready, [[verdicts[cutter.id] for _, verdicts in setups] for cutter in cutters])
     chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters, ready.chosen.free_form)
     if open_.any() and chosen:
-        chosen = _with_more(ready, reached, chosen, columns, cutters)
+        # What is left goes with more runs, of cutters of kinds no less wanted.
+        place = [rank(group_of(cutter), free_form=ready.chosen.free_form) for cutter in cutters]
+        worst = max(place[columns[k][1]] for k in chosen)
+        usable = [k for k, (_, c) in enumerate(columns) if place[c] <= worst]
+        rest = reached[:, usable] & ~np.asarray(reached[:, chosen].any(axis=1))[:, None]
+        more, _ = cover(rest, [columns[k][0] for k in usable], [columns[k][1] for k in usable])
+        chosen = sorted({*chosen, *(usable[k] for k in more)})
     whole, done = reached[:, chosen], np.zeros(len(reached), bool)
     runs = []
     for k, column in enumerate(chosen):
@@ -83,18 +89,6 @@ def _on_a_proposed_table(ready: Prepared, verdicts: Sequence[Sequence[Verdicts]]
             fixture = np.logical_or.reduce([np.isin(one.reason, (FIXTURE, ANOTHER_SETUP)) for one in each])
             unreached |= fixture & np.logical_and.reduce([one.not_reached for one in each])
     return np.asarray(stood & unreached)
-
-
-def _with_more(
-    ready: Prepared, reached: NDArray[np.bool_], chosen: list[int], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter]
-) -> list[int]:
-    """Runs that were chosen, and more for what they leave that cutters of kinds no less wanted reach."""
-    place = [rank(group_of(cutter), free_form=ready.chosen.free_form) for cutter in cutters]
-    worst = max(place[columns[k][1]] for k in chosen)
-    usable = [k for k, (_, c) in enumerate(columns) if place[c] <= worst]
-    rest = reached[:, usable] & ~np.asarray(reached[:, chosen].any(axis=1))[:, None]
-    more, _ = cover(rest, [columns[k][0] for k in usable], [columns[k][1] for k in usable])
-    return sorted({*chosen, *(usable[k] for k in more)})
 
 
 def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:

@@ -13,7 +13,6 @@ from itertools import product
 
 import numpy as np
 
-from cad_io.arrays import Floats
 from plan_cutters.answers.state import HALF, NEARLY, Candidate, Case, Rows, Scan, SetupOf, State, spread, under
 from plan_cutters.domain.answers import Move
 from plan_cutters.domain.cutter import Cutter
@@ -124,7 +123,10 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     if plain:
         axes = [axis for axis in axes if _own(axis)]
     axes = _promising(ready, state, axes, gained)
-    facing = towards(ready.samples.normal[gained].mean(axis=0), now)
+    mean = ready.samples.normal[gained].mean(axis=0)
+    length = float(np.linalg.norm(mean))
+    x, y, z = (mean / length).tolist() if length > 1e-6 else now
+    facing = x, y, z
     second = []
     for axis in axes:
         made = replace(state, setups=(*state.setups, SetupOf(axis)))
@@ -176,15 +178,6 @@ def _plain(second: list[tuple[float, float, Axis, State, Rows]], whole: float) -
     return plain if whole - plain[0] >= (1.0 - _OWN) * (whole - best[0]) else best
 
 
-def towards(vector: Floats, otherwise: Axis) -> Axis:
-    """A direction; another one where there is none."""
-    length = float(np.linalg.norm(vector))
-    if not length > 1e-6:
-        return otherwise
-    x, y, z = (vector / length).tolist()
-    return x, y, z
-
-
 def _own(axis: Axis) -> bool:
     """Whether it is one of the part's own."""
     return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
@@ -200,16 +193,12 @@ def _directions(ready: Prepared, missed: Rows, kept: Rows) -> list[Axis]:
     axes: list[Axis] = []
     for vector in [*means, *cube]:
         if np.linalg.norm(vector) > 1e-6:
-            axis = _axis(vector)
+            # Rounded as it is told: what is judged is what is told.
+            x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
+            axis = x, y, z
             if all(_angle(axis, other) > _ALIKE for other in [now, *axes]):
                 axes.append(axis)
     return sorted(axes, key=lambda axis: (round(_angle(now, axis), 6), axis))
-
-
-def _axis(vector: Floats) -> Axis:
-    """Round a direction as it is told: what is judged is what is told."""
-    x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
-    return x, y, z
 
 
 def _angle(a: Axis, b: Axis) -> float:

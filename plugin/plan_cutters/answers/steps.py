@@ -211,7 +211,9 @@ def steps(
         if made and not budget.left and each.moves[0].means != "cutter":
             uncompared += 1
         else:
-            made.append((each, known.left(each.state, _rows(scan, each))))
+            # Judged are those that are not reached or, where the change may lose others, all.
+            rows = open_rows if each.nested else np.flatnonzero(finished.wanted)
+            made.append((each, known.left(each.state, rows)))
     before = finished.of_rows(open_rows)
     singles = [each for each in made if worth(finished, before - finished.of_rows(each[1]))]
     pairs = _pairs(scan, singles, budget) if budget.left else []
@@ -259,11 +261,6 @@ def needed(step: Step, known: Sequence[Cutter]) -> int:
 def effort(moves: Sequence[Move]) -> tuple[int, int]:
     """How much a step asks of a planner: the number of changes, and their places in MEANS."""
     return len(moves), sum(MEANS.index(move.means) for move in moves)
-
-
-def _rows(scan: Scan, candidate: Candidate) -> Rows:
-    """Samples to judge: those that are not reached or, where the change may lose others, all."""
-    return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
 
 
 def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:

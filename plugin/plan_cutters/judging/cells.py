@@ -250,7 +250,17 @@ def laid(
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
         area[bare], np.zeros(len(flat), bool), side, neighbours,
     )  # fmt: skip
-    _add_nodes(field, strips, clip.low[bare], clip.high[bare])
+    # Contacts on their own become nodes, with how far their cells reach.
+    tensor = tensors(strips.normal, strips.direction_max, strips.curvature)
+    radius, variation = np.zeros(0), np.zeros(0)
+    if len(strips):
+        radius, variation = field.around(clip.low[bare], clip.high[bare], strips.point, tensor)
+    field.index[strips.tile[:, 0], strips.tile[:, 1]] = len(field.point) + np.arange(len(strips))
+    strips.patch[:] = radius
+    for name, more in (
+        ("point", strips.point), ("normal", strips.normal), ("tensor", tensor), ("variation", variation), ("radius", radius)
+    ):  # fmt: skip
+        setattr(field, name, np.concatenate([getattr(field, name), more]))
     return field, contacts, strips
 
 
@@ -336,14 +346,3 @@ def _neighbours(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdi
         new = (neighbours < 0) & (node >= 0) & known[np.maximum(node, 0)]
         neighbours[new] = rows[node[new]]
     return neighbours
-
-
-def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) -> None:
-    """Make nodes of contacts on their own, and write how far their cells reach."""
-    tensor = tensors(strips.normal, strips.direction_max, strips.curvature)
-    radius, variation = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))
-    field.index[strips.tile[:, 0], strips.tile[:, 1]] = len(field.point) + np.arange(len(strips))
-    strips.patch[:] = radius
-    field.point, field.normal = (np.concatenate([field.point, strips.point]), np.concatenate([field.normal, strips.normal]))
-    field.tensor = np.concatenate([field.tensor, tensor])
-    field.variation, field.radius = np.concatenate([field.variation, variation]), np.concatenate([field.radius, radius])

@@ -176,7 +176,7 @@ def access(
     within_fixtures = np.zeros(n, bool) if inside is None else judged & (inside >= len(conditions.surroundings.bodies))
     handed = judged & (verdicts.reason == FIXTURE)
     tells = (None, None) if progress is None else (part_of(progress, 0, 2), part_of(progress, 1, 2))
-    bare, result = context.under(replace(conditions, surroundings=alone)), blank(n)
+    bare, result = Context.of(context.cutter, replace(conditions, surroundings=alone)), blank(n)
     search(contacts, faces, np.flatnonzero(wanted | within_fixtures | handed), bare, result, tells[0], fixed=True, work=work)
     blocked = wanted & (result.verdict == INACCESSIBLE)
     verdicts.verdict[blocked], verdicts.reason[blocked] = INACCESSIBLE, result.reason[blocked]

@@ -121,17 +121,14 @@ class Reasons:
             rows = rows[~np.isin(before[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
             if limited or held:
                 rows = rows[self._anywhere(less[-1][1], rows)]
-            self._held(less, rows, reason)
+            # Which of holder, shank and neck has to be away for there to be a posture, from the top down.
+            for part, without in less[:-1]:
+                served = self._anywhere(without, rows)
+                reason[rows[served]] = part
+                rows = rows[~served]
+            reason[rows] = less[-1][0]
         tell(3, 3)
         return Explained(replace(verdicts, reason=reason), besides)
-
-    def _held(self, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], reason: NDArray[np.uint8]) -> None:
-        """Write which of holder, shank and neck has to be away for there to be a posture, from the top down."""
-        for part, without in less[:-1]:
-            served = self._anywhere(without, rows)
-            reason[rows[served]] = part
-            rows = rows[~served]
-        reason[rows] = less[-1][0]
 
     @property
     def _alike(self) -> bool:

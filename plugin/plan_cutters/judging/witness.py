@@ -63,7 +63,7 @@ def witnesses(
     picked = {i: far_apart(samples.point, groups[i].rows, most) for i in tried}
     looked: dict[int, Witness] = {}
     conditions = context.conditions
-    alone = context.under(replace(conditions, jobs=1))
+    alone = Context.of(context.cutter, replace(conditions, jobs=1))
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():

@@ -6,16 +6,16 @@ time (`docs/operations_proof.md`, lemmas E1 and E2).
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.operations.orientations import Orientations, face_directions
+from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.operations.orientations import face_directions
 from plan_cutters.operations.plans import clearance_of, costs_with
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation
@@ -115,22 +115,18 @@ def canonical(task: Task, columns: Columns, *, progress: Progress | None = None)
 def _preferred(choice: _Choice, k: int, most: float, faces: tuple[Floats, Floats]) -> _Choice:
     """The choice with the orientation of the first rank that serves as well as a column."""
     where = choice.task.orientations[choice.columns.setup[k]]
-    for angle, axis in _ranks(where, choice.columns.angle[k], faces):
+    # Of each rank angles, deg, and axes, the next one where none of the ranks before did.
+    ranks = chain(
+        (where.near(directions) for directions in (where.conditions.setup[None], *faces)),
+        (where.set_to(_multiples(choice.columns.angle[k], step)) for step in _STEPS),
+    )
+    for angle, axis in ranks:
         if (angle == choice.columns.angle[k]).all(axis=1).any():
             return choice
         good = _as_good(choice, k, angle, axis, most)
         if good:
             return _clearest(good, k)
     return choice
-
-
-def _ranks(where: Orientations, angle: Floats, faces: tuple[Floats, Floats]) -> Iterator[tuple[Floats, Floats]]:
-    """Angles (n, 2), deg, and axes (n, 3) of each rank."""
-    yield where.near(where.conditions.setup[None])
-    for directions in faces:
-        yield where.near(directions)
-    for step in _STEPS:
-        yield where.set_to(_multiples(angle, step))
 
 
 def _multiples(angle: Floats, step: float) -> Floats:

@@ -297,6 +297,7 @@ class Search:
         first: int = _FIRST,
     ) -> None:
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
+        self.wanted = len(rows)
         self.rows: Rows = np.zeros(0, np.int64)
         self.alone: Rows = np.zeros(0, np.int64)
         self._table = np.zeros((0, len(columns)), np.int8)
@@ -325,11 +326,6 @@ class Search:
                 return cover
             self._add_rows(spread(missed, self._probes.samples.point, _MORE))
         return self._patched()
-
-    @property
-    def wanted(self) -> int:
-        """How many samples there are to serve."""
-        return len(self._wanted)
 
     @property
     def whole(self) -> tuple[Rows, NDArray[np.bool_]]:

@@ -170,12 +170,11 @@ def _faces_tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
     known = [face for face in faces.tolist() if np.isfinite(seconds[samples.face[rows] == face]).all()]
     if known:
         yield known
-    less = [face for face in known if seconds[samples.face[rows] == face].sum() < _cost(task, plan, face)]
+    less = []
+    for face in known:
+        # The plan's seconds for the face, with what its borders count.
+        own = np.where(samples.face == face, plan.label, -1)
+        cost = float(np.nansum(plan.seconds[own >= 0])) + task.ready.options.border_cost * task.seams.marks(own)
+        less += [face] if seconds[samples.face[rows] == face].sum() < cost else []
     if less and less != known:
         yield less
-
-
-def _cost(task: Task, plan: OperationPlan, face: int) -> float:
-    """Seconds that a plan takes for a face, with what its borders count."""
-    own = np.where(task.ready.samples.face == face, plan.label, -1)
-    return float(np.nansum(plan.seconds[own >= 0])) + task.ready.options.border_cost * task.seams.marks(own)

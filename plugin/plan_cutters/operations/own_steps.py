@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.domain.own_process import Nearest, OwnProcess, OwnResult, OwnStep, cutter_of
-from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
+from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
+from plan_cutters.domain.own_results import Nearest, OwnResult
+from plan_cutters.domain.verdicts import UNJUDGED
 from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
 from plan_cutters.operations.probes import Probes, Walls
@@ -25,8 +25,6 @@ _RING, _FARTHEST = 5.0, 60.0
 _COMPARED = 120
 #: A step that leaves less of what is requested of it does all, as a share: crumbs at borders are no fault.
 _ALL = 0.001
-
-
 #: In the place of a step's number: a sample is divided among steps that share it.
 _SHARED = -1
 
@@ -43,7 +41,13 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         task.cutters.index(cutter_of(each.cutter, task.cutters, "forbid")): np.isin(task.ready.samples.face, each.faces)
         for each in process.forbidden
     }
-    others, columns = replace(task, everywhere=_masked(task, barred)), columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    # What is planned goes by the verdicts without those of cutters where they are forbidden.
+    everywhere, columns = [dict(each) for each in task.everywhere], columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    for c, rows in barred.items():
+        for its in everywhere:
+            known = its[task.cutters[c]]
+            its[task.cutters[c]] = replace(known, verdict=np.where(rows, UNJUDGED, known.verdict).astype(np.uint8))
+    others = replace(task, everywhere=tuple(everywhere))
     step = list[int]()
     for each in outcome:
         if each.axis is not None and each.angle is not None and len(each.rows):
@@ -73,17 +77,6 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
     plan = plan_with(task, "process", columns, rule, reserved)
     place = {each.step: k for k, each in enumerate(plan.operations)}
     return plan, tuple(replace(each, rows=np.flatnonzero(plan.label == place.get(each.number, -2))) for each in outcome)
-
-
-def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:
-    """The verdicts of each setup, without those of cutters where they are forbidden."""
-    result = [dict(each) for each in task.everywhere]
-    for c, rows in barred.items():
-        cutter = task.cutters[c]
-        for each in result:
-            verdict = np.where(rows, UNJUDGED, each[cutter].verdict).astype(np.uint8)
-            each[cutter] = replace(each[cutter], verdict=verdict)
-    return tuple(result)
 
 
 def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.bool_]]) -> Task:

@@ -24,6 +24,7 @@ from plan_cutters.operations.labels import (
     joined,
     labelled,
     regions_of,
+    sampled_faces,
     without_minor_steps,
 )
 from plan_cutters.operations.orientations import Indexing
@@ -153,7 +154,7 @@ def plan_with(
                 link[mine] = area[mine] * stands.cut.links * task.paths.link_of(operation.cutter)
             tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
             strategy[mine] = stands.strategy
-            clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
+            clearance, word = clearance_of(task, operation, stands), strategy_of(stands.strategy, area[mine])
             linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
             operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
         links = sum(each.fields["link_seconds"] for each in operations)
@@ -285,7 +286,11 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     """
     samples, options, number = task.ready.samples, task.ready.options, made.number
     area, operations = np.nan_to_num(samples.area), list(made.operations)
-    free_form = _free_form(task, number)
+    # The faces of free form that several operations cut, the largest first.
+    size, pairs = np.bincount(samples.face, area), np.unique(np.column_stack([samples.face, number])[number >= 0], axis=0)[:, 0]
+    several = np.unique(pairs[1:][pairs[1:] == pairs[:-1]])
+    sculptured = several[np.isin(several, sampled_faces(task.ready, "sculptured".__eq__))].tolist()
+    free_form = sorted(sculptured, key=lambda each: -size[each])
     if len(free_form) and options.index_step is None and own is None:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}
         operations += [
@@ -332,15 +337,6 @@ def _little(made: _Made, area: Floats, speed: Floats) -> NDArray[np.bool_]:
     return np.append(little, False)[made.number]
 
 
-def _free_form(task: Task, number: NDArray[np.int32]) -> list[int]:
-    """The faces of free form that several operations cut, the largest first."""
-    face, area = task.ready.samples.face, np.nan_to_num(task.ready.samples.area)
-    size, shape = np.bincount(face, area), task.ready.scene.part.faces
-    pairs = np.unique(np.column_stack([face, number])[number >= 0], axis=0)[:, 0]
-    several = np.unique(pairs[1:][pairs[1:] == pairs[:-1]]).tolist()
-    return sorted((each for each in several if shape[each - 1].shape == "sculptured"), key=lambda each: -size[each])
-
-
 def _made_of(operations: Sequence[Operation], number: Ints, made: _Made, pace: Floats, area: Floats) -> tuple[_Made, Rows]:
     """What is made of operations that samples (n,) go with now, in the order in which operations stand, and what is left."""
     used = np.unique(number[number >= 0]).tolist()
@@ -376,14 +372,17 @@ class _Stands:
 
 def _stands(task: Task, operation: Operation) -> _Stands:
     """How the tool of an operation stands at its samples."""
-    samples, rows, held = task.ready.samples, operation.rows, _held(task, operation)
+    samples, rows, c = task.ready.samples, operation.rows, task.cutters.index(operation.cutter)
     if operation.axis is None:
         assert operation.moving is not None, "it has been looked at closely"
+        held = task.moving.held(c, operation.setup, rows, operation.moving[0])
         cut = cut_by_tip(operation.cutter, samples, rows, operation.moving[0][rows], task.paths, turning=True)
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
-    axis, cutter = operation.axis, operation.cutter
+    axis, cutter, number = operation.axis, operation.cutter, np.full(len(samples), -1, np.int32)
+    number[rows] = 0
+    held = held_at(axis[None], number, samples, Context.of(cutter, task.ready.setups[operation.setup]))
     tip = cut_by_tip(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
-    passes = task.walls.passes(task.cutters.index(cutter), operation.setup, axis, rows)
+    passes = task.walls.passes(c, operation.setup, axis, rows)
     wall = passes.cut.pace(task.paths, cutter) > np.nan_to_num(tip.pace(task.paths, cutter))
     cut = Cut(*(np.where(wall, mine, others) for mine, others in zip(passes.cut, tip, strict=True)))
     strategy = np.where(wall, STRATEGIES.index("wall"), np.where(cut.floor, STRATEGIES.index("floor"), 0)).astype(np.uint8)
@@ -399,25 +398,9 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     )  # fmt: skip
 
 
-def _held(task: Task, operation: Operation) -> Verdicts:
-    """The postures at the samples of an operation; those of others are not looked at."""
-    samples, n = task.ready.samples, len(task.ready.samples)
-    number = np.full(n, -1, np.int32)
-    number[operation.rows] = 0
-    if operation.axis is not None:
-        context = Context.of(operation.cutter, task.ready.setups[operation.setup])
-        return held_at(operation.axis[None], number, samples, context)
-    assert operation.moving is not None, "only what is looked at closely is put down"
-    return task.moving.held(task.cutters.index(operation.cutter), operation.setup, operation.rows, operation.moving[0])
-
-
-def clearance_of(task: Task, operation: Operation) -> float | None:
+def clearance_of(task: Task, operation: Operation, stands: _Stands | None = None) -> float | None:
     """The least clearance of an operation at its samples, mm; None where nothing is known."""
-    return _clearance(task, operation, _stands(task, operation))
-
-
-def _clearance(task: Task, operation: Operation, stands: _Stands) -> float | None:
-    """The least clearance of postures of an operation; None where nothing is known."""
+    stands = stands or _stands(task, operation)
     clearance = least_clearance(stands.samples, operation.cutter, stands.held, task.ready.setups[operation.setup])
     return clearance if math.isfinite(clearance) else None
 

@@ -121,10 +121,6 @@ class Context(Record):
         distance = _PROVED_AT * depth_along_normal(self.cutter)
         return np.ascontiguousarray(distance[distance > _CLEAR * deep])
 
-    def under(self, conditions: Conditions) -> "Context":
-        """The same cutter under other conditions."""
-        return Context.of(self.cutter, conditions)
-
 
 def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, kinematics: Kinematics | None) -> Ranges:
     """Put the postures and the limits of a machine, with its rotary axes in the part's frame, into the form that kernels take."""

@@ -204,8 +204,17 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
         whole = Obstacles(_triangles(source.vertex, fixture.chord_error), shells.weight)
         return _Body(whole, whole, (), tuple(notes))
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
-    if key not in cache:
-        cache[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
+    if key not in cache and source is not None:
+        cache[key] = _of_part(source, fixture, chord)
+    elif key not in cache and fixture.kind == "box":
+        cache[key] = _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
+    elif key not in cache and (clamping := fixture.clamping) is not None:
+        cache[key] = _solid(*triangles_of(clamping, chord))
+    elif key not in cache:
+        radius, height = fixture.sizes
+        sides = sides_of(radius, chord)
+        # The chord of a side is this far from the arc.
+        cache[key] = _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
     body: _Body = cache[key]
     return body
 
@@ -259,18 +268,6 @@ def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], n
         return np.ascontiguousarray(box(np.append(low[:2], min(low[2], top - beyond)), high) @ frame)
 
     return slab
-
-
-def _word(fixture: Fixture, chord: float) -> _Body:
-    """A box, a cylinder, or a vise or chuck in its place, by its sizes."""
-    if fixture.kind == "box":
-        return _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
-    if (clamping := fixture.clamping) is not None:
-        return _solid(*triangles_of(clamping, chord))
-    radius, height = fixture.sizes
-    sides = sides_of(radius, chord)
-    # The chord of a side is this far from the arc.
-    return _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
 
 
 def _solid(vertex: Floats, error: float) -> _Body:
