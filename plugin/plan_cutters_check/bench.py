@@ -237,7 +237,7 @@ class Bench:
                 if hits.verdict[i] == FREE:
                     held = any(each.holds(tip[i : i + 1] + tool.high * axis[k])[0] for each in self.standing[setup])
                     verdict[k] = MET if held else FREE
-                    if not held and self.at_border[some[i]] and self._in_material(tool, tip[i : i + 1], axis[k : k + 1])[0]:
+                    if not held and self.at_border[rows[k]] and self._in_material(tool, tip[i : i + 1], axis[k : k + 1])[0]:
                         # Another place may be out of the material.
                         verdict[k] = OPEN
                         places[k].forbid(place[i], _STEP * tool.flat)
