@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from cad_io import read_part
 from cad_io.arrays import Floats
@@ -33,14 +34,7 @@ _BOX = np.array([
 
 def rotation_of(body: Body) -> Floats:
     """The matrix (3, 3) of a placement: about x, then about y, then about z, all fixed in the part."""
-    rotation = np.eye(3)
-    for k, angle in enumerate(body.placement[3:]):
-        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        turn = np.eye(3)
-        i, j = (k + 1) % 3, (k + 2) % 3
-        turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
-        rotation = turn @ rotation
-    return rotation
+    return np.asarray(Rotation.from_euler("xyz", body.placement[3:], degrees=True).as_matrix())
 
 
 class PlacedFixture:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from cad_io.arrays import Floats
 from plan_cutters_check.findings import Finding
@@ -187,10 +188,8 @@ def _motions(entry: dict[str, Any]) -> list[Motion]:
         return [(np.eye(3), np.array(shift, float)) for shift in entry["shifts_mm"]]
     place, n = np.array(entry["place_mm"], float), np.array(entry["direction"], float)
     n = n / np.linalg.norm(n)
-    along = np.outer(n, n)
-    linear = [np.eye(3) - 2.0 * along]
+    linear = [np.eye(3) - 2.0 * np.outer(n, n)]
     if entry["kind"] == "rotation":
-        turns = [2.0 * math.pi * k / entry["order"] for k in range(1, entry["order"])]
-        cross = np.cross(n, np.eye(3)).T
-        linear = [along + math.cos(turn) * (np.eye(3) - along) + math.sin(turn) * cross for turn in turns]
+        order = entry["order"]
+        linear = [Rotation.from_rotvec(2.0 * math.pi * k / order * n).as_matrix() for k in range(1, order)]
     return [(each, place - each @ place) for each in linear]

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from cad_io import Part
@@ -25,8 +26,8 @@ FREE, MET, OPEN = 0, 1, 2
 OUTSIDE, INSIDE, ACROSS = 0, 1, 2
 #: Points along each side at which the slack of a cell is measured: of the first cells, and of later ones.
 _MANY, _FEW = 7, 3
-#: Points that are asked at once whether they lie in a face, and pairs of cells and border segments that are looked at at once.
-_AT_ONCE, _PAIRS = 128, 2_000_000
+#: Points that are asked at once whether they lie in a face.
+_AT_ONCE = 128
 _CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 #: Steps in parameters to all sides.
 SIDES = [np.array(side) for side in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))]
@@ -57,13 +58,14 @@ class Face:
     """A face of a part, perhaps placed: `rotation @ point + shift`."""
 
     def __init__(self, part: Part, number: int, name: str, rotation: Floats | None = None, shift: Floats | None = None) -> None:
-        self.name, self._part, self._number = name, part, number
+        self.name = name
         self._rotation = np.eye(3) if rotation is None else rotation
         self._shift = np.zeros(3) if shift is None else shift
         trim = part.trim(number)
         if trim is None:
             raise ValueError(f"{name} has no border that can be read")
         self._trim, self._adaptor = trim, part.adaptor(number)
+        self._border = shapely.STRtree(shapely.linestrings(trim.segments))
         self._flat = part.faces[number - 1].surface == "plane"
         self._first = True
 
@@ -128,28 +130,12 @@ class Face:
             return np.full(len(form), ACROSS, np.int8)
         reach = (trim.tolerance + 2.0 * trim.deflection) / trim.scale
         low, high = form[:, :2, 0] - reach, form[:, :2, 1] + reach
-        first, second = trim.segments[:, 0], trim.segments[:, 1]
-        near = np.zeros(len(form), bool)
-        size = max(1, _PAIRS // max(1, len(first)))
-        for start in range(0, len(form), size):
-            some = slice(start, start + size)
-            near[some] = _touched(low[some], high[some], first, second)
+        near, _ = self._border.query(shapely.box(*low.T, *high.T), predicate="intersects")
         state = np.full(len(form), ACROSS, np.int8)
-        clear = np.flatnonzero(~near)
+        clear = np.setdiff1d(np.arange(len(form)), near)
         within = inside(trim, form[clear, 0, :2].mean(axis=1), form[clear, 1, :2].mean(axis=1))
         state[clear] = np.where(within, INSIDE, OUTSIDE)
         return state
-
-
-def _touched(low: Floats, high: Floats, first: Floats, second: Floats) -> NDArray[np.bool_]:
-    """Which boxes (n, 2) a segment of some (m, 2) to (m, 2) comes into."""
-    middle, half = 0.5 * (low + high)[:, None], 0.5 * (high - low)[:, None]
-    away, side = 0.5 * (first + second)[None] - middle, 0.5 * np.abs(second - first)[None]
-    apart = (np.abs(away) > half + side).any(axis=2)
-    along = (second - first)[None]
-    cross = np.abs(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
-    apart |= cross > half[..., 0] * np.abs(along[..., 1]) + half[..., 1] * np.abs(along[..., 0])
-    return np.asarray((~apart).any(axis=1))
 
 
 class Triangles:
