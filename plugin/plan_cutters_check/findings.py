@@ -1,4 +1,4 @@
-"""What an answer says: a line for each statement of a plan, and entries of plan.json, compared with what follows from the files.
+"""An answer has a line for each statement of a plan, and entries of plan.json, compared with what follows from the files.
 
 Every number and word of plan.json is met in one walk: it is compared with what is expected, or named as not checked.
 """

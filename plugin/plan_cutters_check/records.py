@@ -551,7 +551,7 @@ def _chosen(document: Mapping[str, Any], entries: list[dict[str, Any]]) -> dict[
         named["selected"] = feasible[0]
 
     def leaves(entry: Mapping[str, Any]) -> tuple[float, int]:
-        """What a cutter leaves, but what stands on a proposed table: share of the area, and samples."""
+        """A cutter leaves a share of the area, and samples: all but what stands on a proposed table."""
         share, another = entry["area_share"], entry["by_reason"].get("another_setup", 0)
         left = share["inaccessible"] + share["undecided"] - share["lost_by"].get("another_setup", 0.0)
         samples = entry["inaccessible"] - entry["inside_bodies"] - entry["exempt"] + entry["undecided"] - another
