@@ -38,7 +38,7 @@ class Program:
         """Return words; a tool that no cutter is like leaves all undecided."""
         from plan_cutters.errors import CutterError
         from plan_cutters_check.asking import sizes_of
-        from plan_cutters_check.clash import FREE, MET, Clock, met
+        from plan_cutters_check.surface import FREE, MET, Clock, met
         from plan_cutters_check.tool import tool_of
 
         try:

@@ -2,30 +2,42 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from plan_cutters_check.leaves import same, short
+import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from cad_io import Part
-    from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.fixture import Fixture
-    from plan_cutters.domain.machine import Machine
-    from plan_cutters.domain.placement import Placement
-    from plan_cutters.options import Options
-    from plan_cutters_check.question import Body, Grip, MachineAxes, Question, Setup, ToolSizes
+from cad_io import Part
+from cad_io.part.orient import orient
+from cad_io.part.repeats import repeated_faces
+from plan_cutters.document.plan import as_requested
+from plan_cutters.domain.clamping import Block, Chuck, Vise
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.tolerance import effective_tolerance
+from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.options import Options
+from plan_cutters.plan_file.effective import Effective
+from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.reasons import REASONS as WORDS
+from plan_cutters.plan_file.words.text import with_text
+from plan_cutters.scene.faces import choose, clamped_faces, ignored_faces, ignored_words
+from plan_cutters_check.findings import same, short
+from plan_cutters_check.question import Body, Grip, MachineAxes, Question, Section, Setup, ToolSizes, require_operations
 
 #: How far the chords of a chuck's jaws may be from their bore, mm.
 _BORE = 1e-3
 
 
 def question_of(
-    part: "Part", options: "Options", document: Mapping[str, Any], arrays: Mapping[str, Mapping[str, "NDArray[Any]"]]
-) -> "Question":
+    part: Part, options: Options, document: Mapping[str, Any], arrays: Mapping[str, Mapping[str, NDArray[Any]]]
+) -> Question:
     """Put the part, the options and the files of a plan into the form that the checker takes.
 
     Raises
@@ -33,24 +45,18 @@ def question_of(
     OptionError
         The plan is of another part or of other options, or has no operations.
     """
-    from cad_io.part.bodies import orient
-    from cad_io.part.patterns import repeated_faces
-    from plan_cutters.scene.faces import ignored_faces, ignored_words
-    from plan_cutters_check.question import Question, require_operations
-
     require_operations(document)
     cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
     ignored = ignored_faces(part, ignored_words(part, options.ignore))
-    sign = orient(part, options.setup, options.flip).sign
     return Question(
         part, _axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
-        ignored | repeated_faces(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
-        arrays["samples.npz"], grips=grips,
+        ignored | repeated_faces(part, ignored).keys(), orient(part, options.setup, options.flip).sign, tolerance, document,
+        arrays["operations.npz"], arrays["samples.npz"], grips=grips,
     )  # fmt: skip
 
 
-def stated_by(question: "Question", options: "Options") -> "Question":
+def stated_by(question: Question, options: Options) -> Question:
     """The question with what plan.json must say by the user's own command, and by the program's words for the plan's numbers.
 
     Raises
@@ -58,12 +64,6 @@ def stated_by(question: "Question", options: "Options") -> "Question":
     OptionError
         The command says otherwise.
     """
-    from plan_cutters.domain.verdicts import REASONS
-    from plan_cutters.errors import PlanError
-    from plan_cutters.plan_file.load import plan_of
-    from plan_cutters.plan_file.reasons import REASONS as WORDS
-    from plan_cutters.plan_file.words.text import with_text
-
     names = {each.id: (each.name, each.holder.name if each.holder else "") for each in options.judged}
     stated: dict[str, Any] = {
         "format": "plan-cutters-plan",
@@ -90,18 +90,14 @@ def stated_by(question: "Question", options: "Options") -> "Question":
 #: Options that are compared in another way, or that follow from the part; those that a command may leave out all the same.
 _OTHER = ("cutters", "cutter_source", "fixtures", "setup", "placement", "other_setups", "other_placements", "ignore", "process",
           "spacing_mm", "sampled_by", "tolerance_mm", "local_tolerance", "chord_error_mm", "chord_measured_share",
-          "obstacle_triangles", "area_budget", "tilt_deg", "rotation_deg", "rotation_step_deg", "propose")  # fmt: skip
+          "obstacle_triangles", "area_budget", "tilt_deg", "rotation_deg", "rotation_step_deg", "propose",
+          "target_faces")  # fmt: skip
 _SAFETY = ("tolerance_requested_mm", "axis_accuracy_deg")
+_UNFIT = "the plan of operations does not fit:"
 
 
-def _effective(question: "Question", options: "Options") -> dict[str, Any]:
+def _effective(question: Question, options: Options) -> dict[str, Any]:
     """The options in force as far as the command says them: one that it leaves out, and the plan does not, is not checked."""
-    from plan_cutters.document.plan import as_requested
-    from plan_cutters.domain.operations import INDEX_TIME
-    from plan_cutters.errors import OptionError
-    from plan_cutters.options import Options
-    from plan_cutters.plan_file.effective import Effective
-    from plan_cutters.scene.faces import choose, ignored_words
 
     def every(those: Options) -> dict[str, Any]:
         made = {
@@ -110,42 +106,38 @@ def _effective(question: "Question", options: "Options") -> dict[str, Any]:
             "axis_accuracy_deg": math.degrees(those.accuracy),
             "index_time_s": INDEX_TIME if those.index_time is None else those.index_time,
         }  # fmt: skip
-        names = [name for name in Effective.model_fields if name not in _OTHER and name != "target_faces"]
+        names = [name for name in Effective.model_fields if name not in _OTHER]
         return json.loads(json.dumps({n: made[n] if n in made else as_requested(those, n) for n in names}, default=str))
 
-    written, mine, usual, stated = question.document["effective"], every(options), every(Options()), dict[str, Any]()
-    for name, value in mine.items():
+    written, usual, stated = question.document["effective"], every(Options()), dict[str, Any]()
+    for name, value in every(options).items():
         if same(value, written.get(name)):
             stated[name] = written.get(name)
         elif name in _SAFETY and written.get(name) is None:
             continue
         elif name in _SAFETY or not same(value, usual[name]):
-            words = f"{name}: {short(written.get(name))} in the plan, {short(value)} here"
-            raise OptionError(f"the plan of operations does not fit: {words}")
+            raise OptionError(f"{_UNFIT} {name}: {short(written.get(name))} in the plan, {short(value)} here")
     ignore = ignored_words(question.part, options.ignore)
-    chosen = choose(question.part, written["faces"], question.ignored, ignore)
+    targets = choose(question.part, written["faces"], question.ignored, ignore).targets
     # These were compared already, for the plan fits.
     fits = ("cutters", "setup", "other_setups", "tilt_deg", "rotation_deg", "tolerance_mm")
     stated |= {name: written[name] for name in fits}
-    return stated | {"target_faces": [f"F{n}" for n in chosen.targets], "ignore": list(ignore)}
+    return stated | {"target_faces": [f"F{n}" for n in targets], "ignore": list(ignore)}
 
 
-def _places(options: "Options") -> "tuple[Placement | None, ...]":
+def _places(options: Options) -> tuple[Placement | None, ...]:
     return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
 
 
-def _where(fixture: "Fixture", setup: int, document: Mapping[str, Any]) -> "tuple[Fixture, tuple[str, ...]]":
+def _where(fixture: Fixture, setup: int, document: Mapping[str, Any]) -> tuple[Fixture, tuple[str, ...]]:
     """A vise or chuck that was placed for a setup, where the plan says that it stands, and which faces it says to be gripped."""
-    from plan_cutters.domain.fixture import Fixture
-    from plan_cutters.errors import OptionError
-
     for entry in document["fixtures"]:
         if entry["name"] == f"fixture:{fixture.name}" and setup in entry.get("setups", [0]) and entry.get("clamping"):
             return replace(Fixture.parse(entry["clamping"]), name=fixture.name), tuple(entry.get("grips", []))
-    raise OptionError(f"the plan of operations does not fit: it does not say where {fixture} stands; plan again")
+    raise OptionError(f"{_UNFIT} it does not say where {fixture} stands; plan again")
 
 
-def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: int) -> "Grip":
+def _grip(wanted: Fixture, placed: Fixture, faces: tuple[str, ...], setup: int) -> Grip:
     """A vise or chuck that was to be placed, for the checker to see whether it holds the part.
 
     Raises
@@ -153,47 +145,34 @@ def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: i
     OptionError
         It is another one than the user asked for.
     """
-    from plan_cutters.domain.clamping import Chuck, Vise
-    from plan_cutters.errors import OptionError
-    from plan_cutters_check.question import Grip
-
     clamping, sizes = placed.clamping, wanted.grips
     same = placed.kind == wanted.kind and clamping is not None and not placed.to_place
     if not same or clamping is None or (sizes and sizes.sizes and clamping.numbers[: len(sizes.sizes)] != sizes.sizes):
-        raise OptionError(f"the plan of operations does not fit: {placed} stands where {wanted} was requested; plan again")
-    body, base = bodies_of(placed)[0], clamping.height - clamping.grip
+        raise OptionError(f"{_UNFIT} {placed} stands where {wanted} was requested; plan again")
     jaws, width = (2, clamping.width) if isinstance(clamping, Vise) else (0, 0.0)
     if isinstance(clamping, Chuck):
         jaws, width = clamping.jaws, clamping.half_angle
-    body = replace(body, placement=placed.placement)
-    return Grip(setup, placed.name, body, jaws, width, clamping.grip, base, clamping.numbers[-1], clamping.ledge, faces)
+    body, below = replace(bodies_of(placed)[0], placement=placed.placement), clamping.height - clamping.grip
+    return Grip(setup, placed.name, body, jaws, width, clamping.grip, below, clamping.numbers[-1], clamping.ledge, faces)
 
 
-def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "tuple[tuple[Setup, ...], tuple[Grip, ...]]":
+def _setups(part: Part, options: Options, document: Mapping[str, Any]) -> tuple[tuple[Setup, ...], tuple[Grip, ...]]:
     """The setups, and the vises and chucks in them of which the plan alone says where they stand."""
-    from plan_cutters.scene.faces import clamped_faces
-    from plan_cutters_check.question import Setup
-
-    setups, grips = [], list[Any]()
+    setups, grips = [], list[Grip]()
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
         x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
-        fixtures = []
+        bodies = list[Body]()
         for wanted in options.fixtures if s == 0 else (*options.shared_fixtures, *own):
             placed, faces = _where(wanted, s, document) if wanted.to_place else (wanted, ())
-            fixtures.append(placed)
+            bodies += bodies_of(placed)
             grips += [_grip(wanted, placed, faces, s)] if wanted.to_place else []
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
-        bodies = tuple(body for each in fixtures for body in bodies_of(each))
-        setups.append(Setup(z, x, origin, bodies, clamped_faces(part, place)))
+        setups.append(Setup(z, x, origin, tuple(bodies), clamped_faces(part, place)))
     return tuple(setups), tuple(grips)
 
 
-def _axes(machine: "Machine") -> "MachineAxes":
+def _axes(machine: Machine) -> MachineAxes:
     """The rotary axes; a machine without them is set by the azimuth about the setup axis and the tilt from it."""
-    import numpy as np
-
-    from plan_cutters_check.question import MachineAxes
-
     turning, free = machine.rotary, (-math.inf, math.inf)
     return MachineAxes(
         tuple(axis.name for axis in turning) or ("azimuth", "tilt"),
@@ -205,13 +184,8 @@ def _axes(machine: "Machine") -> "MachineAxes":
     )
 
 
-def bodies_of(fixture: "Fixture") -> "tuple[Body, ...]":
+def bodies_of(fixture: Fixture) -> tuple[Body, ...]:
     """A fixture as the checker takes it: a vise or chuck by each of its bodies."""
-    import numpy as np
-
-    from plan_cutters.domain.clamping import Block
-    from plan_cutters_check.question import Body
-
     clamping = fixture.clamping
     if clamping is None:
         return (Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement),)
@@ -222,83 +196,52 @@ def bodies_of(fixture: "Fixture") -> "tuple[Body, ...]":
             sizes = (solid.low, solid.high, *(x for point in (*solid.inner, *solid.outer) for x in point))
             bodies.append(Body(fixture.name, "prism", sizes, None, None, fixture.placement))
         else:
-            at = fixture.placed(np.array([0.0, 0.0, solid.low]))
-            place = (*at.tolist(), *fixture.placement[3:])
+            place = (*fixture.placed(np.array([0.0, 0.0, solid.low])).tolist(), *fixture.placement[3:])
             bodies.append(Body(fixture.name, "cylinder", (solid.radius, solid.high - solid.low), None, None, place))
     return tuple(bodies)
 
 
-def sizes_of(cutter: "Cutter") -> "ToolSizes":
+def sizes_of(cutter: Cutter) -> ToolSizes:
     """Dimensions of a cutter as the checker takes them."""
-    from plan_cutters_check.question import Section, ToolSizes
-
     above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
-    flutes = above[0].low if above else cutter.length
     return ToolSizes(
         cutter.id, cutter.shape, cutter.radius, cutter.corner_radius, cutter.arc_radius, cutter.arc_height, cutter.outline,
-        cutter.taper, flutes, above, cutter.allowance or 0.0, cutter.clearance or 0.0,
+        cutter.taper, above[0].low if above else cutter.length, above, cutter.allowance or 0.0, cutter.clearance or 0.0,
     )  # fmt: skip
 
 
-def _fits(
-    part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
-) -> float:
+def _fits(part: Part, options: Options, document: Mapping[str, Any], cutters: list[str], setups: tuple[Setup, ...]) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
-    from plan_cutters.domain.verdicts import effective_tolerance
-    from plan_cutters.errors import OptionError
-
     effective = document["effective"]
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
     if tolerance > wanted and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
-    pairs = [
-        *_of_part(part, document),
+    files = [(each["file"], each["sha256"]) for each in document["part"].get("references", [])]
+    axes = (effective["setup"], *effective["other_setups"])
+    places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
+    named = [[each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))]
+    pairs: list[tuple[str, Any, Any]] = [
+        ("part", document["part"].get("sha256"), part.sha256),
+        ("files that the part refers to", files, list(part.references)),
         ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
         ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
         ("machine (--machine)", effective["machine"], options.machine.name),
-        *_of_setups(options, document, setups),
+        ("setups (--setup)", _rounded(axes), _rounded(setup.z for setup in setups)),
+        # Not their places: where a fixture stands shows in what it serves.
+        ("fixtures (--fixture, --setup)", named, [[*dict.fromkeys(f"fixture:{b.name}" for b in one.fixtures)] for one in setups]),
+        ("clamped faces (--setup)", [(place or {}).get("clamped", []) for place in places],
+         [[] if place is None else list(place.clamped) for place in _places(options)]),
         ("tolerance (--tolerance)", tolerance, wanted),
-    ]
+    ]  # fmt: skip
     for name, angles in (("tilt", options.postures.tilt), ("rotation", options.postures.rotation)):
         degrees = [round(math.degrees(x), 6) for x in angles]
         pairs.append((f"{name}s (--{name})", [round(x, 6) for x in effective[f"{name}_deg"]], degrees))
     for what, was, now in pairs:
         if was != now:
-            raise OptionError(f"the plan of operations does not fit: {what}: {short(was)} in the plan, {short(now)} here")
+            raise OptionError(f"{_UNFIT} {what}: {short(was)} in the plan, {short(now)} here")
     return tolerance
 
 
-_Pair = tuple[str, Any, Any]
-
-
-def _of_part(part: "Part", document: Mapping[str, Any]) -> list[_Pair]:
-    files = [(each["file"], each["sha256"]) for each in document["part"].get("references", [])]
-    return [
-        ("part", document["part"].get("sha256"), part.sha256),
-        ("files that the part refers to", files, list(part.references)),
-    ]
-
-
-def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[Setup, ...]") -> list[_Pair]:
-    effective = document["effective"]
-    places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
-    named = [[each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))]
-    return [
-        (
-            "setups (--setup)",
-            [round(x, 9) for axis in (effective["setup"], *effective["other_setups"]) for x in axis],
-            [round(x, 9) for setup in setups for x in setup.z],
-        ),
-        # Not their places: where a fixture stands shows in what it serves.
-        (
-            "fixtures (--fixture, --setup)",
-            named,
-            [[*dict.fromkeys(f"fixture:{each.name}" for each in one.fixtures)] for one in setups],
-        ),
-        (
-            "clamped faces (--setup)",
-            [(place or {}).get("clamped", []) for place in places],
-            [[] if place is None else list(place.clamped) for place in _places(options)],
-        ),
-    ]
+def _rounded(axes: Iterable[Iterable[float]]) -> list[float]:
+    return [round(x, 9) for axis in axes for x in axis]

@@ -1,23 +1,26 @@
-"""The bench on which tools are put down: exact surfaces of the part and of each setup's fixtures, tools and machine."""
+"""The bench on which tools are put down: exact surfaces of the part and of each setup's fixtures, tools and machine.
+
+An upright tool may stand wherever a contact lies under the flat of its tip: at places (u, v) across the axis, from the contact. A
+point of the surface that is too deep in the tool at one place is so at all places that are as near to it: each forbids a disk. Of
+the places that remain one is on the rim of the flat or where the borders of two disks cross.
+"""
 
 import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from cad_io.kernel.shapes import within
-from plan_cutters_check.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
+from cad_io.kernel.inside import within
 from plan_cutters_check.fixtures import PlacedFixture, rotation_of
-from plan_cutters_check.places import Places, across, reach_at
 from plan_cutters_check.question import Question, frame_of
-from plan_cutters_check.surface import Cells, Face
-from plan_cutters_check.tool import FLAT, Tool, tool_of
+from plan_cutters_check.surface import FREE, MET, OPEN, SIDES, Cells, Clock, Face, lowest, met, nearest
+from plan_cutters_check.tool import FLAT, Solid, Tool, tool_of
 
 Rows = NDArray[np.int64]
 #: Shares of the tolerance: what may be missed; what a posture that counts as blocked is at least too deep by, below the flutes'
@@ -28,42 +31,37 @@ _TRIED, _ACCURACY = 120, 0.05
 #: How far from a place in the material the next one is tried, as a share of the flat.
 _STEP = 0.1
 _END = 1e-9
+#: Places on the rim and within it that are looked at first; by how much disks are widened, rounding, mm; halvings of a radius.
+_RIM, _RING, _APART, _ROUNDING, _HALVINGS = 36, 12, 1e-5, 1e-9, 50
+
+
+class Contacts(NamedTuple):
+    """Where tools touch: points, unit normals there, and the directions in which the tools lean from these, (m, 3) each."""
+
+    point: Floats
+    normal: Floats
+    tilt_direction: Floats
 
 
 class Bench:
-    """Puts tools down at samples.
-
-    Parameters
-    ----------
-    question : Question
-    tell : callable
-        Told what is done.
-    """
+    """Puts tools down at samples; `tell` is called with what is done."""
 
     def __init__(self, question: Question, tell: Callable[[str], None]) -> None:
-        self.question, samples = question, question.samples
+        self.question, samples, part = question, question.samples, question.part
         self.point, self.normal = samples["point"], samples["normal"]
         self.tools: dict[str, Tool] = {name: tool_of(sizes) for name, sizes in question.tools.items()}
         effective = question.document["effective"]
-        self._tilt = np.radians(effective["tilt_deg"])
-        self._rotation = np.radians(effective["rotation_deg"])
+        self._tilt, self._rotation = np.radians(effective["tilt_deg"]), np.radians(effective["rotation_deg"])
         #: Of the rotary axes, rad: what is off by no more is upright, or along a wall.
         self.accuracy = max(FLAT, math.radians(effective.get("axis_accuracy_deg", _ACCURACY)))
         self.cells = Cells()
-        part, tell_ = question.part, tell
-        tell_("opening the surfaces of the part")
-        faces = [
-            Face(part, face.number, f"F{face.number}")
-            for face in part.faces
-            if face.number not in question.ignored and part.trim(face.number) is not None
-        ]
+        tell("opening the surfaces of the part")
+        names = {face.number: f"F{face.number}" for face in part.faces if face.number not in question.ignored}
         #: Faces that are not among the surfaces: nothing is known of what they are in the way of.
-        self.unread = [
-            f"F{face.number}" for face in part.faces if face.number not in question.ignored and part.trim(face.number) is None
-        ]
+        self.unread = [name for number, name in names.items() if part.trim(number) is None]
         #: Fixtures of which is not known whether a point lies within.
         self.hollow: list[str] = []
-        own = self.cells.add(faces)
+        own = self.cells.add([Face(part, number, name) for number, name in names.items() if name not in self.unread])
         low, high = self.cells.point[own] - self.cells.slack[own], self.cells.point[own] + self.cells.slack[own]
         self.standing: list[list[PlacedFixture]] = []
         self.root: list[int] = []
@@ -86,27 +84,21 @@ class Bench:
         return _GRAIN * (min(wanted, limit) if wanted > 0.0 else limit)
 
     def stands(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
-        tell: Callable[[int], None] = lambda done: None,
-    ) -> NDArray[np.int8]:  # fmt: skip
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True
+    ) -> NDArray[np.int8]:
         """Whether a tool stands free at samples (m,) with axes and leans (m, 3): `FREE`, `MET` or `OPEN`.
 
         `surely`: free with nothing deeper than the tolerance; else also what a search may refuse as not proved is `MET`.
         """
-        verdicts, _ = self.looked(setup, tool, rows, axis, tilt_direction, clock, surely=surely, tell=tell)
-        return verdicts
+        at = Contacts(self.point[rows], self.normal[rows], tilt_direction)
+        return self._looked(setup, tool, rows, axis, at, clock, self._limits(tool, surely))[0]
 
-    def looked(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
-        tell: Callable[[int], None] = lambda done: None, contact: tuple[Floats, Floats] | None = None,
-        tolerance: float | None = None,
-    ) -> tuple[NDArray[np.int8], list[str]]:  # fmt: skip
-        """The same, with words for the first few that are not free; `contact`: points and normals in the place of samples,
-        `tolerance`: another one than the plan keeps, mm.
-        """
-        words = list[str]()
-        verdict = np.full(len(rows), MET, np.int8)
-        tip, able = self._tips(setup, tool, rows, self._at(rows) if contact is None else contact, axis, tilt_direction)
+    def _looked(
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, at: Contacts, clock: Clock, limits: tuple[float, float]
+    ) -> tuple[NDArray[np.int8], list[str]]:
+        """The same with contacts of their own, and words for the first few that are not free."""
+        words, verdict = list[str](), np.full(len(rows), MET, np.int8)
+        tip, able = self._tips(setup, tool, rows, axis, at)
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
             able &= ~each.holds(np.where(able[:, None], tip + tool.high * axis, 0.0))
@@ -115,8 +107,7 @@ class Bench:
                 f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there"
             )
         mine = np.flatnonzero(able)
-        limits = self._limits(tool, surely=surely, tolerance=tolerance)
-        hits = met(self.cells, self.root[setup], tool, tip[mine], axis[mine], limits, self.grain, clock, tell)
+        hits = met(self.cells, self.root[setup], tool, tip[mine], axis[mine], limits, self.grain, clock)
         verdict[mine] = hits.verdict
         inside = mine[(hits.verdict == FREE) & self.at_border[rows[mine]]]
         inside = inside[self._in_material(tool, tip[inside], axis[inside])]
@@ -142,8 +133,7 @@ class Bench:
             uv = samples["uv"][mine]
             d = np.linalg.norm(first_derivatives(part.adaptor(number), *uv.T)[:, 1:], axis=2)
             by = 2.0 * self.question.tolerance / np.maximum(d, 1e-9 * d.max(initial=1e-300))
-            ways = [np.array(way) for way in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))]
-            close[mine] = ~np.logical_and.reduce([trim.inside(*(uv + by * way).T) for way in ways])
+            close[mine] = ~np.logical_and.reduce([trim.inside(*(uv + by * side).T) for side in SIDES])
         return close
 
     def _in_material(self, tool: Tool, tip: Floats, axis: Floats) -> NDArray[np.bool_]:
@@ -152,38 +142,43 @@ class Bench:
             return np.zeros(len(tip), bool)
         return within(self.question.part.solid_shapes(), tip + 0.5 * tool.solids[0].high * axis)
 
-    def _at(self, rows: Rows) -> tuple[Floats, Floats]:
-        return self.point[rows], self.normal[rows]
-
-    def _tips(
-        self, setup: int, tool: Tool, rows: Rows, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats
-    ) -> tuple[Floats, NDArray[np.bool_]]:
+    def _tips(self, setup: int, tool: Tool, rows: Rows, axis: Floats, at: Contacts) -> tuple[Floats, NDArray[np.bool_]]:
         """Tips (m, 3) of a tool at contacts of samples (m,), and where it can stand there, whatever is in the way."""
-        tip = tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
-        able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows, contact[1], axis, tilt_direction)
+        first = self.question.samples["direction_max"][rows]
+        tip = tool.tips(at.point, at.normal, axis, at.tilt_direction, self.accuracy, self.question.tolerance)
+        cosine = (at.normal * axis).sum(axis=1)
+        leaning = axis - cosine[:, None] * at.normal
+        tilt = np.arctan2(np.linalg.norm(leaning, axis=1), cosine)
+        # Upright and along a wall the surface counts as if it were square to the axis, or held it.
+        tilt = np.where(tilt <= self.accuracy, np.minimum(tilt, self._tilt[0]), tilt)
+        tilt[tool.stands_along(at.normal, axis, at.tilt_direction, self.accuracy)] = 0.5 * math.pi
+        able = np.isfinite(tip).all(axis=1) & (tilt >= self._tilt[0] - _END) & (tilt <= self._tilt[1] + _END)
+        low, high = self._rotation
+        if high - low < 2.0 * math.pi - _END:
+            turn = np.arctan2((leaning * np.cross(at.normal, first)).sum(axis=1), (leaning * first).sum(axis=1))
+            able &= (np.remainder(turn - low + _END, 2.0 * math.pi) <= high - low + 2.0 * _END) | (tilt < _END)
         return tip, able & ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
 
-    def _limits(self, tool: Tool, *, surely: bool, tolerance: float | None = None) -> tuple[float, float]:
+    def _limits(self, tool: Tool, surely: bool) -> tuple[float, float]:
         flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
-        limit = self.question.tolerance if tolerance is None else tolerance
-        return flutes * limit - tool.allowance, rest * limit - tool.clearance
+        return flutes * self.question.tolerance - tool.allowance, rest * self.question.tolerance - tool.clearance
 
     def put_down(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock,
-        contact: tuple[Floats, Floats] | None = None,
-    ) -> tuple[NDArray[np.int8], int, list[str]]:  # fmt: skip
-        """Verdicts on a tool at samples (m,) by the tolerance that was wanted, and words for the first few that are not free.
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, at: Contacts, clock: Clock
+    ) -> tuple[NDArray[np.int8], int, list[str]]:
+        """Verdicts on a tool at contacts of samples (m,) by the tolerance that was wanted, and words for the first few not free.
 
-        What is free by the tolerance that the plan keeps alone is `OPEN`; how many these are is told as well.
+        What is free by the tolerance that the plan keeps alone is `OPEN`; how many these are is given as well.
         """
-        wanted, place = self.question.asked, (setup, tool)
-        strict = wanted if 0.0 < wanted < self.question.tolerance else None
-        verdict, words = self.looked(*place, rows, axis, tilt_direction, clock, contact=contact, tolerance=strict)
+        wanted, (flutes, rest) = self.question.asked, self._limits(tool, surely=True)
+        strict = 0.0 < wanted < self.question.tolerance
+        limits = (wanted - tool.allowance if strict else flutes), rest
+        verdict, words = self._looked(setup, tool, rows, axis, at, clock, limits)
         deep = np.flatnonzero(verdict == MET)
-        if strict is None or not len(deep):
+        if not strict or not len(deep):
             return verdict, 0, words
-        at = None if contact is None else (contact[0][deep], contact[1][deep])
-        again, words = self.looked(*place, rows[deep], axis[deep], tilt_direction[deep], clock, contact=at)
+        some = Contacts(*(each[deep] for each in at))
+        again, words = self._looked(setup, tool, rows[deep], axis[deep], some, clock, (flutes, rest))
         verdict[deep] = np.where(again == FREE, OPEN, again)
         return verdict, int((again == FREE).sum()), words
 
@@ -215,22 +210,26 @@ class Bench:
 
     def _under_flat(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """Whether an upright tool stands free anywhere with a contact under its flat: `FREE`, `MET`, or `OPEN`."""
-        first, limits = self.question.samples["direction_max"], self._limits(tool, surely=surely)
-        uv = np.array([across(a, first[row]) for a, row in zip(axis, rows.tolist(), strict=True)])
-        places = [Places(tool.flat) for _ in rows]
+        limits, places = self._limits(tool, surely), [_Places(tool.flat) for _ in rows]
+        # Two unit directions across each axis, the first nearest to that of the larger curvature.
+        first = self.question.samples["direction_max"][rows]
+        u = [d - (d @ a) * a for a, d in zip(axis, first, strict=True)]
+        u = [each / max(float(np.linalg.norm(each)), 1e-300) for each in u]
+        uv = np.array([[each, np.cross(a, each)] for a, each in zip(axis, u, strict=True)])
         verdict = np.full(len(rows), OPEN, np.int8)
         for _ in range(_TRIED):
             open_rows = np.flatnonzero(verdict == OPEN)
             if not len(open_rows) or clock.over:
                 break
-            at = [places[k].best for k in open_rows.tolist()]
-            gone = np.array([each is None for each in at])
+            best = [places[k].best for k in open_rows.tolist()]
+            gone = np.array([each is None for each in best])
             verdict[open_rows[gone]] = MET
-            some, place = open_rows[~gone], np.array([each for each in at if each is not None]).reshape(-1, 2)
+            some, place = open_rows[~gone], np.array([each for each in best if each is not None]).reshape(-1, 2)
             tilt_direction = -np.einsum("nk,nkx->nx", place, uv[some]) / tool.flat
             # In the middle of the flat no direction is left: a hair beside it.
             tilt_direction[np.linalg.norm(tilt_direction, axis=1) < _END] = _END
-            tip, able = self._tips(setup, tool, rows[some], self._at(rows[some]), axis[some], tilt_direction)
+            at = Contacts(self.point[rows[some]], self.normal[rows[some]], tilt_direction)
+            tip, able = self._tips(setup, tool, rows[some], axis[some], at)
             verdict[some[~able]] = MET
             some, place, tip = some[able], place[able], tip[able]
             hits = met(self.cells, self.root[setup], tool, tip, axis[some], limits, self.grain, clock)
@@ -238,7 +237,7 @@ class Bench:
                 if hits.verdict[i] == FREE:
                     held = any(each.holds(tip[i : i + 1] + tool.high * axis[k])[0] for each in self.standing[setup])
                     verdict[k] = MET if held else FREE
-                    if not held and self.at_border[some[i]] and self._in_material(tool, tip[i : i + 1], axis[k : k + 1])[0]:
+                    if not held and self.at_border[rows[k]] and self._in_material(tool, tip[i : i + 1], axis[k : k + 1])[0]:
                         # Another place may be out of the material.
                         verdict[k] = OPEN
                         places[k].forbid(place[i], _STEP * tool.flat)
@@ -247,7 +246,7 @@ class Bench:
                     limit = limits[0] if solid.part == "flutes" else limits[1]
                     away = self.cells.point[hits.cell[i]] - tip[i]
                     flat = uv[k] @ away
-                    radius = reach_at(solid, float(away @ axis[k]), limit, float(np.linalg.norm(flat)))
+                    radius = _reach_at(solid, float(away @ axis[k]), limit, float(np.linalg.norm(flat)))
                     places[k].forbid(place[i] + flat, radius)
         return verdict
 
@@ -259,32 +258,66 @@ class Bench:
         return np.where(size > 1e-12, across / np.maximum(size, 1e-300), self.question.samples["direction_max"][rows])
 
     def clearance(
-        self, setup: int, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats, beyond: float,
-        clock: Clock,
-    ) -> tuple[float, str] | None:  # fmt: skip
-        """The least distance of what does not cut from anything, mm, at contacts, points and normals (m, 3), and which part
-        comes nearest.
-        """
-        tip = tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
+        self, setup: int, tool: Tool, axis: Floats, at: Contacts, beyond: float, clock: Clock
+    ) -> tuple[float, str] | None:
+        """The least distance of what does not cut from anything, mm, at contacts, and which part comes nearest."""
+        tip = tool.tips(at.point, at.normal, axis, at.tilt_direction, self.accuracy, self.question.tolerance)
         return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
 
-    def named(self, index: int) -> Tool:
-        """The tool of an index into the plan's cutters."""
-        cutters: Any = self.question.document["cutters"]
-        return self.tools[cutters[index]["id"]]
 
-    def _can_tilt(self, tool: Tool, rows: Rows, normal: Floats, axis: Floats, tilt_direction: Floats) -> NDArray[np.bool_]:
-        """Which axes (m, 3) lean from normals (m, 3) by tilts and towards rotations that the plan allows."""
-        first = self.question.samples["direction_max"][rows]
-        cosine = (normal * axis).sum(axis=1)
-        leaning = axis - cosine[:, None] * normal
-        tilt = np.arctan2(np.linalg.norm(leaning, axis=1), cosine)
-        # Upright and along a wall the surface counts as if it were square to the axis, or held it.
-        tilt = np.where(tilt <= self.accuracy, np.minimum(tilt, self._tilt[0]), tilt)
-        tilt[tool.stands_along(normal, axis, tilt_direction, self.accuracy)] = 0.5 * math.pi
-        able = (tilt >= self._tilt[0] - _END) & (tilt <= self._tilt[1] + _END)
-        low, high = self._rotation
-        if high - low < 2.0 * math.pi - _END:
-            turn = np.arctan2((leaning * np.cross(normal, first)).sum(axis=1), (leaning * first).sum(axis=1))
-            able &= (np.remainder(turn - low + _END, 2.0 * math.pi) <= high - low + 2.0 * _END) | (tilt < _END)
-        return np.asarray(able)
+class _Places:
+    """Places (n, 2) of one contact that may be free, how far each is from all disks that are forbidden, and these, (k, 3), mm."""
+
+    def __init__(self, most: float) -> None:
+        rim, ring = (np.arange(n) * (2.0 * math.pi / n) for n in (_RIM, _RING))
+        circles = [-r * np.column_stack([np.cos(turn), np.sin(turn)]) for r, turn in ((most, rim), (0.5 * most, ring))]
+        self._most, self._disk = most, np.zeros((0, 3))
+        self._open = np.concatenate([*circles, np.zeros((1, 2))])
+        self._margin = np.full(len(self._open), np.inf)
+
+    @property
+    def best(self) -> Floats | None:
+        """The place farthest from all disks; None if all are forbidden."""
+        return self._open[int(self._margin.argmax())] if len(self._open) else None
+
+    def forbid(self, centre: Floats, radius: float) -> None:
+        """Forbid the places that are nearer to a point (2,) than a radius; the one that was tried last is among them."""
+        left = np.arange(len(self._open)) != int(self._margin.argmax())
+        new = np.array([[*centre, radius + _APART]])
+        crossing = np.concatenate([_crossings(new[0], each) for each in [*self._disk, np.array([0.0, 0.0, self._most])]])
+        self._disk = np.concatenate([self._disk, new])
+        crossing = crossing[np.linalg.norm(crossing, axis=1) <= self._most + _ROUNDING]
+        places = np.concatenate([self._open[left], crossing])
+        margin = np.concatenate([np.minimum(self._margin[left], _away(self._open[left], new)), _away(crossing, self._disk)])
+        self._open, self._margin = places[margin >= -_ROUNDING], margin[margin >= -_ROUNDING]
+
+
+def _away(place: Floats, disk: Floats) -> Floats:
+    """How far places (n, 2) are from the nearest of some disks (k, 3)."""
+    apart = np.linalg.norm(place[:, None] - disk[:, :2], axis=2) - disk[:, 2]
+    return np.asarray(apart.min(axis=1, initial=np.inf))
+
+
+def _crossings(one: Floats, other: Floats) -> Floats:
+    """Where two circles (3,) cross: (0 or 2, 2)."""
+    to = other[:2] - one[:2]
+    d = math.hypot(*to)
+    if d == 0.0 or d > one[2] + other[2] or d < abs(one[2] - other[2]):
+        return np.zeros((0, 2))
+    along = (d * d + one[2] ** 2 - other[2] ** 2) / (2.0 * d)
+    across = math.sqrt(max(0.0, one[2] ** 2 - along * along))
+    to = to / d
+    middle, side = one[:2] + along * to, across * np.array([-to[1], to[0]])
+    return np.array([middle - side, middle + side])
+
+
+def _reach_at(solid: Solid, height: float, deep: float, within: float) -> float:
+    """Up to which distance from the axis a point at a height is deeper in a solid than `deep`: `within` is so, or is taken."""
+    low, high = within, within + 2.0 * float(np.abs(solid.border).max())
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if solid.depth(np.array([middle]), np.array([height]))[0][0] > deep:
+            low = middle
+        else:
+            high = middle
+    return low

@@ -10,22 +10,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from plan_cutters_check import fixtures, spoken
 from plan_cutters_check.bench import Bench
-from plan_cutters_check.clash import Clock
-from plan_cutters_check.document import document_of
-from plan_cutters_check.document import findings as of_words
-from plan_cutters_check.findings import Answer, Finding
-from plan_cutters_check.holding import faults as not_held
-from plan_cutters_check.holding import resting
-from plan_cutters_check.leaves import Compared, compared
-from plan_cutters_check.moving import ill_formed
-from plan_cutters_check.paper import Paper
+from plan_cutters_check.findings import Answer, Compared, Finding
+from plan_cutters_check.paper import Paper, faults, ill_formed
 from plan_cutters_check.patterns import Patterns
 from plan_cutters_check.question import Question, require_operations
-from plan_cutters_check.reading import faults
 from plan_cutters_check.reckoned import Reckoned
+from plan_cutters_check.records import document_of
+from plan_cutters_check.surface import Clock
 from plan_cutters_check.trials import Trials
-from plan_cutters_check.verdicts import postures
 
 #: Seconds that a check takes at most unless another time is set, and the share of them by which each of its parts must be done.
 SECONDS = 60.0
@@ -33,16 +27,10 @@ _PARTS = {"placed": 0.35, "weights": 0.6, "covered": 0.75, "alone": 0.85, "verdi
 
 
 def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str], None] = lambda doing: None) -> Answer:
-    """Check the operations of a plan.
+    """Check the operations of a plan; `tell` is called with what is being done.
 
-    Parameters
-    ----------
-    question : Question
-    seconds : float
-        What is not done after these is listed as not checked, with how much was; all samples of the labels are looked at in the
-        order of a random draw with seed 0.
-    tell : callable
-        Called with what is being done.
+    What is not done after so many seconds is listed as not checked, with how much was; all samples of the labels are looked at in
+    the order of a random draw with seed 0.
 
     Raises
     ------
@@ -62,28 +50,24 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    findings = [*Paper(question, reckoned, rng).findings(), *Patterns(question).findings()]
-    findings += ill_formed(question, reckoned)
-    findings += (Finding(False, f"{each}.") for each in not_held(question))
-    question = resting(question)
-    findings += of_words(question, reckoned)
-    expected = document_of(question, reckoned)
-    first = _compared(question, findings, compared(expected, question.document))
+    findings = [*Paper(reckoned, rng).findings(), *Patterns(question).findings(), *ill_formed(reckoned)]
+    findings += (Finding(False, f"{each}.") for each in fixtures.faults(question))
+    findings += spoken.findings(reckoned)
+    expected = document_of(reckoned)
+    first = _compared(question, findings, Compared().compare(expected, question.document))
     if not first.holds:
         last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
         return replace(first, findings=(*first.findings, last))
-    bench = Bench(question, tell)
+    bench = Bench(fixtures.resting(question), tell)
     clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
-    findings += Trials(question, reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
-    # With draws of its own: those of the other checks stay as they are.
-    findings += postures(question, reckoned, bench, np.random.default_rng(0), clock["verdicts"])
-    return _compared(question, findings, compared(expected, question.document))
+    findings += Trials(reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
+    return _compared(question, findings, Compared().compare(expected, question.document))
 
 
 def on_paper(question: Question) -> Answer:
     """The part of a check that is about what plan.json says: no array is looked at by itself, and no tool is put down."""
     reckoned = Reckoned(question)
-    return _compared(question, [*of_words(question, reckoned)], compared(document_of(question, reckoned), question.document))
+    return _compared(question, [*spoken.findings(reckoned)], Compared().compare(document_of(reckoned), question.document))
 
 
 def _compared(question: Question, findings: list[Finding], entries: Compared) -> Answer:

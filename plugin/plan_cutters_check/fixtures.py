@@ -1,14 +1,17 @@
-"""Fixtures as exact surfaces, and whether a point lies within one."""
+"""Fixtures as exact surfaces, whether a point lies within one, and whether those hold the part whose place the plan states."""
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from cad_io import Part, read_part
+from cad_io import read_part
 from cad_io.arrays import Floats
-from cad_io.read.mesh import Mesh, is_mesh, read_mesh
-from plan_cutters_check.question import Body, Setup, frame_of
+from cad_io.read.mesh import is_mesh, read_mesh
+from plan_cutters_check.question import Body, Grip, Question, Setup, frame_of
 from plan_cutters_check.surface import Face, Source, Triangles
 
 #: A table reaches so much farther than the part, mm: as far as any tool.
@@ -17,6 +20,10 @@ _TABLE = 2000.0
 _SIDES = 720
 #: So many triangles are seen from points at a time.
 _AT_ONCE = 100_000
+#: How far a face may be from a jaw, and the part's lowest point from the ledges, mm; cosine of the angle between both.
+_AT, _SQUARE = 0.02, math.cos(math.radians(0.2))
+#: Lines of points in a face each way, and how often closer ones are taken where the jaws are.
+_LINES, _TIMES = 16, 4
 _MESH = (".stl", ".obj", ".ply", ".glb")
 #: Corners of the triangles of a box, counter-clockwise from outside.
 _BOX = np.array([
@@ -27,52 +34,31 @@ _BOX = np.array([
 
 def rotation_of(body: Body) -> Floats:
     """The matrix (3, 3) of a placement: about x, then about y, then about z, all fixed in the part."""
-    rotation = np.eye(3)
-    for k, angle in enumerate(body.placement[3:]):
-        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        turn = np.eye(3)
-        i, j = (k + 1) % 3, (k + 2) % 3
-        turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
-        rotation = turn @ rotation
-    return rotation
+    return np.asarray(Rotation.from_euler("xyz", body.placement[3:], degrees=True).as_matrix())
 
 
 class PlacedFixture:
-    """A fixture where it stands in a setup.
+    """A fixture where it stands in a setup, about a part from `low` to `high` (3,): its surfaces are `sources`.
 
-    Attributes
-    ----------
-    sources : list of Source
-        Its surfaces.
+    `known`: whether `holds` knows what lies within.
     """
 
     def __init__(self, body: Body, setup: Setup, low: Floats, high: Floats) -> None:
         self.name = f"fixture:{body.name}"
         rotation, shift = rotation_of(body), np.array(body.placement[:3], float)
-        self._vertex: Floats | None = None
-        if body.kind:
-            own = _word(body, setup, rotation, shift, low, high)
+        mesh = body.source.lower().endswith(_MESH) if isinstance(body.source, str) else is_mesh(body.source)
+        self.known, self._vertex, self.sources = bool(body.kind or mesh), np.zeros((0, 3, 3)), list[Source]()
+        if self.known:
+            own = _word(body, setup, rotation, shift, low, high) if body.kind else read_mesh(body.source, body.unit).vertex
             self._vertex = own @ rotation.T + shift
-            self.sources: list[Source] = [Triangles(self._vertex, self.name)]
-            return
-        read = _read(body)
-        if isinstance(read, Part):
-            self.sources = [
-                Face(read, face.number, self.name, rotation, shift) for face in read.faces if read.trim(face.number) is not None
-            ]
+            self.sources.append(Triangles(self._vertex, self.name))
         else:
-            self._vertex = read.vertex @ rotation.T + shift
-            self.sources = [Triangles(self._vertex, self.name)]
-
-    @property
-    def known(self) -> bool:
-        """Whether `holds` knows what lies within."""
-        return self._vertex is not None
+            read = read_part(body.source, unit=body.unit)
+            numbers = [face.number for face in read.faces if read.trim(face.number) is not None]
+            self.sources += [Face(read, number, self.name, rotation, shift) for number in numbers]
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which points (n, 3) lie within it, by the solid angle of its triangles; of a CAD file none is known to."""
-        if self._vertex is None:
-            return np.zeros(len(points), bool)
         inside, corners = np.zeros(len(points)), self._vertex.transpose(1, 0, 2)[:, :, None]
         together = max(1, _AT_ONCE // max(1, len(self._vertex)))
         for start in range(0, len(points), together):
@@ -85,16 +71,8 @@ class PlacedFixture:
         return np.asarray(np.abs(inside) > 2.0 * math.pi)
 
 
-def _read(body: Body) -> Part | Mesh:
-    if isinstance(body.source, str):
-        if body.source.lower().endswith(_MESH):
-            return read_mesh(body.source, body.unit)
-        return read_part(body.source, unit=body.unit)
-    return read_mesh(body.source, body.unit) if is_mesh(body.source) else read_part(body.source, unit=body.unit)
-
-
 def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats, high: Floats) -> Floats:
-    """Triangles (n, 3, 3), in its own frame, of a fixture that is described by a word, about a part from `low` to `high` (3,)."""
+    """Triangles (n, 3, 3), in its own frame, of a fixture that is described by a word."""
     if body.kind == "box":
         return _box(np.zeros(3), np.array(body.sizes))
     if body.kind == "cylinder":
@@ -136,3 +114,105 @@ def _prism(low: float, high: float, lines: Floats) -> Floats:
 def _box(low: Floats, high: Floats) -> Floats:
     corner = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
     return np.asarray((low + corner * (high - low))[_BOX])
+
+
+def faults(question: Question) -> Iterator[str]:
+    """List what is wrong with where the part is held, a line each."""
+    for grip in question.grips:
+        points = {f.number: _local(question, grip, f.number) for f in question.part.faces if question.part.trim(f.number)}
+        # A round that runs out into what is gripped touches a jaw along a line, which holds nothing.
+        held = "plane" if grip.jaws == 2 else "cylinder"
+        touched = {n: _touched(grip, *pair) for n, pair in points.items() if question.part.faces[n - 1].shape == held}
+        touching = {number for number, jaws in touched.items() if jaws}
+        stated = {int(name[1:]) for name in grip.faces if name[1:].isdecimal()}
+        where = f"{grip.name} in setup {grip.setup + 1}"
+        free = grip.jaws - len(set[int]().union(*touched.values()))
+        # A chuck grips a whole cylinder, whichever faces of it are between its jaws.
+        on_bore = {n for n in stated if grip.jaws > 2 and _bored(grip, *points[n]).any()}
+        other = touching ^ stated if grip.jaws == 2 else (touching - stated) | (stated - on_bore)
+        if free:
+            yield f"{where}: no face of the part is at {free} of its {grip.jaws} jaws"
+        elif other or not stated:
+            names = ", ".join(f"F{n}" for n in sorted(touching))
+            yield f"{where}: its jaws touch {names}, and the plan says {', '.join(grip.faces) or 'none'}"
+        yield from (f"{where}: {words}" for words in _rests(grip, np.concatenate([pair[0] for pair in points.values()])))
+
+
+def resting(question: Question) -> Question:
+    """The question with the faces on which the part rests in a placed vise or chuck held in that setup: no tool comes there."""
+    setups = [*question.setups]
+    for grip in question.grips:
+        rests = set()
+        for face in question.part.faces:
+            if face.shape == "plane" and question.part.trim(face.number):
+                point, normal = _local(question, grip, face.number)
+                if (np.abs(point[:, 2]) <= _AT).all() and normal[:, 2].min(initial=0.0) <= -_SQUARE:
+                    rests.add(face.number)
+        setups[grip.setup] = replace(setups[grip.setup], clamped=setups[grip.setup].clamped | rests)
+    return replace(question, setups=tuple(setups))
+
+
+def _local(question: Question, grip: Grip, number: int) -> tuple[Floats, Floats]:
+    """Points (n, 3) of a face and its border, closer together at the jaws, and outer normals there, in the jaws' frame."""
+    trim, rotation = question.part.trim(number), rotation_of(grip.body)
+    assert trim is not None
+    pairs: list[tuple[Floats, Floats]] = []
+
+    def at(uv: Floats) -> Floats:
+        point, normal, _ = question.surface(number, uv)
+        local = (point - np.array(grip.body.placement[:3])) @ rotation
+        inside = trim.inside(*uv.T)
+        pairs.append((local[inside], normal[inside] @ rotation))
+        return np.asarray(local)
+
+    low, high = np.array(trim.box).reshape(2, 2).T
+    for _ in range(_TIMES):
+        cell = (high - low) / _LINES
+        uv = np.stack(np.meshgrid(*(low + cell * (np.arange(_LINES)[:, None] + 0.5)).T), axis=-1)
+        local = at(uv.reshape(-1, 2)).reshape(_LINES, _LINES, 3)
+        far = 1.5 * max(float(np.abs(np.diff(local, axis=k)).max()) for k in (0, 1))
+        near = (local[..., 2] >= -far) & (local[..., 2] <= grip.grip + far)
+        near &= (np.abs(local[..., 1]) <= 0.5 * grip.width + far) | (grip.jaws > 2)
+        if not near.any() or near.all():
+            break
+        low, high = uv[near].min(axis=0) - cell, uv[near].max(axis=0) + cell
+    border = trim.segments.reshape(-1, 2)
+    point = question.surface(number, border)[0]
+    pairs.append(((point - np.array(grip.body.placement[:3])) @ rotation, np.zeros((len(point), 3))))
+    return np.concatenate([each[0] for each in pairs]), np.concatenate([each[1] for each in pairs])
+
+
+def _touched(grip: Grip, point: Floats, normal: Floats) -> set[int]:
+    """At which jaws a face lies, that looks at them."""
+    if grip.jaws == 2:
+        there = (point[:, 2] > _AT) & (point[:, 2] < grip.grip - _AT) & (np.abs(point[:, 1]) < 0.5 * grip.width - _AT)
+        return {
+            k for k, way in enumerate((1.0, -1.0))
+            if (there & (np.abs(way * point[:, 0] - 0.5 * grip.apart) <= _AT) & (way * normal[:, 0] >= _SQUARE)).any()
+        }  # fmt: skip
+    there = _bored(grip, point, normal)
+    turn, every = np.arctan2(point[there, 1], point[there, 0]), 2.0 * math.pi / grip.jaws
+    nearest = np.rint(turn / every)
+    return {int(k) % grip.jaws for k in nearest[np.abs(turn - nearest * every) <= grip.width]}
+
+
+def _bored(grip: Grip, point: Floats, normal: Floats) -> NDArray[np.bool_]:
+    """Which points lie on the bore of a chuck's jaws, in their height."""
+    away = np.hypot(point[:, 0], point[:, 1])
+    outward = (point[:, :2] * normal[:, :2]).sum(axis=1) >= _SQUARE * np.maximum(away, 1e-9)
+    return np.asarray(outward & (point[:, 2] > _AT) & (point[:, 2] < grip.grip - _AT) & (np.abs(away - 0.5 * grip.apart) <= _AT))
+
+
+def _rests(grip: Grip, point: Floats) -> Iterator[str]:
+    """Whether the lowest points lie on the ledges, or between the jaws over the body."""
+    low = float(point[:, 2].min())
+    across = np.abs(point[:, 0]) if grip.jaws == 2 else np.hypot(point[:, 0], point[:, 1])
+    if low > _AT:
+        yield f"the part hangs {low:.4g} mm over the ledges"
+    elif low < -_AT:
+        if low < -grip.below - _AT:
+            yield f"the part reaches {-low - grip.below:.4g} mm into the body"
+        if (across[point[:, 2] < -_AT] > 0.5 * grip.apart - grip.ledge + _AT).any():
+            yield "the part reaches into the jaws below the ledges"
+    elif not (across[point[:, 2] <= low + _AT] >= 0.5 * grip.apart - grip.ledge - _AT).any():
+        yield "no lowest point of the part lies on the ledges"

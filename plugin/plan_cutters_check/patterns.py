@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from cad_io.arrays import Floats
-from cad_io.kernel import first_derivatives
 from plan_cutters_check.findings import Finding
 from plan_cutters_check.question import Question
+from plan_cutters_check.surface import SIDES
 
 #: Faces are equal within this share of the part's size; areas, cosines of normals, and unit vectors.
 _EXACT, _AREA, _NORMAL, _SAME = 2e-6, 2e-4, 1.0 - 1e-4, 1e-6
@@ -28,12 +29,7 @@ Motion = tuple[Floats, Floats]
 
 
 class Patterns:
-    """The checks of equal faces and of what is repeated.
-
-    Parameters
-    ----------
-    question : Question
-    """
+    """The checks of equal faces and of what is repeated."""
 
     def __init__(self, question: Question) -> None:
         # With draws of its own: those of the other checks stay as they are.
@@ -113,21 +109,13 @@ class Patterns:
         uv = uv[:: max(1, len(uv) // _LINES**2)]
         ends = trim.segments.mean(axis=1)
         uv = np.concatenate([uv, ends[:: max(1, len(ends) // _BORDER)]])
-        point, normal = self._at(number, uv)[:2]
-        return point, normal, float(trim.deflection)
-
-    def _at(self, number: int, uv: Floats) -> tuple[Floats, Floats, Floats]:
-        """Points of a surface, its outer unit normals (n, 3), and its derivatives (n, 2, 3)."""
-        d = first_derivatives(self.question.part.adaptor(number), *uv.T)
-        normal = np.cross(d[:, 1], d[:, 2]) * self.question.sign[number - 1]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return d[:, 0], normal / np.linalg.norm(normal, axis=1)[:, None], d[:, 1:]
+        return *self.question.surface(number, uv)[:2], float(trim.deflection)
 
     def _seeds_of(self, number: int) -> tuple[Floats, Floats]:
         """Parameters (n, 2) all over a face, and their points."""
         u0, u1, v0, v1 = self.question.part.trim(number).box  # type: ignore[union-attr]
         every = np.stack(np.meshgrid(np.linspace(u0, u1, _SEEDS), np.linspace(v0, v1, _SEEDS)), axis=-1).reshape(-1, 2)
-        return every, self._at(number, every)[0]
+        return every, self.question.surface(number, every)[0]
 
     def _nearest(self, number: int, point: Floats) -> tuple[Floats, Floats, Floats]:
         """Distances (n,) of points from a face's surface, as found from the nearest seeds, the places there, and normals."""
@@ -138,7 +126,7 @@ class Patterns:
         for start in near.T:
             at = seed[start].copy()
             for _ in range(_STEPS):
-                there, outward, slope = self._at(number, at)
+                there, outward, slope = self.question.surface(number, at)
                 off = np.linalg.norm(point - there, axis=1)
                 better = off < best
                 best[better], uv[better], normal[better] = off[better], at[better], outward[better]
@@ -154,13 +142,13 @@ class Patterns:
         """Which parameters (n, 2) lie in a face, or are nearer than a slack, mm, to what does."""
         trim = self.question.part.trim(number)
         assert trim is not None
-        length = np.linalg.norm(self._at(number, uv)[2], axis=2)
+        length = np.linalg.norm(self.question.surface(number, uv)[2], axis=2)
         by = slack / np.maximum(length, 1e-9 * length.max(initial=1e-300))
         inside = np.zeros(len(uv), bool)
-        for way in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+        for side in (np.zeros(2), *SIDES):
             left = np.flatnonzero(~inside)
             if len(left):
-                inside[left] = trim.inside(*(uv[left] + by[left] * np.array(way)).T)
+                inside[left] = trim.inside(*(uv[left] + by[left] * side).T)
         return inside
 
     def _operations(self) -> Iterator[Finding]:
@@ -200,10 +188,8 @@ def _motions(entry: dict[str, Any]) -> list[Motion]:
         return [(np.eye(3), np.array(shift, float)) for shift in entry["shifts_mm"]]
     place, n = np.array(entry["place_mm"], float), np.array(entry["direction"], float)
     n = n / np.linalg.norm(n)
-    along = np.outer(n, n)
-    linear = [np.eye(3) - 2.0 * along]
+    linear = [np.eye(3) - 2.0 * np.outer(n, n)]
     if entry["kind"] == "rotation":
-        turns = [2.0 * math.pi * k / entry["order"] for k in range(1, entry["order"])]
-        cross = np.cross(n, np.eye(3)).T
-        linear = [along + math.cos(turn) * (np.eye(3) - along) + math.sin(turn) * cross for turn in turns]
+        order = entry["order"]
+        linear = [Rotation.from_rotvec(2.0 * math.pi * k / order * n).as_matrix() for k in range(1, order)]
     return [(each, place - each @ place) for each in linear]

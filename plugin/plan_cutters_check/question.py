@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats
+from cad_io.kernel import first_derivatives
 from plan_cutters.errors import OptionError
 
 
@@ -111,26 +112,12 @@ class Setup:
 class Question:
     """Everything that is read before a check begins.
 
-    Attributes
-    ----------
-    ignored : frozenset of int
-        Numbers of faces that are no obstacles.
-    sign : (faces,) float
-        Side of each face, as `cad_io.Orientation` has it.
-    tolerance, asked : float
-        Gouge tolerance that the plan keeps, and that the user wants, mm; 0: any.
-    document, operations, samples : mapping
-        plan.json, and the arrays of operations.npz and samples.npz.
-    checksums : mapping
-        By file: the SHA-256 that plan.json states, and the file's own.
-    grips : tuple of Grip
-        Vises and chucks of which the plan alone says where they stand.
-    names : mapping
-        By id: the names of a cutter and of its holder; empty: not known.
-    stated : mapping
-        What entries of plan.json must be by the user's own command, and by the program's words for the plan's own numbers.
-    odd : str
-        What of plan.json no plan of this version has; empty: nothing.
+    `ignored`: numbers of faces that are no obstacles; `sign` (faces,): side of each face, as `cad_io.Orientation` has it;
+    `tolerance`, `asked`: gouge tolerance that the plan keeps, and that the user wants, mm, 0: any; `document`, `operations`,
+    `samples`: plan.json, and the arrays of operations.npz and samples.npz; `checksums`: by file, the SHA-256 that plan.json
+    states, and the file's own; `grips`: vises and chucks of which the plan alone says where they stand; `names`: by id, those of
+    a cutter and of its holder, empty: not known; `stated`: what plan.json must say by the user's own command, and by the
+    program's words for the plan's own numbers; `odd`: what of plan.json no plan of this version has, empty: nothing.
     """
 
     part: Part
@@ -154,6 +141,13 @@ class Question:
         """From samples to where a cutter is put down with the postures of its verdicts, (n, 3), mm."""
         shift = self.samples.get(f"shift_{name}")
         return np.zeros((len(self.samples["point"]), 3)) if shift is None else shift
+
+    def surface(self, number: int, uv: Floats) -> tuple[Floats, Floats, Floats]:
+        """Points of a face's surface, its outer unit normals, (n, 3), nan where there is none, and its derivatives (n, 2, 3)."""
+        d = first_derivatives(self.part.adaptor(number), *uv.T)
+        normal = np.cross(d[:, 1], d[:, 2]) * self.sign[number - 1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return d[:, 0], normal / np.linalg.norm(normal, axis=1)[:, None], d[:, 1:]
 
 
 def frame_of(setup: Setup) -> Floats:
@@ -204,18 +198,24 @@ def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
 
 def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
     """Which angles (n, 2), deg, are within the machine's limits."""
+    return _within(machine, degrees) & _tilted(machine, setup, axes_of(machine, setup, degrees))
+
+
+def _within(machine: MachineAxes, degrees: Floats) -> NDArray[np.bool_]:
     low, high = np.degrees(machine.limits).T
-    within = ((degrees >= low - 1e-6) & (degrees <= high + 1e-6)).all(axis=1)
-    tilt = np.arccos(np.clip(axes_of(machine, setup, degrees) @ frame_of(setup)[2], -1.0, 1.0))
-    return np.asarray(within & (tilt <= machine.tilt_limit + 1e-9))
+    return np.asarray(((degrees >= low - 1e-6) & (degrees <= high + 1e-6)).all(axis=-1))
+
+
+def _tilted(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
+    tilt = np.arccos(np.clip(np.asarray(axis, float) @ frame_of(setup)[2], -1.0, 1.0))
+    return np.asarray(tilt <= machine.tilt_limit + 1e-9)
 
 
 def held(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
     """Which tool axes (n, 3), part coordinates, the machine holds with one of its two solutions, within its limits."""
-    tilt = np.arccos(np.clip(np.asarray(axis, float) @ frame_of(setup)[2], -1.0, 1.0))
     able = [known & _turns_to(b, machine.limits[1]) & (free | _turns_to(a, machine.limits[0]))
             for a, b, known, free in _solutions(machine, setup, axis)]  # fmt: skip
-    return np.asarray((able[0] | able[1]) & (tilt <= machine.tilt_limit + 1e-9))
+    return np.asarray((able[0] | able[1]) & _tilted(machine, setup, axis))
 
 
 def _solutions(machine: MachineAxes, setup: Setup, axis: Floats) -> Iterator[tuple[Floats, Floats, NDArray[Any], NDArray[Any]]]:
@@ -261,12 +261,7 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[
         turns = product(*(math.degrees(x[0]) + 360.0 * np.arange(-2, 3) for x in (a, b)))
         for angles in ((round(float(x), 9), round(float(y), 9)) for x, y in turns if known[0]):
             apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(angles, degrees.tolist(), strict=True))
-            if all(map(_within, angles, machine.limits)) and apart > 0.01:
+            if _within(machine, np.array(angles)) and apart > 0.01:
                 others.append(angles)
     least = min((sum(map(abs, each)) for each in others), default=0.0)
     return [tuple(round(x, 3) + 0.0 for x in each) for each in others if sum(map(abs, each)) <= least + 1e-6]
-
-
-def _within(degrees: float, limits: Floats) -> bool:
-    low, high = np.degrees(limits)
-    return bool(low - 1e-6 <= degrees <= high + 1e-6)

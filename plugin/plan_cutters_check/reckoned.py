@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters_check.question import Question
-from plan_cutters_check.reading import suffix
 
 Rows = NDArray[np.int64]
 #: Verdicts of samples.npz by their words; those that say that a posture was found, and that none was; a reason that is none.
@@ -22,19 +22,44 @@ FLOOR, WALL, _CUTTERS = 1, 2, 4
 _SAME_AREA = 1e-9
 
 
+def suffix(index: int, name: str) -> str:
+    """Give the end of the names of a plan's arrays: nothing for the first plan."""
+    return f"_{name.replace(' ', '_')}" if index else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A plan of operations: its `number`, its `entry` in plan.json, and its arrays of operations.npz, by their names."""
+
+    number: int
+    entry: Mapping[str, Any]
+    arrays: Mapping[str, NDArray[Any]]
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.arrays[f"{name}{suffix(self.number, self.entry['name'])}"]
+
+    def __str__(self) -> str:
+        return f"The {self.entry['name']} plan"
+
+    @cached_property
+    def label(self) -> NDArray[Any]:
+        """The operation of each sample (n,); -1: none."""
+        return self["operation"]
+
+    @property
+    def operations(self) -> list[dict[str, Any]]:
+        """Its operations, as they are written."""
+        operations: list[dict[str, Any]] = self.entry["operations"]
+        return operations
+
+    def rows(self, i: int) -> Rows:
+        """The samples of an operation."""
+        return np.flatnonzero(self.label == i)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Weights:
-    """Samples stand for areas.
-
-    Attributes
-    ----------
-    samples : mapping
-        The arrays of samples.npz.
-    area : (n,) float
-        mm2; 0 of samples that do not count.
-    whole : float
-        mm2: all of which shares are.
-    """
+    """Samples of samples.npz stand for areas (n,), mm2, 0 of those that do not count; shares are of the `whole`, mm2."""
 
     samples: Mapping[str, NDArray[Any]]
     area: Floats
@@ -83,23 +108,15 @@ _KINDS: dict[str, Callable[[Weights, Rows], Any]] = {
 class Reckoned:
     """Sets of samples that a plan's entries are about.
 
-    Attributes
-    ----------
-    finished, reached : (n,) bool
-        Judged samples of the finished part; those that a cutter that was compared reaches.
-    considered : list of str
-        Ids of the cutters that were compared.
-    judged, required : Weights
-        Of the finished samples; of those that are required, so that the samples of a face have its area together.
-    sampled : (n,) float
-        Area of each sample, those of a face having its area together, mm2.
-    not_sampled : float
-        Area of target faces without samples, mm2.
+    Judged samples of the finished part are `finished` (n,), those that a cutter that was compared (`considered`, ids) reaches are
+    `reached` (n,). Areas, mm2: `judged` of the finished samples; `required` of those that are, so that the samples of a face have
+    its area together, as all do in `sampled` (n,); `not_sampled` of target faces without samples (`empty`).
     """
 
     def __init__(self, question: Question) -> None:
         self.question = question
         document, samples = question.document, question.samples
+        self.plans = [Planned(k, plan, question.operations) for k, plan in enumerate(document["operations"]["plans"])]
         self.ids: list[str] = [each["id"] for each in document["cutters"]]
         self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
         self.unjudged = np.logical_and.reduce([each == WORDS["unjudged"] for each in self.verdict.values()])
@@ -119,19 +136,19 @@ class Reckoned:
         self.reached = np.logical_or.reduce([*self.reached_by.values()])
         self.area: Floats = np.where(self.finished, np.nan_to_num(samples["area"]), 0.0)
         self.judged = Weights(samples, self.area, float(self.area.sum()))
-        self.face_area, self.sampled = face_areas(question), np.zeros(len(self.area))
-        for name in {f"F{n}" for n in np.unique(samples["face"]).tolist()}:
+        sampled = [f"F{n}" for n in np.unique(samples["face"]).tolist()]
+        self.empty: list[str] = [name for name in document["effective"]["target_faces"] if name not in sampled]
+        # Where no area is known each face, or sample, is as large.
+        areas = weighed(np.array([question.part.faces[int(name[1:]) - 1].area for name in sampled + self.empty], float))
+        self.face_area: dict[str, float] = dict(zip(sampled + self.empty, areas.tolist(), strict=True))
+        self.sampled = np.zeros(len(self.area))
+        for name in sampled:
             mine = samples["face"] == int(name[1:])
             weight = weighed(samples["area"][mine])
             self.sampled[mine] = self.face_area[name] * weight / weight.sum()
-        self.not_sampled = float(sum(self.face_area[name] for name in empty(question)))
+        self.not_sampled = float(sum(self.face_area[name] for name in self.empty))
         required = np.where(self.exempt | samples["inside_bodies"], 0.0, self.sampled)
         self.required = Weights(samples, required, float(required.sum()) + self.not_sampled)
-
-    def array(self, k: int, name: str) -> NDArray[Any]:
-        """An array of operations.npz of plan k."""
-        plan = self.question.document["operations"]["plans"][k]["name"]
-        return self.question.operations[f"{name}{suffix(k, plan)}"]
 
 
 def considered(
@@ -139,18 +156,9 @@ def considered(
 ) -> list[str]:
     """The ids of the cutters that a plan compares: those that its least set and its own steps need, and others by rank.
 
-    A cutter of a kind that comes last on the part's faces may be left out where the others reach all without it.
-
-    Parameters
-    ----------
-    document : mapping
-        plan.json.
-    ids : list of str
-        All that were judged, by rank.
-    reached : mapping
-        Samples (n,) that each of them reaches.
-    tried : set of str, optional
-        Those that have candidates, where the plan has any.
+    A cutter of a kind that comes last on the part's faces may be left out where the others reach all without it. `ids`: all that
+    were judged, by rank; `reached`: samples (n,) that each of them reaches; `tried`: those that have candidates, where the plan
+    has any.
     """
     process, written = document["effective"].get("process"), document["operations"]
     named = (document.get("least_set") or {"runs": []})["runs"]
@@ -167,20 +175,7 @@ def considered(
     return [each for each in ids if each in wanted]
 
 
-def empty(question: Question) -> list[str]:
-    """Target faces without samples."""
-    sampled = {f"F{n}" for n in np.unique(question.samples["face"]).tolist()}
-    return [name for name in question.document["effective"]["target_faces"] if name not in sampled]
-
-
 def weighed(area: Floats) -> Floats:
     """Areas as weights: one that is not known weighs nothing; where none is known each weighs as much."""
     known = np.where(np.isfinite(area) & (area > 0.0), area, 0.0)
     return known if known.sum() > 0.0 else np.ones(len(area))
-
-
-def face_areas(question: Question) -> dict[str, float]:
-    """Areas of the target faces by their ids, mm2; 1 each where none is known."""
-    names = [f"F{n}" for n in np.unique(question.samples["face"]).tolist()] + empty(question)
-    areas = weighed(np.array([question.part.faces[int(name[1:]) - 1].area for name in names], float))
-    return dict(zip(names, areas.tolist(), strict=True))

@@ -7,6 +7,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.paper import without_posture
+from plan_cutters_check.reckoned import Reckoned
+
 _HEAD = re.compile(
     r"(?P<share>[<>]?[\d.]+) % of the (?P<area>[\d,.]+) (?P<unit>mm|in)² to machine"
     r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?\.$"
@@ -20,7 +24,21 @@ _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 _HALF = 0.5 + 1e-6
 
 
-def contradictions(document: Mapping[str, Any]) -> Iterator[str]:
+def findings(reckoned: Reckoned) -> Iterator[Finding]:
+    """List what the words say otherwise than the records, and what no plan has."""
+    question, document = reckoned.question, reckoned.question.document
+    if question.odd:
+        yield Finding(False, f"plan.json: {question.odd}.")
+    yield from without_posture(reckoned)
+    wrong = [*_contradictions(document)]
+    text = f": {'; '.join(wrong[:3])}" if wrong else ""
+    yield Finding(not wrong, f"The headline, the table of steps and shares were read; {len(wrong)} contradict the records{text}.")
+    errors = [each["chord_error_mm"] or 0.0 for each in (*document["faces"], *document["fixtures"])]
+    if document["effective"]["chord_error_mm"] > max(errors) + 1e-12:
+        yield Finding(False, "effective.chord_error_mm is larger than that of each face and fixture.")
+
+
+def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     """List what the text says otherwise than the process and the cutters."""
     text, process = document["text"], document["process"]
     head = _HEAD.search(text["headline"])

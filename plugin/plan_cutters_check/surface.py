@@ -1,28 +1,46 @@
-"""Cells: pieces of exact surfaces, each within a bound of a flat hull, that are cut smaller where a tool comes near.
+"""Exact surfaces in cells, that are cut smaller where a tool comes near: does one come deeper into them than allowed?
 
 A cell of a face is a box of its parameters: the kernel evaluates point and tangents at its middle, and points around it, whose
 distance from the tangent plane's parallelogram, doubled, is taken for how far the surface leaves that (`slack`). A cell of a mesh
 is a triangle. Cells are stored: each is evaluated once, however many tools come near.
 """
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats
+from cad_io.face.trim import Trim
 from cad_io.kernel import first_derivatives, values
+from plan_cutters_check.tool import Solid, Tool, bounds
 
 Rows = NDArray[np.int64]
+#: Verdicts of a placement.
+FREE, MET, OPEN = 0, 1, 2
 #: Whether a cell lies within the border of its face.
 OUTSIDE, INSIDE, ACROSS = 0, 1, 2
 #: Points along each side at which the slack of a cell is measured: of the first cells, and of later ones.
 _MANY, _FEW = 7, 3
-#: Points that are asked at once whether they lie in a face, and pairs of cells and border segments that are looked at at once.
-_AT_ONCE, _PAIRS = 128, 2_000_000
+#: Points that are asked at once whether they lie in a face.
+_AT_ONCE = 128
 _CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
+#: Steps in parameters to all sides.
+SIDES = [np.array(side) for side in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))]
+#: Tools that are put down at a time, and pairs of a tool and a cell that are looked at at once.
+_TOOLS, _MOST = 256, 100_000
+#: Depths that rounding makes, mm.
+_ROUNDING = 1e-7
+
+
+def inside(trim: Trim, u: Floats, v: Floats) -> NDArray[np.bool_]:
+    """Which parameters (n,) lie in a face, by few at a time: the trim looks at a grid of them."""
+    parts = [trim.inside(u[start : start + _AT_ONCE], v[start : start + _AT_ONCE]) for start in range(0, len(u), _AT_ONCE)]
+    return np.concatenate([*parts, np.zeros(0, bool)])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,13 +58,14 @@ class Face:
     """A face of a part, perhaps placed: `rotation @ point + shift`."""
 
     def __init__(self, part: Part, number: int, name: str, rotation: Floats | None = None, shift: Floats | None = None) -> None:
-        self.name, self._part, self._number = name, part, number
+        self.name = name
         self._rotation = np.eye(3) if rotation is None else rotation
         self._shift = np.zeros(3) if shift is None else shift
         trim = part.trim(number)
         if trim is None:
             raise ValueError(f"{name} has no border that can be read")
         self._trim, self._adaptor = trim, part.adaptor(number)
+        self._border = shapely.STRtree(shapely.linestrings(trim.segments))
         self._flat = part.faces[number - 1].surface == "plane"
         self._first = True
 
@@ -96,9 +115,7 @@ class Face:
         state = self._state(form)
         proper = state == INSIDE
         across = np.flatnonzero(state == ACROSS)
-        for some in np.array_split(across, -(-len(across) // _AT_ONCE) or 1):
-            if len(some):
-                proper[some] = self._trim.inside(u[some], v[some])
+        proper[across] = inside(self._trim, u[across], v[across])
         unusable = ~np.isfinite(point).all(axis=1) | ~np.isfinite(slack)
         # Where the kernel has no value there is nothing to look at.
         point[unusable], offset[unusable], slack[unusable], proper[unusable], state[unusable] = (0.0, 0.0, 0.0, False, OUTSIDE)
@@ -113,30 +130,12 @@ class Face:
             return np.full(len(form), ACROSS, np.int8)
         reach = (trim.tolerance + 2.0 * trim.deflection) / trim.scale
         low, high = form[:, :2, 0] - reach, form[:, :2, 1] + reach
-        first, second = trim.segments[:, 0], trim.segments[:, 1]
-        near = np.zeros(len(form), bool)
-        size = max(1, _PAIRS // max(1, len(first)))
-        for start in range(0, len(form), size):
-            some = slice(start, start + size)
-            near[some] = _touched(low[some], high[some], first, second)
+        near, _ = self._border.query(shapely.box(*low.T, *high.T), predicate="intersects")
         state = np.full(len(form), ACROSS, np.int8)
-        clear = np.flatnonzero(~near)
-        u, v = form[clear, 0, :2].mean(axis=1), form[clear, 1, :2].mean(axis=1)
-        for start in range(0, len(clear), _AT_ONCE):
-            some = slice(start, start + _AT_ONCE)
-            state[clear[some]] = np.where(trim.inside(u[some], v[some]), INSIDE, OUTSIDE)
+        clear = np.setdiff1d(np.arange(len(form)), near)
+        within = inside(trim, form[clear, 0, :2].mean(axis=1), form[clear, 1, :2].mean(axis=1))
+        state[clear] = np.where(within, INSIDE, OUTSIDE)
         return state
-
-
-def _touched(low: Floats, high: Floats, first: Floats, second: Floats) -> NDArray[np.bool_]:
-    """Which boxes (n, 2) a segment of some (m, 2) to (m, 2) comes into."""
-    middle, half = 0.5 * (low + high)[:, None], 0.5 * (high - low)[:, None]
-    away, side = 0.5 * (first + second)[None] - middle, 0.5 * np.abs(second - first)[None]
-    apart = (np.abs(away) > half + side).any(axis=2)
-    along = (second - first)[None]
-    cross = np.abs(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
-    apart |= cross > half[..., 0] * np.abs(along[..., 1]) + half[..., 1] * np.abs(along[..., 0])
-    return np.asarray((~apart).any(axis=1))
 
 
 class Triangles:
@@ -160,12 +159,9 @@ class Triangles:
 
     def measured(self, form: Floats) -> MeasuredCells:
         """Their middles and corners; they are flat, and have no border to be beyond."""
-        point = form.mean(axis=1)
-        offset = form - point[:, None]
-        n = len(form)
-        return MeasuredCells(
-            point, np.concatenate([offset, offset[:, :1]], axis=1), np.zeros(n), np.full(n, INSIDE, np.int8), np.ones(n, bool)
-        )
+        point, n = form.mean(axis=1), len(form)
+        offset = (form - point[:, None])[:, [0, 1, 2, 0]]
+        return MeasuredCells(point, offset, np.zeros(n), np.full(n, INSIDE, np.int8), np.ones(n, bool))
 
 
 Source = Face | Triangles
@@ -174,22 +170,10 @@ Source = Face | Triangles
 class Cells:
     """Cells of some sources, with a tree of groups above the first ones.
 
-    Attributes
-    ----------
-    point : (n, 3) float
-        A point of the surface; of a group, the middle of its ball.
-    offset : (n, 4, 3) float
-        Corners of its flat hull from there.
-    slack : (n,) float
-        How far its surface leaves that hull, mm; of a group, the radius of its ball.
-    size : (n,) float
-        Longest offset and slack, mm.
-    state : (n,) int8
-        `OUTSIDE`, `INSIDE` or `ACROSS`.
-    proper : (n,) bool
-        Whether `point` is a point of the surface, within the border of its face.
-    source : (n,) int32
-        Index into `sources`; -1 for a group.
+    Of each cell, n of them: `point` (n, 3) of the surface, of a group the middle of its ball; `offset` (n, 4, 3), corners of its
+    flat hull from there; `slack` (n,), how far its surface leaves that hull, mm, of a group the radius of its ball; `size` (n,),
+    longest offset and slack, mm; `state` (n,): `OUTSIDE`, `INSIDE` or `ACROSS`; `proper` (n,): whether `point` is a point of the
+    surface, within the border of its face; `source` (n,): index into `sources`, -1 for a group.
     """
 
     def __init__(self) -> None:
@@ -236,30 +220,24 @@ class Cells:
             cells = cells[_order(self.point[cells])]
             parts = np.array_split(cells, -(-len(cells) // 8))
             groups = []
-            # Members of a group must follow each other: links stand for them.
             for part in parts:
-                first = self._links(part)
+                # Members of a group must follow each other: copies with the pieces of the cells stand for them.
+                own = MeasuredCells(self.point[part], self.offset[part], self.slack[part], self.state[part], self.proper[part])
+                link = self._append(self._form[part], own, 0)
+                self.source[link], self._first[link], self._count[link] = self.source[part], self._first[part], self._count[part]
                 low = (self.point[part] - self.size[part, None]).min(axis=0)
                 high = (self.point[part] + self.size[part, None]).max(axis=0)
                 point = 0.5 * (low + high)
                 radius = float((np.linalg.norm(self.point[part] - point, axis=1) + self.size[part]).max())
-                contacts = MeasuredCells(
-                    point[None], np.zeros((1, 4, 3)), np.array([radius]), np.array([ACROSS], np.int8), np.zeros(1, bool)
-                )
-                number = int(self._append(np.zeros((1, 3, 3)), contacts, -1)[0])
-                self._first[number], self._count[number] = first, len(part)
+                state = np.array([ACROSS], np.int8)
+                ball = MeasuredCells(point[None], np.zeros((1, 4, 3)), np.array([radius]), state, np.zeros(1, bool))
+                number = int(self._append(np.zeros((1, 3, 3)), ball, -1)[0])
+                self._first[number], self._count[number] = link[0], len(part)
                 groups.append(number)
             cells = np.array(groups, np.int64)
         return int(cells[0])
 
-    def _links(self, cells: Rows) -> int:
-        """Copies of cells that follow each other, with the pieces of the cells: the number of the first."""
-        contacts = MeasuredCells(self.point[cells], self.offset[cells], self.slack[cells], self.state[cells], self.proper[cells])
-        new = self._append(self._form[cells], contacts, 0)
-        self.source[new], self._first[new], self._count[new] = (self.source[cells], self._first[cells], self._count[cells])
-        return int(new[0])
-
-    def _append(self, form: Floats, contacts: MeasuredCells, source: int) -> Rows:
+    def _append(self, form: Floats, cells: MeasuredCells, source: int) -> Rows:
         n, start = len(form), self.used
         if start + n > len(self.slack):
             more = max(n, len(self.slack), 1024)
@@ -267,9 +245,9 @@ class Cells:
                 old = getattr(self, name)
                 setattr(self, name, np.concatenate([old, np.zeros((more, *old.shape[1:]), old.dtype)]))
         mine = slice(start, start + n)
-        self._form[mine], self.point[mine], self.offset[mine] = form, contacts.point, contacts.offset
-        self.slack[mine], self.state[mine], self.proper[mine] = contacts.slack, contacts.state, contacts.proper
-        self.size[mine] = np.linalg.norm(contacts.offset, axis=2).max(axis=1) + contacts.slack
+        self._form[mine], self.point[mine], self.offset[mine] = form, cells.point, cells.offset
+        self.slack[mine], self.state[mine], self.proper[mine] = cells.slack, cells.state, cells.proper
+        self.size[mine] = np.linalg.norm(cells.offset, axis=2).max(axis=1) + cells.slack
         self.source[mine], self._first[mine], self._count[mine] = source, -1, 0
         self.used = start + n
         return np.arange(start, start + n)
@@ -287,3 +265,119 @@ def _order(point: Floats) -> Rows:
             middle = (start + end) // 2
             todo += [(start, middle), (middle, end)]
     return rows
+
+
+@dataclass(slots=True)
+class Clock:
+    """Seconds that a check may take."""
+
+    end: float
+
+    @property
+    def over(self) -> bool:
+        """Whether they are over."""
+        return time.monotonic() > self.end
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Met:
+    """Tools, n of them, met something or nothing: `verdict` (n,): `FREE`, `MET`, or `OPEN` where the time was over.
+
+    `cell` (n,): a cell whose point is too deep, -1 for none; `depth` (n,): how deep that point lies in the tool, mm, negative
+    outside; `solid` (n,): in which solid of the tool.
+    """
+
+    verdict: NDArray[np.int8]
+    cell: Rows
+    depth: Floats
+    solid: Rows
+
+
+def met(
+    cells: Cells, root: int, tool: Tool, tip: Floats, axis: Floats, limits: tuple[float, float], grain: float, clock: Clock
+) -> Met:
+    """Which tools, put down with their tips (n, 3) and axes (n, 3), hold a point of the surface that is too deep.
+
+    `root`: the group of all that may be in the way; `limits`: depth in the flutes, and in all above them, beyond which a point is
+    too deep, mm, negative: so near to it; `grain`: what is deeper by less than this may be missed, mm.
+    """
+    n = len(tip)
+    hits = Met(np.full(n, OPEN, np.int8), np.full(n, -1, np.int64), np.full(n, np.nan), np.full(n, -1, np.int64))
+    limit = [limits[0] if each.part == "flutes" else limits[1] for each in tool.solids]
+    for start in range(0, n, _TOOLS):
+        some = np.arange(start, min(n, start + _TOOLS))
+        # The cells nearest to a contact come last, and are the smallest: the stack keeps few of them at a time.
+        stack = [(some, np.full(len(some), root, np.int64))]
+        while stack and not clock.over:
+            who, cell = stack.pop()
+            open_ = (hits.verdict[who] != MET) & (cells.state[cell] != OUTSIDE)
+            who, cell = _at_most(who[open_], cell[open_], stack)
+            near = np.zeros(len(who), bool)
+            for k, solid in enumerate(tool.solids if len(who) else ()):
+                deep, most = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
+                near |= most + cells.slack[cell] > limit[k] + grain
+                hit = np.flatnonzero((deep > limit[k] + _ROUNDING) & cells.proper[cell])
+                hits.verdict[who[hit]], hits.cell[who[hit]] = MET, cell[hit]
+                hits.depth[who[hit]], hits.solid[who[hit]] = deep[hit], k
+            near &= (hits.verdict[who] != MET) & (cells.size[cell] > grain)
+            _cut(cells, who[near], cell[near], stack)
+        if stack:
+            break
+        hits.verdict[some[hits.verdict[some] == OPEN]] = FREE
+    return hits
+
+
+_Stack = list[tuple[Rows, Rows]]
+
+
+def _at_most(who: Rows, cell: Rows, stack: _Stack) -> tuple[Rows, Rows]:
+    """As many pairs of a tool and a cell as are looked at at once; the others go back on the stack."""
+    while len(who) > _MOST:
+        half = len(who) // 2
+        stack.append((who[half:], cell[half:]))
+        who, cell = who[:half], cell[:half]
+    return who, cell
+
+
+def _cut(cells: Cells, who: Rows, cell: Rows, stack: _Stack) -> None:
+    """Put the pieces of cells on the stack."""
+    if len(cell):
+        pieces, owner = cells.children(cell)
+        stack.append((who[owner], pieces))
+
+
+def nearest(
+    cells: Cells, root: int, solids: Sequence[Solid], tip: Floats, axis: Floats, beyond: float, grain: float, clock: Clock
+) -> tuple[float, str] | None:
+    """The least distance, mm, of any point of the surface from solids at tips and axes (n, 3), and the part of the tool there.
+
+    Negative where a point lies within; to within `grain`; `beyond` where all is farther away; None where the time was over.
+    """
+    best, part = -beyond, ""
+    stack = [(np.arange(len(tip)), np.full(len(tip), root, np.int64))]
+    while stack:
+        if clock.over:
+            return None
+        who, cell = _at_most(*stack.pop(), stack)
+        most = np.full(len(who), -np.inf)
+        for solid in solids:
+            deep, bound = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
+            most = np.maximum(most, bound + cells.slack[cell])
+            deep = np.where(cells.proper[cell], deep, -np.inf)
+            if deep.max(initial=-np.inf) > best:
+                best, part = float(deep.max()), solid.part
+        near = (most > best + grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
+        _cut(cells, who[near], cell[near], stack)
+    return -best, part
+
+
+def lowest(cells: Cells, root: int, direction: Floats, grain: float) -> float:
+    """How far down along a unit direction (3,) the surface goes, mm, to within `grain`."""
+    best, cell = np.inf, np.array([root])
+    while len(cell):
+        at = cells.point[cell] @ direction
+        best = min(best, float(at[cells.proper[cell]].min(initial=np.inf)))
+        least = at - np.abs(cells.offset[cell] @ direction).max(axis=1) - cells.slack[cell]
+        near = (least < best - grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
+        cell = cells.children(cell[near])[0]
+    return best

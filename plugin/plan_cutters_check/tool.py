@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters_check.question import ToolSizes
 
+Point = tuple[float, float]
 _DOWN, _OUT = -math.pi / 2, 0.0
 #: Angles within this of the end of an arc are on it, rad.
 _HAIR = 1e-9
@@ -37,19 +38,10 @@ class Arc:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A convex body about the tool axis.
+    """A convex body about the tool axis, a `part` of the tool: `flutes`, `neck`, `shank` or `holder`; heights and radius in mm.
 
-    Attributes
-    ----------
-    part : str
-        `flutes`, `neck`, `shank` or `holder`.
-    lines : (k, 3) float
-        Unit normal (q, h) and offset of each: within, n (q, h) <= offset.
-    arcs : tuple of Arc
-    border : (s, 4) float
-        Straight pieces of its outline, from (q, h) to (q, h).
-    low, high, wide : float
-        Heights and radius, mm.
+    `lines` (k, 3): unit normal (q, h) and offset of each, within n (q, h) <= offset; `border` (s, 4): straight pieces of its
+    outline, from (q, h) to (q, h).
     """
 
     part: str
@@ -78,23 +70,19 @@ class Solid:
 
     def _outside(self, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
         """The same outside of it: less the distance from the nearest point of its outline."""
-        best, to_q, to_h = np.full(len(q), np.inf), np.zeros(len(q)), np.zeros(len(q))
-
-        def nearer(a: Floats, b: Floats) -> None:
-            nonlocal best, to_q, to_h
-            away = np.hypot(q - a, h - b)
-            less = away < best
-            best, to_q, to_h = np.where(less, away, best), np.where(less, a, to_q), np.where(less, b, to_h)
-
+        near = []
         for a, b, c, d in self.border.tolist():
             length = (c - a) ** 2 + (d - b) ** 2
             share = np.clip(((q - a) * (c - a) + (h - b) * (d - b)) / max(length, 1e-300), 0.0, 1.0)
-            nearer(a + share * (c - a), b + share * (d - b))
+            near.append((a + share * (c - a), b + share * (d - b)))
         for arc in self.arcs:
             c_, s_, _ = _nearest(arc, q, h)
-            nearer(np.maximum(0.0, arc.q + arc.radius * c_), arc.h + arc.radius * s_)
-        size = np.maximum(best, 1e-300)
-        return -best, (to_q - q) / size, (to_h - h) / size
+            near.append((np.maximum(0.0, arc.q + arc.radius * c_), arc.h + arc.radius * s_))
+        to_q, to_h = np.moveaxis(np.array(near), 1, 0)
+        away = np.hypot(q - to_q, h - to_h)
+        best = away.argmin(axis=0), np.arange(len(q))
+        size = np.maximum(away[best], 1e-300)
+        return -away[best], (to_q[best] - q) / size, (to_h[best] - h) / size
 
 
 def _nearest(arc: Arc, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
@@ -109,21 +97,10 @@ def _nearest(arc: Arc, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """A cutter with all that is above it.
+    """A cutter with all that is above it: `solids`, the flutes first; lengths in mm.
 
-    Attributes
-    ----------
-    id : str
-    solids : tuple of Solid
-        The flutes first.
-    contacts : tuple of Arc
-        The arcs, and corners as arcs of radius 0, with which it touches, from the tip up.
-    allowance, clearance : float
-        mm.
-    radius, high, wide : float
-        Of the flutes; height and radius of all, mm.
-    straight : bool
-        Whether above its last contact its side is straight.
+    `contacts`: the arcs, and corners as arcs of radius 0, with which it touches, from the tip up; `radius` of the flutes, `high`
+    and `wide` of all; `straight`: whether above its last contact its side is straight.
     """
 
     id: str
@@ -134,18 +111,12 @@ class Tool:
     radius: float
     high: float
     wide: float
-    straight: bool = False
+    straight: bool
 
     def above(self, height: float) -> tuple[Solid, ...]:
         """Give what is above a height over the tip: flutes cut off there, and all other sections."""
-        pieces = []
-        for each in self.solids:
-            if each.part == "flutes":
-                if each.high <= height:
-                    continue
-                each = _cut(each, height)
-            pieces.append(each)
-        return tuple(pieces)
+        above = [each for each in self.solids if each.part != "flutes" or each.high > height]
+        return tuple(_cut(each, height) if each.part == "flutes" else each for each in above)
 
     @property
     def flat(self) -> float:
@@ -232,87 +203,77 @@ def _cut(solid: Solid, height: float) -> Solid:
     return Solid(solid.part, lines, arcs, np.array([*border, (0.0, height, edge, height)]), height, solid.high, solid.wide)
 
 
-def _line(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float, float]:
+def _line(a: Point, b: Point) -> tuple[float, float, float]:
     """The line through two points of an outline that is walked upwards: the body is to its left."""
     n_q, n_h = b[1] - a[1], a[0] - b[0]
     size = math.hypot(n_q, n_h)
     return n_q / size, n_h / size, (n_q * a[0] + n_h * a[1]) / size
 
 
-def _solid(part: str, points: list[tuple[float, float]], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()) -> Solid:
-    """A body from the points of its outline, from the axis below to the axis above; `bent`: sides that are arcs."""
-    sides = [(k, a, b) for k, (a, b) in enumerate(pairwise(points)) if math.dist(a, b) > 1e-12]
-    straight = [(a, b) for k, a, b in sides if k not in bent]
-    heights = [h for _, h in points]
-    wide = max(
-        [*(q for q, _ in points), *(arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs)]
-    )
-    return Solid(part, np.array([_line(a, b) for a, b in straight]), tuple(arc for arc in arcs if arc.radius > 0.0),
-                 np.array([(*a, *b) for a, b in straight]), min(heights), max(heights), wide)  # fmt: skip
+def _solid(part: str, points: list[Point], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()) -> Solid:
+    """A body from the points of its outline, from the axis below up to where it goes back to it; `bent`: sides that are arcs."""
+    points = [*points, (0.0, points[-1][1])]
+    sides = [(a, b) for k, (a, b) in enumerate(pairwise(points)) if k not in bent and math.dist(a, b) > 1e-12]
+    heights, ends = [h for _, h in points], np.array([(*a, *b) for a, b in sides])
+    wide = [arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs]
+    return Solid(part, np.array([_line(a, b) for a, b in sides]), tuple(arc for arc in arcs if arc.radius > 0.0),
+                 ends, min(heights), max(heights), max(*(q for q, _ in points), *wide))  # fmt: skip
 
 
 def tool_of(sizes: ToolSizes) -> Tool:
     """Build the solids of a cutter from its dimensions."""
-    r, corner, top = sizes.radius, sizes.corner_radius, sizes.flutes
-    contacts: tuple[Arc, ...]
     if sizes.shape == "form":
-        cutting = [
-            _solid("flutes", [(0.0, a[1]), a, b, (0.0, b[1])])
-            for a, b in zip(sizes.outline, sizes.outline[1:], strict=False)
-            if b[1] > a[1]
-        ]
+        solids = [_solid("flutes", [(0.0, a[1]), a, b]) for a, b in pairwise(sizes.outline) if b[1] > a[1]]
         contacts = _hull(sizes.outline)
-    elif sizes.shape == "lollipop":
+    else:
+        points, contacts, bent = _outline(sizes)
+        solids = [_solid("flutes", points, contacts, frozenset(bent))]
+    for each in sizes.sections:
+        ends = [(0.0, each.low), (each.radius, each.low), (each.upper_radius, each.low + each.length)]
+        solids.append(_solid(each.part, ends))
+    high, wide = max(each.high for each in solids), max(each.wide for each in solids)
+    straight = sizes.shape in ("end", "lens")
+    return Tool(sizes.id, tuple(solids), contacts, sizes.allowance, sizes.clearance, sizes.radius, high, wide, straight)
+
+
+def _outline(sizes: ToolSizes) -> tuple[list[Point], tuple[Arc, ...], set[int]]:
+    """Points of the flutes' outline from the axis up, the arcs with which they touch, and which sides of it are arcs."""
+    r, corner, top, wide = sizes.radius, sizes.corner_radius, sizes.flutes, sizes.arc_radius
+    if sizes.shape == "lollipop":
         edge = math.sqrt(max(0.0, r * r - (top - r) ** 2))
-        arc = Arc(0.0, r, r, _DOWN, math.atan2(top - r, edge))
-        cutting, contacts = [_solid("flutes", [(0.0, 0.0), (edge, top), (0.0, top)], (arc,), frozenset({0}))], (arc,)
-    elif sizes.shape == "lens":
-        inner, outer = r - corner, sizes.arc_radius - corner
+        return [(0.0, 0.0), (edge, top)], (Arc(0.0, r, r, _DOWN, math.atan2(top - r, edge)),), {0}
+    if sizes.shape == "lens":
+        inner, outer = r - corner, wide - corner
         joint = math.asin(min(1.0, inner / outer))
-        high = sizes.arc_radius - math.sqrt(max(0.0, outer**2 - inner**2))
-        bottom = Arc(0.0, sizes.arc_radius, sizes.arc_radius, _DOWN, _DOWN + joint)
-        side = Arc(inner, high, corner, _DOWN + joint, _OUT)
-        foot = (sizes.arc_radius * math.sin(joint), sizes.arc_radius * (1.0 - math.cos(joint)))
-        cutting = [_solid("flutes", [(0.0, 0.0), foot, (r, high), (r, top), (0.0, top)], (bottom, side), frozenset({0, 1}))]
-        contacts = (bottom, side)
-    elif sizes.shape == "barrel":
-        wide, centre = sizes.arc_radius, sizes.arc_height
-        last = math.asin(max(-1.0, min(1.0, (top - centre) / wide)))
+        high = wide - math.sqrt(max(0.0, outer**2 - inner**2))
+        foot = (wide * math.sin(joint), wide * (1.0 - math.cos(joint)))
+        arcs = Arc(0.0, wide, wide, _DOWN, _DOWN + joint), Arc(inner, high, corner, _DOWN + joint, _OUT)
+        return [(0.0, 0.0), foot, (r, high), (r, top)], arcs, {0, 1}
+    if sizes.shape == "barrel":
+        last = math.asin(max(-1.0, min(1.0, (top - sizes.arc_height) / wide)))
         end = (r - wide + wide * math.cos(last), top)
         if corner:
             joint = math.asin(min(1.0, (wide - r) / (wide - corner)))
-            tip, flank = (Arc(0.0, corner, corner, _DOWN, _DOWN + joint), Arc(r - wide, centre, wide, _DOWN + joint, last))
             foot = (corner * math.sin(joint), corner * (1.0 - math.cos(joint)))
-            cutting = [_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (tip, flank), frozenset({0, 1}))]
-            contacts = (tip, flank)
-        else:
-            first = math.asin(max(-1.0, -centre / wide))
-            flank = Arc(r - wide, centre, wide, first, last)
-            foot = (r - wide + wide * math.cos(first), 0.0)
-            cutting, contacts = ([_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (flank,), frozenset({1}))], (flank,))
-    else:
-        arc = Arc(r - corner, corner, corner, _DOWN, -sizes.taper)
-        foot = (arc.q + corner * math.cos(sizes.taper), corner * (1.0 - math.sin(sizes.taper)))
-        end = (foot[0] + (top - foot[1]) * math.tan(sizes.taper), top)
-        cutting = [_solid("flutes", [(0.0, 0.0), (r - corner, 0.0), foot, end, (0.0, top)], (arc,), frozenset({1}))]
-        if not corner:
-            cutting = [_solid("flutes", [(0.0, 0.0), (r, 0.0), end, (0.0, top)])]
-        contacts = (arc,)
-    above = [
-        _solid(each.part, [(0.0, each.low), (each.radius, each.low), (each.upper_radius, each.low + each.length),
-                           (0.0, each.low + each.length)])
-        for each in sizes.sections
-    ]  # fmt: skip
-    solids = (*cutting, *above)
-    return Tool(sizes.id, solids, contacts, sizes.allowance, sizes.clearance, r, max(each.high for each in solids),
-                max(each.wide for each in solids), sizes.shape in ("end", "lens"))  # fmt: skip
+            tip = Arc(0.0, corner, corner, _DOWN, _DOWN + joint)
+            return [(0.0, 0.0), foot, end], (tip, Arc(r - wide, sizes.arc_height, wide, _DOWN + joint, last)), {0, 1}
+        first = math.asin(max(-1.0, -sizes.arc_height / wide))
+        foot = (r - wide + wide * math.cos(first), 0.0)
+        return [(0.0, 0.0), foot, end], (Arc(r - wide, sizes.arc_height, wide, first, last),), {1}
+    arc = Arc(r - corner, corner, corner, _DOWN, -sizes.taper)
+    foot = (arc.q + corner * math.cos(sizes.taper), corner * (1.0 - math.sin(sizes.taper)))
+    end = (foot[0] + (top - foot[1]) * math.tan(sizes.taper), top)
+    return [(0.0, 0.0), (r - corner, 0.0), foot, end], (arc,), {1}
 
 
-def _hull(outline: tuple[tuple[float, float], ...]) -> tuple[Arc, ...]:
+def _hull(outline: tuple[Point, ...]) -> tuple[Arc, ...]:
     """The corners of an outline's convex hull, with which it can touch a plane."""
-    hull: list[tuple[float, float]] = []
+    hull: list[Point] = []
     for point in outline:
-        while len(hull) > 1 and _turns_right(hull[-2], hull[-1], point):
+        while len(hull) > 1:
+            (a, b), (c, d) = hull[-2:]
+            if (c - a) * (point[1] - d) - (d - b) * (point[0] - c) > 0.0:
+                break
             hull.pop()
         hull.append(point)
     turns = [math.atan2(b[1] - a[1], b[0] - a[0]) + _DOWN for a, b in pairwise(hull)]
@@ -322,10 +283,6 @@ def _hull(outline: tuple[tuple[float, float], ...]) -> tuple[Arc, ...]:
         for (q, h), first, last in zip(hull, ends, ends[1:], strict=False)
         if last > max(first, _DOWN)
     )
-
-
-def _turns_right(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
-    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0.0
 
 
 def bounds(solid: Solid, tip: Floats, axis: Floats, point: Floats, offset: Floats) -> tuple[Floats, Floats]:

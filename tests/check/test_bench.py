@@ -17,9 +17,8 @@ from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
 from plan_cutters_check.asking import sizes_of
 from plan_cutters_check.bench import Bench
-from plan_cutters_check.clash import FREE, MET, Clock, met, nearest
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, other_angles
-from plan_cutters_check.surface import Cells, Face
+from plan_cutters_check.surface import FREE, MET, Cells, Clock, Face, met, nearest
 from plan_cutters_check.tool import tool_of
 from tests.support.places import ROOT
 

@@ -10,7 +10,7 @@ import pytest
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters_check.check import check
-from plan_cutters_check.leaves import leaves, pattern
+from plan_cutters_check.findings import leaves, pattern
 from tests.support.forging import forged, put
 from tests.support.unchecked import UNCHECKED, listed
 

@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from plan_cutters import plan
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check
-from plan_cutters_check.clash import Clock
-from plan_cutters_check.moving import put_down
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, held
 from plan_cutters_check.reckoned import Reckoned
+from plan_cutters_check.surface import Clock
 from plan_cutters_check.trials import Trials
 from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
@@ -31,6 +30,10 @@ def blade(tmp_path_factory):
 
 def answered(blade, arrays=None, document=None, seconds=1e6):
     return check(blade.question(document, arrays), seconds=seconds)
+
+
+def trials(question):
+    return Trials(Reckoned(question), Bench(question, str), np.random.default_rng(0), lambda _: Clock(math.inf), str)
 
 
 def told(answer, *words):
@@ -75,7 +78,7 @@ def test_what_is_forged_is_found(blade, how):
 def down(blade, arrays=None):
     """The finding about tools put down with the axes for simultaneous motion, and no other one."""
     question = blade.question(None, arrays)
-    (line,) = put_down(question, Reckoned(question), Bench(question, str), np.random.default_rng(0), Clock(math.inf))
+    (line,) = trials(question).moving()
     return line
 
 
@@ -133,9 +136,7 @@ def leaning(tmp_path_factory):
 def placed(written, arrays=None):
     """The finding about operations that were put down at all their samples."""
     question = written.question(None, arrays)
-    bench = Bench(question, str)
-    trials = Trials(question, Reckoned(question), bench, np.random.default_rng(0), lambda _: Clock(math.inf), lambda _: None)
-    (line,) = trials.placed()
+    (line,) = trials(question).placed()
     return line
 
 

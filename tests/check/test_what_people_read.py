@@ -16,13 +16,11 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters_check.asking import question_of, stated_by
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check, on_paper
-from plan_cutters_check.clash import FREE, MET, Clock
-from plan_cutters_check.findings import _beginnings
-from plan_cutters_check.holding import faults
-from plan_cutters_check.leaves import leaves, pattern
+from plan_cutters_check.findings import _beginnings, leaves, pattern
+from plan_cutters_check.fixtures import faults
 from plan_cutters_check.reckoned import Reckoned
+from plan_cutters_check.surface import FREE, MET, Clock
 from plan_cutters_check.trials import Trials
-from plan_cutters_check.verdicts import postures
 from tests.support.forging import forged, put
 from tests.support.unchecked import listed
 from tests.support.written_plan import Written
@@ -56,6 +54,10 @@ def held(block, tmp_path_factory):
 def one(request):
     """The block in its vise, and a free-form pocket over a table."""
     return request.getfixturevalue(request.param)
+
+
+def trials(question):
+    return Trials(Reckoned(question), Bench(question, str), np.random.default_rng(0), lambda part: Clock(math.inf), str)
 
 
 def answered(one, document=None, arrays=None):
@@ -158,7 +160,7 @@ def test_a_plan_whose_words_cannot_be_made_fails(held, monkeypatch, error):
     def none(plan):
         raise error
 
-    monkeypatch.setattr("plan_cutters.plan_file.words.text.with_text", none)
+    monkeypatch.setattr("plan_cutters_check.asking.with_text", none)
     answer = held.read()
     assert not answer.holds
     assert any("its words cannot be made" in line for line in answer.lines[1:])
@@ -226,10 +228,9 @@ def test_a_verdict_with_an_axis_that_is_blocked_is_found_by_putting_the_tool_dow
     samples[f"verdict_{name}"][below] = 1
     samples[f"axis_{name}"][below], samples[f"lean_{name}"][below] = [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]
     question = held.asked(document, arrays)
-    reckoned = Reckoned(question)
-    found = [*postures(question, reckoned, Bench(question, str), np.random.default_rng(0), Clock(math.inf))]
+    found = [*trials(question).postures()]
     assert any(each.holds is False for each in found)
-    fair = [*postures(held.asked(), Reckoned(held.asked()), Bench(held.asked(), str), np.random.default_rng(0), Clock(math.inf))]
+    fair = [*trials(held.asked()).postures()]
     assert all(each.holds for each in fair)
 
 
@@ -282,10 +283,7 @@ def test_what_stands_along_a_wall_without_a_pass_is_no_other_operation(tmp_path)
              "tolerance": 0.02}  # fmt: skip
     plan(path, operations="fewest", feed=1000, area_budget=0, **words).write(tmp_path, ["json", "npz"])
     question = Written(tmp_path, path, words).asked()
-    trials = Trials(
-        question, Reckoned(question), Bench(question, str), np.random.default_rng(0), lambda part: Clock(math.inf), str
-    )
-    found = [*trials.alone()]
+    found = [*trials(question).alone()]
     assert [each.holds for each in found] == [True], found
 
 
