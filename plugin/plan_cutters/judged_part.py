@@ -32,7 +32,7 @@ from plan_cutters.judging.setups import within_limits
 from plan_cutters.judging.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.travel import travels
 from plan_cutters.judging.witness import witnesses
-from plan_cutters.options import EFFORT
+from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest

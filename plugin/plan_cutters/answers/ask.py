@@ -18,7 +18,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.options import EFFORT
+from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of

@@ -17,6 +17,7 @@ from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.validation import File, Setup, Words, cutter_ids
+from plan_cutters.option_table import LEAST_TOLERANCE, OPTIONS
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
 from plan_cutters_base.workers.assignment import began, is_child, report
@@ -64,8 +65,7 @@ _point = heading("Point")
     help="How far the point may be from the part: the nearest point of a face is taken, and reported.  [default: 1]",
 )
 @options(
-    "holder", "machine", "fixture", "ignore", "flip", "unit", "allowance", "holder_clearance", "tilt", "rotation",
-    "debug",
+    *(each.called for each in OPTIONS.values() if each.of_a_point), "debug",
     cutter={"multiple": False, "default": None, "type": Words("SPEC|NAME", cutter_ids),
             "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there, unless it holds one alone."},
     cutters={"multiple": False, "default": None, "help": "Tool library that the cutter is taken from."},
@@ -173,7 +173,7 @@ def _point_of(text: str) -> tuple[float, float, float]:
 def _options(request: MapRequest) -> "Options":
     """The options of a plan of one cutter, which is inline or of a library."""
     from plan_cutters.errors import OptionError
-    from plan_cutters.options import LEAST_TOLERANCE, Options
+    from plan_cutters.options import Options
 
     library = request.cutters
     setup = Setup().convert(request.setup, None, None)

@@ -2,16 +2,15 @@
 
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import click
 
-from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.command import validation
 from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
-from plan_cutters.domain.answer_kinds import KINDS
+from plan_cutters.option_table import GROUPS, OPTIONS
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 #: Width of the column of names; what is longer has a line of its own.
@@ -184,41 +183,53 @@ class _Declared(NamedTuple):
     more: dict[str, Any]
 
 
+#: Options of a plan whose values are no plain numbers and words.
+_SPECIAL: dict[str, dict[str, Any]] = {
+    "cutters": {"type": Words("SPEC", validation.cutter_ids)},
+    "libraries": {"type": File("FILE")},
+    "holder": {"type": Words("SPEC|FILE", validation.holder_words, files=True)},
+    "machine": {"type": Words("NAME|FILE", validation.machine_names, files=True)},
+    "setup": {"type": Setup(), "callback": named_setups},
+    "fixtures": {"type": File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), "callback": fixtures_of_setups},
+    "faces": {"type": Faces()},
+    "ignore": {"type": Faces()},
+    "tilt": {"type": Range()},
+    "rotation": {"type": Range()},
+    "answers": {"type": Words("LIST", validation.answers, listed=True)},
+    "operations": {"type": Plans(OPTIONS["operations"].choices)},
+    "process": {"type": File("FILE")},
+}
+
+
+def _planned(group: str) -> Iterator[_Declared]:
+    """Declare the options of a plan of a group, as the table has them."""
+    for each in GROUPS[group]:
+        more: dict[str, Any] = {"help": each.help, "brief": each.brief}
+        words = (f"--{each.called.replace('_', '-')}", each.name)
+        if each.kind is bool:
+            more |= {"is_flag": True, **({"default": True, "flag_value": False} if each.default else {})}
+        elif each.kind is not str and each.word not in _SPECIAL:
+            more |= {"type": each.kind, "metavar": each.metavar or each.unit.upper() or "N"}
+            if each.default is not None:
+                more["help"] += f"  [default: {each.default:g}]"
+        elif each.choices:
+            more["type"] = click.Choice(each.choices)
+        if each.several:
+            more["multiple"] = True
+        if each.default not in (None, ()):
+            more["default"] = each.default
+        yield _Declared(group, words, {**more, **_SPECIAL.get(each.word, {})})
+
+
 def _group(title: str) -> Callable[..., _Declared]:
     return lambda *words, **more: _Declared(title, words, more)
 
 
-_cutters, _machine, _faces = _group("Cutters"), _group("Machine and setup"), _group("Faces")
-_samples, _postures = _group("Sampling and tolerances"), _group("Postures")
-_output, _answers, _run = _group("Output"), _group("Answers"), _group("Run")
-_operations = _group("Plan of operations")
+_cutters, _output, _operations, _run = _group("Cutters"), _group("Output"), _group("Plan of operations"), _group("Run")
 
+#: All options of the commands in the order of help: those of a plan, and what is about a run of the command.
 _OPTIONS = (
-    _cutters(
-        "--cutter",
-        brief="D12L80, then rc1, T5, F20, N11x40, S12; repeatable.",
-        type=Words("SPEC", validation.cutter_ids),
-        multiple=True,
-        help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
-        "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
-        "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in tool set]",
-    ),
-    _cutters(
-        "--cutters",
-        brief="Tool library: Fusion, FreeCAD, CSV, TOML; repeatable.",
-        type=File("FILE"),
-        multiple=True,
-        help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
-        "the command `tools` shows how it is understood. Repeatable.",
-    ),
-    _cutters(
-        "--holder",
-        brief="Holder of cutters without one: er32, D30L30.",
-        type=Words("SPEC|FILE", validation.holder_words, files=True),
-        help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
-        "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
-        "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
-    ),
+    *_planned("Cutters"),
     _cutters(
         "--assume-stickout", brief=True, type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."
     ),
@@ -231,126 +242,10 @@ _OPTIONS = (
         callback=_list_cutters,
         help="List the built-in cutters and exit.",
     ),
-    _machine(
-        "--machine",
-        brief="Built-in name, tilt:DEG, or a machine file.",
-        default="unlimited",
-        type=Words("NAME|FILE", validation.machine_names, files=True),
-        help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
-        "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch.  "
-        "[default: unlimited]",
-    ),
-    _machine(
-        "--setup",
-        brief="Part axis along the spindle: +z, x,y,z; or `auto`.",
-        type=Setup(),
-        multiple=True,
-        callback=named_setups,
-        default=["0,0,1"],
-        help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
-        "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
-        "proposes the fewest that reach most, in a vise, a chuck or on a table, and plans what it proposes; setups named "
-        "behind it take its place.  "
-        "[default: 0,0,1]",
-    ),
-    _machine(
-        "--fixture",
-        brief="Body in the way: a file, table, vise, chuck.",
-        type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
-        multiple=True,
-        callback=fixtures_of_setups,
-        help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
-        "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. "
-        "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
-        "can grip there. With --setup auto all three are tried, or the one that is given. Repeatable.",
-    ),
-    _faces(
-        "--faces",
-        brief="sculptured, blends, all, F3,7-12, name:REGEX.",
-        default="sculptured,blends",
-        type=Faces(),
-        help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
-        "`blends` (fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, "
-        "`name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
-        "[default: sculptured,blends]",
-    ),
-    _faces(
-        "--ignore",
-        brief="Faces neither machined nor in the way.",
-        type=Faces(),
-        multiple=True,
-        help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
-    ),
-    _faces("--flip", is_flag=True, help="Machine the other side of open shells and loose faces."),
-    _faces(
-        "--sharp-edges",
-        type=click.Choice(["asked", "left"]),
-        default="asked",
-        help="`left`: the strips along sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
-        "required.  [default: all are required]",
-    ),
-    _samples(
-        "--effort",
-        type=click.Choice(["quick", "normal", "thorough"]),
-        default="normal",
-        help="Work that advice and proofs after the verdicts may take: a fifth of the usual, or five times as much.  "
-        "[default: normal]",
-    ),
-    _faces(
-        "--unit",
-        type=click.Choice(list(UNITS)),
-        help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",
-    ),
-    _samples(
-        "--spacing",
-        brief="Largest distance of neighbouring samples.",
-        type=float,
-        metavar="MM",
-        help="Largest distance of neighbouring samples.  [default: from curvature, the smallest cutter and a budget]",
-    ),
-    _samples("--grid", type=int, metavar="N", help="N x N samples in the parameters of each face, instead of a spacing."),
-    _samples(
-        "--area-budget",
-        type=int,
-        metavar="N",
-        help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at most 100000]",
-    ),
-    _samples("--tolerance", brief=True, type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
-    _samples("--allowance", brief=True, type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
-    _samples(
-        "--holder-clearance",
-        brief="Clearance of neck, shank and holder.  [default: 0]",
-        type=float,
-        default=0.0,
-        metavar="MM",
-        help="Clearance that neck, shank and holder must keep.  [default: 0]",
-    ),
-    _postures("--tilt", type=Range(), help="Tilts to search, deg from the normal.  [default: 0:90, or as far as cutters touch]"),
-    _postures(
-        "--rotation",
-        type=Range(),
-        default="0:360",
-        help="Rotations to search, degrees from the direction of the largest curvature.  [default: 0:360]",
-    ),
-    _postures("--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"),
-    _postures(
-        "--axis-accuracy",
-        type=float,
-        metavar="DEG",
-        help="Of the rotary axes: a floor or wall that is off by less is square to the axis or along it, and "
-        "orientations that are nearer are one.  [default: the machine's own, else 0.05]",
-    ),
-    _postures(
-        "--posture-maps",
-        is_flag=True,
-        help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
-    ),
-    _postures(
-        "--map-budget",
-        type=int,
-        metavar="N",
-        help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
-    ),
+    *_planned("Machine and setup"),
+    *_planned("Faces"),
+    *_planned("Sampling and tolerances"),
+    *_planned("Postures"),
     _output("-o", "--out", brief=True, type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
@@ -379,12 +274,7 @@ _OPTIONS = (
         "for each part.",
     ),
     _output("--sarif", type=File("FILE"), help="Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
-    _output(
-        "--units",
-        brief="Unit of lengths in the summary and on the page.",
-        type=click.Choice(["mm", "in"]),
-        help="Unit of lengths in the summary and on the page; files have mm.  [default: mm; in where all cutters are in inches]",
-    ),
+    *_planned("Output"),
     _output("-v", "--verbose", brief=True, is_flag=True, help="Print all details, not only the summary."),
     _output("--quiet", brief=True, is_flag=True, help="Print no progress and no summary, only errors."),
     _output(
@@ -392,98 +282,14 @@ _OPTIONS = (
         is_flag=True,
         help="At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
     ),
-    _answers(
-        "--answers",
-        brief="More questions to answer, or all.",
-        default="",
-        type=Words("LIST", validation.answers, listed=True),
-        help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all.",
-    ),
-    _answers(
-        "--length-over-radius",
-        type=float,
-        default=10.0,
-        metavar="N",
-        help="Length of the ends of --answers radius, in radii.  [default: 10]",
-    ),
-    _operations(
-        "--operations",
-        brief="Plan fixed orientations (3+2): two rotary axes.",
-        type=Plans(["fewest", "fastest", "both"]),
-        help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
-        "that there are no fewer, the fastest, or both. The machine has two rotary axes, or none is named. Only finishing is "
-        "planned.",
-    ),
-    _operations(
-        "--feed",
-        brief="Feed of all cutters.",
-        type=float,
-        metavar="MM/MIN",
-        help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
-        "cut lengths are reported, and no times]",
-    ),
-    _operations("--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"),
-    _operations(
-        "--stepover", type=float, default=0.75, metavar="N", help="Widest distance of passes, in diameters.  [default: 0.75]"
-    ),
-    _operations(
-        "--index-step",
-        type=float,
-        metavar="DEG",
-        help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
-    ),
-    _operations(
-        "--index-time",
-        type=float,
-        metavar="S",
-        help="Seconds that another orientation takes.  [default: by the rates of the machine's rotary axes, else 5]",
-    ),
-    _operations("--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"),
-    _operations("--setup-time", type=float, default=300.0, metavar="S", help="Seconds that another setup takes.  [default: 300]"),
-    _operations(
-        "--overlap", type=float, default=2.0, metavar="MM", help="Overlap of operations at a common border.  [default: 2]"
-    ),
-    _operations(
-        "--link-time", type=float, default=1.0, metavar="S", help="Seconds from the end of a pass to the next.  [default: 1]"
-    ),
-    _operations(
-        "--border-cost",
-        type=float,
-        default=0.05,
-        metavar="S",
-        help="Seconds that a mm of border between operations on a free-form face counts in comparisons.  [default: 0.05]",
-    ),
-    _operations(
-        "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
-    ),
-    _operations(
-        "--max-orientations",
-        type=int,
-        default=8,
-        metavar="N",
-        help="Where the fastest plan has more fixed orientations, simultaneous motion is recommended for the rest.  [default: 8]",
-    ),
-    _operations(
-        "--process",
-        brief="Your own steps: an edited process.toml.",
-        type=File("FILE"),
-        help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
-        "order, and the rest is planned behind them.",
-    ),
+    *_planned("Answers"),
+    *_planned("Plan of operations"),
     _operations(
         "--check-operations",
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
     ),
-    _run(
-        "--no-patterns",
-        "patterns",
-        is_flag=True,
-        default=True,
-        flag_value=False,
-        help="Judge and plan each face by itself, also where faces are equal.",
-    ),
-    _run("--jobs", brief=True, type=int, metavar="N", help="Threads.  [default: all cores]"),
+    *_planned("Run"),
     _run(
         "--no-cache",
         "cache",

@@ -4,7 +4,6 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,8 @@ from click.shell_completion import CompletionItem
 from cad_io.errors import CadIoError, ReadError
 from plan_cutters.command.entry import commands, instead
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.option_table import OF_OPERATIONS, OPTIONS
 from plan_cutters_base.whole import refusal
 
 if TYPE_CHECKING:
@@ -134,7 +135,6 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
     if named is None or not value:
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
-    from plan_cutters.errors import PlanError
     from plan_cutters.setups.files import read_setup
     from plan_cutters_base.workers.assignment import is_child
 
@@ -203,9 +203,6 @@ def face_words() -> Sequence[str]:
     return ("sculptured", "blends", "all", "component:", "name:", "color:#")
 
 
-#: Options that count in a plan of operations alone: without one they must not be ignored.
-OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
-                 "overlap", "link_time", "border_cost", "most_operations", "max_orientations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -235,7 +232,6 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
 def _first_word(word: str) -> None:
     """Refuse a first word that is no file and nearly a command: the other words would be planned in its place."""
     from plan_cutters.domain.checks import did_you_mean
-    from plan_cutters.errors import OptionError
 
     meant = "" if os.path.exists(word) else did_you_mean(word, commands())
     if meant:
@@ -244,8 +240,6 @@ def _first_word(word: str) -> None:
 
 def folders(request: PlanRequest) -> list[Path]:
     """The output folder of each part; none where only standard output is written."""
-    from plan_cutters.errors import OptionError
-
     if request.json_out == "-" and request.out is None and request.formats is None:
         return []
     if request.out is not None and len(request.parts) > 1:
@@ -260,7 +254,6 @@ def folders(request: PlanRequest) -> list[Path]:
 
 def _words(request: PlanRequest) -> None:
     """Options that need no file and no number to be read."""
-    from plan_cutters.errors import OptionError
     from plan_cutters.report.folder import read_formats
 
     if request.formats is not None:
@@ -294,15 +287,11 @@ def scheduler(address: str) -> None:
     ------
     OptionError
     """
-    from plan_cutters.errors import OptionError
-
     if not os.path.isfile(address) and "://" not in address:
         raise OptionError("no such file, and no address as tcp://HOST:8786", file=f"--cluster {address}")
 
 
 def _json_out(request: PlanRequest) -> None:
-    from plan_cutters.errors import OptionError
-
     if request.process is not None and len(request.parts) > 1:
         raise OptionError("--process names faces of one part: give one part")
     if request.json_out not in (None, "-"):
@@ -315,8 +304,6 @@ def _json_out(request: PlanRequest) -> None:
 
 def _plans_nothing(request: PlanRequest) -> None:
     """Refuse what is about planning, and several parts, where something that was planned is looked at."""
-    from plan_cutters.errors import OptionError
-
     if request.check_operations is None:
         return
     word = "--check-operations"
@@ -336,18 +323,10 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
     ------
     OptionError
     """
-    from plan_cutters.errors import OptionError
-
     if request.operations is not None or getattr(request, "process", None) is not None:
         return
-    from plan_cutters.options import ANGLES, Options
-
-    defaults: dict[str, Any] = {each.name: each.default for each in fields(Options)}
     for name in OF_OPERATIONS:
-        default = defaults[name]
-        if name in ANGLES and default is not None:  # the command takes degrees
-            default = round(math.degrees(default), 9)
-        if getattr(request, name) != default:
+        if getattr(request, name) != OPTIONS[name].default:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
 
@@ -373,8 +352,6 @@ def writable(out: Path) -> None:
     ------
     PlanError
     """
-    from plan_cutters.errors import PlanError
-
     if out.exists() and not out.is_dir():
         raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
     # What grows stands beside the folder, and then in it; folders that are not there are made.

@@ -20,7 +20,8 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
-from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
+from plan_cutters.option_table import MOST_TOLERANCE
+from plan_cutters.options import Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
 from plan_cutters.scene.overlap import entered, overlaps, refuse_overlaps
