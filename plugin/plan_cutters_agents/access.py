@@ -5,6 +5,7 @@ import stat
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from plan_cutters.errors import PlanError
@@ -110,6 +111,20 @@ def _folder(path: str | os.PathLike[str]) -> Path | None:
     return there if there.is_dir() else None
 
 
+def spelled(**values: Any) -> list[str]:
+    """Options as a command line has them: flags, numbers and texts, each of a list; nothing for None and False.
+
+    >>> spelled(flip=True, grid=None, rotation_step=5.0, setup=["+z", "-y"])
+    ['--flip', '--rotation-step=5.0', '--setup=+z', '--setup=-y']
+    """
+    words = []
+    for name, value in values.items():
+        for each in value if isinstance(value, list) else [] if value is None or value is False else [value]:
+            text = "" if each is True else f"={each}"
+            words.append(f"--{name.replace('_', '-')}{text}")
+    return words
+
+
 @dataclass(frozen=True)
 class Permissions:
     """A call may read and write here, and cost so much: questions become words of the command, with files in roots alone."""
@@ -123,18 +138,18 @@ class Permissions:
 
     def conditions(self, question: Conditions) -> list[str]:
         """Words for what cutters are judged under, without the cutters."""
-        options = [
-            f"--tolerance={question.tolerance_mm!r}",
-            f"--allowance={question.allowance_mm!r}",
-            f"--holder-clearance={question.holder_clearance_mm!r}",
-            f"--machine={self._machine(question.machine)}",
-        ]
-        options += [f"--cutters={self.file(question.library)}"] if question.library is not None else []
-        options += [f"--holder={self._holder(question.holder)}"] if question.holder is not None else []
-        options += [f"--fixture={self._fixture(each)}" for each in question.fixtures]
-        options += [f"--ignore={each}" for each in question.ignore]
-        options += [f"--unit={question.unit}"] if question.unit is not None else []
-        return options + ["--flip"] * question.flip
+        return spelled(
+            tolerance=question.tolerance_mm,
+            allowance=question.allowance_mm,
+            holder_clearance=question.holder_clearance_mm,
+            machine=self._machine(question.machine),
+            cutters=None if question.library is None else self.file(question.library),
+            holder=None if question.holder is None else self._holder(question.holder),
+            fixture=[self._fixture(each) for each in question.fixtures],
+            ignore=question.ignore,
+            unit=question.unit,
+            flip=question.flip,
+        )
 
     def part(self, question: PartQuestion) -> list[str]:
         """Words for a part, its cutters and their conditions."""
@@ -143,19 +158,16 @@ class Permissions:
                 f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
             )
         # The area between the samples is not looked at.
-        options = [self.file(question.part), *self.conditions(question), "--area-budget=0", f"--faces={question.faces}"]
-        options += [f"--grid={question.grid}"] if question.grid is not None else []
-        options += [f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else []
-        options += [f"--cutter={each}" for each in question.cutters]
-        return options + [f"--setup={each}" for each in question.setup]
+        words = spelled(area_budget=0, faces=question.faces, grid=question.grid, spacing=question.spacing_mm,
+                        cutter=question.cutters, setup=question.setup)  # fmt: skip
+        return [self.file(question.part), *self.conditions(question), *words]
 
     def map(self, question: MapQuestion) -> list[str]:
         """Words for a posture map."""
-        at = ",".join(repr(x) for x in question.point)
-        words = [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
-                 f"--cutter={question.cutter}", f"--setup={question.setup}",
-                 f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
-        return words if question.tilt_deg is None else [*words, "--tilt={!r}:{!r}".format(*question.tilt_deg)]
+        tilt = None if question.tilt_deg is None else "{!r}:{!r}".format(*question.tilt_deg)
+        words = spelled(at=",".join(map(repr, question.point)), within=question.within_mm, cutter=question.cutter,
+                        setup=question.setup, rotation_step=question.rotation_step_deg, tilt=tilt)  # fmt: skip
+        return [self.file(question.part), *self.conditions(question), *words]
 
     def _machine(self, text: str) -> str:
         from plan_cutters.domain.machine import builtin_machines

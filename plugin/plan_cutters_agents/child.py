@@ -16,8 +16,8 @@ from plan_cutters.files.pictures import draws_pictures
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters_agents.access import CallError, Limits, Permissions
+from plan_cutters_agents.outputs import tools_in
 from plan_cutters_agents.requests import MapQuestion
-from plan_cutters_agents.shop import tools_in
 from plan_cutters_base.user_files import WITHIN
 from plan_cutters_base.workers.assignment import Assignment
 from plan_cutters_base.workers.child import Child, command
@@ -142,7 +142,7 @@ class Call:
     async def tools_of(self, library: str) -> list[tuple[str, str]]:
         """Id and name of each cutter of a library that may be judged; a CallError where there are too many."""
         rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
-        libraries = [(each.id, each.name) for each in rows]
+        libraries = [(each["id"], each["name"]) for each in rows]
         if len(libraries) > self.permissions.limits.cutters:
             raise CallError(
                 f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
