@@ -51,11 +51,6 @@ class Option(NamedTuple):
         """Its word of the command line, with `_` for `-`."""
         return self.typed or self.word
 
-    @property
-    def name(self) -> str:
-        """Its name among the values that the command line gives."""
-        return self.word if self.kind is bool else self.called
-
 
 _CUTTERS = (
     Option(

@@ -21,7 +21,7 @@ from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
 if TYPE_CHECKING:
-    from plan_cutters.command.part_cases import PartCases
+    from plan_cutters.command.progress import PartCases
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan

@@ -2,15 +2,15 @@
 
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import click
 
 from plan_cutters import __version__
 from plan_cutters.command import validation
 from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
-from plan_cutters.option_table import GROUPS, OPTIONS
+from plan_cutters.option_table import GROUPS, OPTIONS, Option
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 #: Width of the column of names; what is longer has a line of its own.
@@ -67,14 +67,8 @@ def heading(title: str) -> Any:
 class Command(click.Command):
     """A command whose help has headings in the order in which they are declared, then examples and exit codes.
 
-    Parameters
-    ----------
-    subcommands : callable
-        What help lists first, asked when it is shown: other commands, and what they answer, each as (str, str).
-    examples : sequence of (str, str)
-        A command line, and what it does.
-    codes : sequence of (str, str)
-        Exit codes, and what they mean.
+    `subcommands` are what help lists first, asked when it is shown. Each of these is a pair of texts: what is typed or seen, and
+    what it does or means.
     """
 
     def __init__(
@@ -175,19 +169,12 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -
     ctx.exit()
 
 
-class _Declared(NamedTuple):
-    """An option as it is declared: its group, the words that it is called by, and what click is told of it."""
-
-    group: str
-    words: tuple[str, ...]
-    more: dict[str, Any]
-
-
-#: Options of a plan whose values are no plain numbers and words.
+#: Of options whose values are no plain numbers, texts and choices.
 _SPECIAL: dict[str, dict[str, Any]] = {
     "cutters": {"type": Words("SPEC", validation.cutter_ids)},
     "libraries": {"type": File("FILE")},
     "holder": {"type": Words("SPEC|FILE", validation.holder_words, files=True)},
+    "list_cutters": {"is_eager": True, "expose_value": False, "callback": _list_cutters},
     "machine": {"type": Words("NAME|FILE", validation.machine_names, files=True)},
     "setup": {"type": Setup(), "callback": named_setups},
     "fixtures": {"type": File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), "callback": fixtures_of_setups},
@@ -195,134 +182,84 @@ _SPECIAL: dict[str, dict[str, Any]] = {
     "ignore": {"type": Faces()},
     "tilt": {"type": Range()},
     "rotation": {"type": Range()},
+    "out": {"type": Folder("DIR")},
+    "formats": {"type": Words("LIST", lambda: FORMATS, listed=True)},
+    "json_out": {"type": Words("-", lambda: ("-",))},
+    "junit": {"type": File("FILE")},
+    "sarif": {"type": File("FILE")},
     "answers": {"type": Words("LIST", validation.answers, listed=True)},
     "operations": {"type": Plans(OPTIONS["operations"].choices)},
     "process": {"type": File("FILE")},
+    "check_operations": {"type": File("FILE")},
 }
-
-
-def _planned(group: str) -> Iterator[_Declared]:
-    """Declare the options of a plan of a group, as the table has them."""
-    for each in GROUPS[group]:
-        more: dict[str, Any] = {"help": each.help, "brief": each.brief}
-        words = (f"--{each.called.replace('_', '-')}", each.name)
-        if each.kind is bool:
-            more |= {"is_flag": True, **({"default": True, "flag_value": False} if each.default else {})}
-        elif each.kind is not str and each.word not in _SPECIAL:
-            more |= {"type": each.kind, "metavar": each.metavar or each.unit.upper() or "N"}
-            if each.default is not None:
-                more["help"] += f"  [default: {each.default:g}]"
-        elif each.choices:
-            more["type"] = click.Choice(each.choices)
-        if each.several:
-            more["multiple"] = True
-        if each.default not in (None, ()):
-            more["default"] = each.default
-        yield _Declared(group, words, {**more, **_SPECIAL.get(each.word, {})})
-
-
-def _group(title: str) -> Callable[..., _Declared]:
-    return lambda *words, **more: _Declared(title, words, more)
-
-
-_cutters, _output, _operations, _run = _group("Cutters"), _group("Output"), _group("Plan of operations"), _group("Run")
-
-#: All options of the commands in the order of help: those of a plan, and what is about a run of the command.
-_OPTIONS = (
-    *_planned("Cutters"),
-    _cutters(
-        "--assume-stickout", brief=True, type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."
+#: By the heading of help, in its order: the options of a plan, and what is about a run of the command.
+_OPTIONS = {
+    **GROUPS,
+    "Cutters": (
+        *GROUPS["Cutters"],
+        Option("assume_stickout", float, None, "Stick-out of the libraries' tools that state none.", brief=True, unit="mm"),
+        Option("skip_bad", bool, False, "If some tools of a library are broken, use the others."),
+        Option("list_cutters", bool, False, "List the built-in cutters and exit."),
     ),
-    _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
-    _cutters(
-        "--list-cutters",
-        is_flag=True,
-        is_eager=True,
-        expose_value=False,
-        callback=_list_cutters,
-        help="List the built-in cutters and exit.",
+    "Output": (
+        Option("out", str, None, "Folder for the files.  [default: <part>-plan]", brief=True),
+        Option(
+            "formats", str, None, brief="Of json, step, glb, html, npz, png, csv and more.",
+            help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+            f"[default: {','.join(DEFAULT_FORMATS)}]",
+        ),
+        Option(
+            "step_schema", str, "ap242", "Application protocol of the STEP file.  [default: ap242]",
+            choices=("ap242", "ap214", "ap203"),
+        ),
+        Option(
+            "json_out", str, None, typed="json", brief="The plan of one part on standard output.",
+            help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
+        ),
+        Option(
+            "junit", str, None,
+            "Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
+            "for each part.",
+        ),
+        Option("sarif", str, None, "Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
+        *GROUPS["Output"],
+        Option("verbose", bool, False, "Print all details, not only the summary.", brief=True),
+        Option("quiet", bool, False, "Print no progress and no summary, only errors.", brief=True),
+        Option(
+            "wait", bool, False,
+            "At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
+        ),
     ),
-    *_planned("Machine and setup"),
-    *_planned("Faces"),
-    *_planned("Sampling and tolerances"),
-    *_planned("Postures"),
-    _output("-o", "--out", brief=True, type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
-    _output(
-        "--formats",
-        brief="Of json, step, glb, html, npz, png, csv and more.",
-        type=Words("LIST", lambda: FORMATS, listed=True),
-        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
-        f"[default: {','.join(DEFAULT_FORMATS)}]",
+    "Plan of operations": (
+        *GROUPS["Plan of operations"],
+        Option(
+            "check_operations", str, None,
+            "Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
+        ),
     ),
-    _output(
-        "--step-schema",
-        type=click.Choice(["ap242", "ap214", "ap203"]),
-        default="ap242",
-        help="Application protocol of the STEP file.  [default: ap242]",
+    "Run": (
+        *GROUPS["Run"],
+        Option(
+            "cache", bool, True, typed="no_cache",
+            help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
+        ),
+        Option(
+            "read_timeout", float, 120.0, unit="s",
+            help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.",
+        ),
+        Option(
+            "fail_under", float, None, metavar="PERCENT", brief="End with 0 where at least so much is finished.",
+            help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
+        ),
+        Option(
+            "timeout", float, None, unit="s", brief="Seconds for the whole of a part.",
+            help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "
+            "next one is planned.",
+        ),
+        Option("memory", float, None, "Most memory to use.  [default: 3/4 of the machine's]", unit="gb"),
+        Option("debug", bool, False, "Show tracebacks."),
     ),
-    _output(
-        "--json",
-        "json_out",
-        brief="The plan of one part on standard output.",
-        type=Words("-", lambda: ("-",)),
-        help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
-    ),
-    _output(
-        "--junit",
-        type=File("FILE"),
-        help="Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
-        "for each part.",
-    ),
-    _output("--sarif", type=File("FILE"), help="Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
-    *_planned("Output"),
-    _output("-v", "--verbose", brief=True, is_flag=True, help="Print all details, not only the summary."),
-    _output("--quiet", brief=True, is_flag=True, help="Print no progress and no summary, only errors."),
-    _output(
-        "--wait",
-        is_flag=True,
-        help="At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
-    ),
-    *_planned("Answers"),
-    *_planned("Plan of operations"),
-    _operations(
-        "--check-operations",
-        type=File("FILE"),
-        help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
-    ),
-    *_planned("Run"),
-    _run(
-        "--no-cache",
-        "cache",
-        is_flag=True,
-        default=True,
-        flag_value=False,
-        help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
-    ),
-    _run(
-        "--read-timeout",
-        type=float,
-        default=120.0,
-        metavar="S",
-        help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.  [default: 120]",
-    ),
-    _run(
-        "--fail-under",
-        brief="End with 0 where at least so much is finished.",
-        type=float,
-        metavar="PERCENT",
-        help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
-    ),
-    _run(
-        "--timeout",
-        brief="Seconds for the whole of a part.",
-        type=float,
-        metavar="S",
-        help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "
-        "next one is planned.",
-    ),
-    _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
-    _run("--debug", is_flag=True, help="Show tracebacks."),
-)
+}  # fmt: skip
 
 
 def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -332,11 +269,26 @@ def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., A
     """
 
     def declare(function: Callable[..., Any]) -> Callable[..., Any]:
-        for option in reversed(_OPTIONS):
-            name = next(word for word in option.words if word.startswith("--"))[2:].replace("-", "_")
-            if not names or name in names or name in changes:
-                more = {**option.more, **changes.get(name, {})}
-                function = heading(option.group)(*option.words, **more)(function)
+        for group, each in reversed([(group, each) for group, rows in _OPTIONS.items() for each in rows]):
+            if not names or each.called in names or each.called in changes:
+                short = {"out": ("-o",), "verbose": ("-v",)}.get(each.word, ())
+                words = (*short, f"--{each.called.replace('_', '-')}", each.word)
+                function = heading(group)(*words, **{**_of_click(each), **changes.get(each.called, {})})(function)
         return function
 
     return declare
+
+
+def _of_click(option: Option) -> dict[str, Any]:
+    """What click is told of an option."""
+    more: dict[str, Any] = {"help": option.help, "brief": option.brief}
+    if option.kind is bool:
+        more |= {"is_flag": True, **({"flag_value": False} if option.default else {})}
+    elif option.kind in (int, float):
+        more |= {"type": option.kind, "metavar": option.metavar or option.unit.upper() or "N"}
+        more["help"] += "" if option.default is None else f"  [default: {option.default:g}]"
+    elif option.choices:
+        more["type"] = click.Choice(option.choices)
+    more |= {"multiple": True} if option.several else {}
+    more |= {} if option.default in (None, ()) else {"default": option.default}
+    return {**more, **_SPECIAL.get(option.word, {})}

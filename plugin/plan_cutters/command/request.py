@@ -47,7 +47,7 @@ def _with_options(*, of_a_point: bool) -> Callable[[type[R]], type[R]]:
         for each in OPTIONS.values():
             if each.of_a_point is of_a_point and each.word != "process":
                 kind = Range if each.kind == "range" else tuple[str, ...] if each.several else each.kind
-                record.__annotations__.setdefault(each.name, kind | None if each.default is None else kind)
+                record.__annotations__.setdefault(each.word, kind | None if each.default is None else kind)
         return record
 
     return widened
@@ -76,8 +76,8 @@ class PostureRequest:
 class PlanningRequest(PostureRequest):
     """The common fields of all commands that plan parts."""
 
-    cutter: tuple[str, ...]
     cutters: tuple[str, ...]
+    libraries: tuple[str, ...]
     assume_stickout: float | None
     skip_bad: bool
     setup: tuple[Setup, ...]
@@ -130,9 +130,9 @@ class MapRequest(PostureRequest):
     part: str
     at: str
     within: float
-    cutter: str | None
-    #: The library that the cutter is of.
+    #: One, of the one library where that is named.
     cutters: str | None
+    libraries: str | None
     setup: str
     out: tuple[str, ...]
     json_out: str | None
@@ -143,7 +143,7 @@ class ToolsRequest:
     """Tool libraries as they are understood: `plan-cutters tools`."""
 
     files: tuple[str, ...]
-    cutter: tuple[str, ...]
+    cutters: tuple[str, ...]
     holder: str | None
     assume_stickout: float | None
     skip_bad: bool
@@ -168,7 +168,7 @@ class MachinesRequest:
 
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
-    tools = read_tools(request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
+    tools = read_tools(request.cutters, request.libraries, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
     # The words of choices were looked at where the command line was read.
     words: Any = {
         **_handed_on(request, of_a_point=False),
@@ -200,7 +200,7 @@ def _handed_on(request: PostureRequest, *, of_a_point: bool) -> dict[str, Any]:
     words = {}
     for each in OPTIONS.values():
         if each.of_a_point is of_a_point:
-            value = getattr(request, each.name, None)
+            value = getattr(request, each.word, None)
             words[each.word] = radians(value) if value is not None and each.unit == "deg" else value
     return words
 
