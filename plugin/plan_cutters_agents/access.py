@@ -197,14 +197,11 @@ class Permissions:
         return self.file(text)
 
     def _fixture(self, text: str) -> str:
-        from dataclasses import replace
-
         from plan_cutters.domain.fixture import Fixture
 
         fixture = Fixture.parse(text)
         if fixture.kind:
             return text
-        placed = replace(fixture, source=self.file(fixture.source), placement=fixture.placement)
         # Placement and unit are said, so that nothing in the path of a root is taken for them.
-        where = ",".join(repr(x) for x in placed.placement)
-        return f"{placed.source}@{where}{f':{placed.unit}' if placed.unit else ''}"
+        where = ",".join(map(repr, fixture.placement))
+        return f"{self.file(fixture.source)}@{where}{f':{fixture.unit}' if fixture.unit else ''}"

@@ -54,6 +54,7 @@ def postures_of(output: bytes) -> Entry:
     """The postures in the output of the command `map`: shares of those that were searched, and a row for each rotation."""
     answer = json.loads(output)
     rows, tilt = answer["rotations"], answer["tilt_deg"]
+    unit = 10**_DIGITS
     wide = max(1e-12, (tilt[1] - tilt[0]) * len(rows))
 
     def share(word: str) -> float:
@@ -69,7 +70,12 @@ def postures_of(output: bytes) -> Entry:
         "rotations": [
             {
                 "deg": round(row["deg"], _DIGITS),
-                "free": _inward(row["free"]),
+                # None wider than it is: those too narrow for the digits are left out.
+                "free": [
+                    [inner, outer]
+                    for low, high in row["free"]
+                    if (inner := math.ceil(low * unit) / unit) <= (outer := math.floor(high * unit) / unit)
+                ],
                 "undecided": _rounded(row["undecided"]),
                 "local_gouge_below": row["local_gouge"],
                 "forbidden": {word: _rounded(row[word]) for word in INTERVALS if row[word]},
@@ -83,13 +89,6 @@ def postures_of(output: bytes) -> Entry:
 
 def _rounded(intervals: list[list[float]]) -> list[list[float]]:
     return [[round(low, _DIGITS), round(high, _DIGITS)] for low, high in intervals]
-
-
-def _inward(intervals: list[list[float]]) -> list[list[float]]:
-    """Free tilts, none told wider than it is; those too narrow for the digits are left out."""
-    unit = 10**_DIGITS
-    ranges = [[math.ceil(low * unit) / unit, math.floor(high * unit) / unit] for low, high in intervals]
-    return [[low, high] for low, high in ranges if low <= high]
 
 
 def nearest_sample(file: str, plan: Plan, cutter: str, question: ExplainQuestion, permissions: Permissions) -> Entry:

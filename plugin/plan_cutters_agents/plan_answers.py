@@ -58,11 +58,11 @@ class OfPlan(Answer):
 
 class PlanAnswer(OfPlan):
     format: Literal["plan-cutters-agent-plan"] = "plan-cutters-agent-plan"
-    asked_mm2: float | None = Field(default=None, description="of the faces to machine, that the steps are to finish")
-    finished_share: float | None = Field(default=None, description="by all steps together; 1 only where nothing is left")
-    seconds: float | None = Field(default=None, description="of all steps, turns and changes of cutters; null without a feed")
-    steps: list[Entry] = Field(default=[], description="of the process, in their order")
-    left: list[Entry] = Field(default=[], description="what no step finishes, the largest area first")
+    asked_mm2: float | None = Field(None, description="of the faces to machine, that the steps are to finish")
+    finished_share: float | None = Field(None, description="by all steps together; 1 only where nothing is left")
+    seconds: float | None = Field(None, description="of all steps, turns and changes of cutters; null without a feed")
+    steps: list[Entry] = Field([], description="of the process, in their order")
+    left: list[Entry] = Field([], description="what no step finishes, the largest area first")
     notes: list[Entry] = Field(description="what these verdicts do not say")
     files: dict[str, str] = Field({}, description="format -> path, where `out` was given")
     not_written: dict[str, str] = Field({})
@@ -93,7 +93,7 @@ class Explanation(Answer):
     witnesses: list[Entry] = Field(description="worst spots, the deepest first; with a point, the nearest first")
     would_help: list[Entry] = Field(description="changes that gain something, each of them judged, the best first")
     help_is_about: About = "nothing"
-    no_help: str = Field(default="", description="why `would_help` is empty")
+    no_help: str = Field("", description="why `would_help` is empty")
     postures: Entry | None = Field(description="at the point, where a part was given")
     sample: Entry | None = Field(description="nearest to the point, where a plan with samples.npz was given")
     missing: list[Entry]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from plan_cutters.command import terminal
+from plan_cutters.command.background_compile import begin as background_compile
 from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_interrupt
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
 from plan_cutters.command.progress import Display, Teller
@@ -61,7 +62,10 @@ def one_part(
     interrupts: list[int] = []
     try:
         watch.tell("start", 0, 1)
-        compiling = _compiling(options, request.quiet)
+        # Machine code is made meanwhile where there is none.
+        compiling = background_compile(options.posture_maps) if options.jobs > 1 else None
+        if compiling is not None and not request.quiet:
+            terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.interim import Interim
@@ -74,9 +78,11 @@ def one_part(
         interim = Interim(clock, stands if staging else None, lambda: report("stands", ""), watch.looked)
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
-        planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                          excluded=omitted, interim=interim,
-                          folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
+        # A batch takes the output away: files are named as where they will be, or not at all.
+        planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work,
+                          compiling=compiling or (lambda entry: None), excluded=omitted, interim=interim,
+                          folder="" if out is None or assignment().job is not None else str(out),
+                          cache=StageCache.of_user() if request.cache else None)  # fmt: skip
         try:
             result = planned(options)
         except TooManySamplesError:
@@ -85,7 +91,10 @@ def one_part(
             # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
             from plan_cutters.document.notes import noted_coarser
 
-            result = planned(_default_density(options), remark=partial(noted_coarser, options))
+            coarser = copy.copy(options)  # past the checks
+            for word in ("spacing", "grid"):
+                object.__setattr__(coarser, word, None)
+            result = planned(coarser, remark=partial(noted_coarser, options))
         except (Exception, KeyboardInterrupt) as error:
             if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
                 raise
@@ -137,32 +146,9 @@ def _interrupted(out: Path | None) -> tuple[int, str]:
     return INTERRUPTED, "" if is_child() else f"plan-cutters: {remaining_text(out, 'interrupted')}"
 
 
-def _folder(out: Path | None) -> str:
-    """How a command names the output; empty where there is none, or it will be somewhere else: a batch takes it away."""
-    return "" if out is None or assignment().job is not None else str(out)
-
-
 def _tells(request: "PlanRequest") -> Callable[..., None]:
     """What tells results: where a program reads the plan on standard output, nothing else is written there."""
     return terminal.say if request.json_out == "-" else terminal.show
-
-
-def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
-    """Let machine code be made meanwhile where there is none, and say so; what waits for an entry of it."""
-    from plan_cutters.command.background_compile import begin
-
-    wait = begin(options.posture_maps) if options.jobs > 1 else None
-    if wait is not None and not quiet:
-        terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
-    return wait or (lambda entry: None)
-
-
-def _default_density(options: "Options") -> "Options":
-    """The same options with the default density of samples, in place of a spacing or a grid: a copy past the checks."""
-    made = copy.copy(options)
-    for word in ("spacing", "grid"):
-        object.__setattr__(made, word, None)
-    return made
 
 
 class ProgressListener:

@@ -8,7 +8,7 @@ import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import radians
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from plan_cutters.option_table import OPTIONS
 
@@ -82,7 +82,6 @@ class PlanningRequest(PostureRequest):
     skip_bad: bool
     setup: tuple[Setup, ...]
     jobs: int | None
-    units: Literal["mm", "in"] | None
     operations: str | None
     formats: str | None
     step_schema: str
@@ -214,13 +213,9 @@ class Tools(NamedTuple):
 
 
 def read_tools(
-    cutters: Sequence[str],
-    libraries: Sequence[str],
-    holder: str | None,
-    assume_stickout: float | None = None,
-    *,
+    cutters: Sequence[str], libraries: Sequence[str], holder: str | None, assume_stickout: float | None = None, *,
     skip_bad: bool = False,
-) -> Tools:
+) -> Tools:  # fmt: skip
     """Read what the command line says of tools; a PlanError for what has no meaning."""
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.errors import OptionError
