@@ -5,7 +5,7 @@ import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack, cast
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
@@ -150,16 +150,26 @@ def _within_limits(value: Any, option: Option) -> float:
     return checked
 
 
+#: Defaults that are none of the command line.
+_DEFAULTS: dict[str, Any] = {
+    "machine": field(default_factory=Machine), "setup": (0.0, 0.0, 1.0), "other_setups": (), "faces": None, "tilt": None,
+    "rotation": (0.0, 2 * math.pi), "jobs": field(default_factory=cores), "answers": (), "placement": None,
+    "other_placements": (), "propose": False,
+}  # fmt: skip
+
+
 def _with_defaults(made: type[_Class]) -> type[_Class]:
-    """Give attributes that have no default that of the command line, angles in radians."""
-    for word, each in OPTIONS.items():
-        if not hasattr(made, word):
-            setattr(made, word, math.radians(each.default) if each.unit == "deg" and each.default is not None else each.default)
+    """Give attributes their defaults: these, or those of the command line, angles in radians."""
+    values = {
+        each.word: math.radians(x) if (x := each.default) is not None and each.unit == "deg" else x for each in OPTIONS.values()
+    }
+    for word, default in {**values, **_DEFAULTS}.items():
+        setattr(made, word, default)
     return made
 
 
 @degrees_too(ANGLES)
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 @_with_defaults
 class Options:
     """Options of a plan: as on the command line, whose help says what each means. Lengths mm, angles rad; degrees as `tilt_deg`,
@@ -167,15 +177,13 @@ class Options:
 
     Attributes
     ----------
-    cutters : tuple of Cutter
-        May be given as one cutter or a list, and texts such as `R6L80` for cutters, or as one library. Empty, and no libraries:
-        the built-in ones.
-    libraries : tuple of Library
-        Tool libraries, as `library.read_library` reads them, whose cutters are judged, too; may be given as one.
+    cutters, libraries : tuple of Cutter, tuple of Library
+        Those of libraries (`library.read_library`) are judged, too. May be given as one cutter, text such as `R6L80` or library,
+        or as a list. Neither: the built-in cutters.
     holder : Holder, optional
         Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float
-        Stock left on the surface, and clearance required of neck, shank and holder, for cutters that do not say so themselves.
+        For cutters that do not say so themselves.
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
@@ -192,10 +200,8 @@ class Options:
         were, `sculptured,blends`.
     tilt, rotation : tuple of float
         Tilts within 0 to pi, by default to pi/2 or as far as a cutter touches; rotations from the direction of largest curvature.
-    jobs : int
-        Threads. None: as many as there are cores.
     answers : tuple of str
-        What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
+        Of `domain.answers.ANSWERS`, or `all`; may be given as one text.
     axis_accuracy : float, optional
         None: that of the machine's least accurate rotary axis, where its file states one, else 0.05 deg.
     border_cost : float
@@ -238,23 +244,23 @@ class Options:
     holder: Holder | None
     allowance: float
     holder_clearance: float
-    machine: Machine = field(default_factory=Machine)
-    setup: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    other_setups: tuple[tuple[float, float, float], ...] = ()
-    faces: Any = None
+    machine: Machine
+    setup: tuple[float, float, float]
+    other_setups: tuple[tuple[float, float, float], ...]
+    faces: Any
     ignore: Any
     grid: int | None
     spacing: float | None
-    tilt: tuple[float, float] = cast("tuple[float, float]", None)
-    rotation: tuple[float, float] = (0.0, 2 * math.pi)
+    tilt: tuple[float, float]
+    rotation: tuple[float, float]
     rotation_step: float
     tolerance: float
-    jobs: int = field(default_factory=cores)
+    jobs: int
     flip: bool
     area_budget: int | None
     posture_maps: bool
     map_budget: int | None
-    answers: tuple[Answer, ...] = ()
+    answers: tuple[Answer, ...]
     length_over_radius: float
     operations: Operations | None
     feed: float | None
@@ -277,9 +283,9 @@ class Options:
     units: Literal["mm", "in"] | None
     unit: str | None
     fixtures: tuple[Fixture, ...]
-    placement: Placement | None = None
-    other_placements: tuple[Placement | None, ...] = ()
-    propose: bool = False
+    placement: Placement | None
+    other_placements: tuple[Placement | None, ...]
+    propose: bool
 
     if TYPE_CHECKING:
 

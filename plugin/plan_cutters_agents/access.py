@@ -5,11 +5,13 @@ import stat
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
 from plan_cutters.errors import PlanError
-from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
+
+if TYPE_CHECKING:
+    from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
 
 
 class CallError(PlanError):
@@ -21,19 +23,19 @@ class Limits:
     """Largest values of a call."""
 
     #: Size of a file that is read, millions of bytes.
-    file_mb: float = 200.0
+    most_mb: float = 200.0
     #: Samples of a plan, all target faces together.
-    samples: int = 200_000
+    most_samples: int = 200_000
     #: Cutters of a call, those of a library included.
-    cutters: int = 50
+    most_cutters: int = 50
     #: Of a call, by the clock, waiting for its turn included.
-    seconds: float = 900.0
+    timeout: float = 900.0
     #: Of an answer, as JSON. Lists are cut until it fits.
-    characters: int = 40_000
+    most_characters: int = 40_000
     #: That work at the same time; the others wait.
     calls: int = 2
     #: Of each process; None: what the command takes by default.
-    memory_gb: float | None = None
+    memory: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,9 +136,9 @@ class Permissions:
 
     def file(self, text: str) -> str:
         """The path of a file that may be read."""
-        return str(self.roots.file(text, self.limits.file_mb))
+        return str(self.roots.file(text, self.limits.most_mb))
 
-    def conditions(self, question: Conditions) -> list[str]:
+    def conditions(self, question: "Conditions") -> list[str]:
         """Words for what cutters are judged under, without the cutters."""
         return spelled(
             tolerance=question.tolerance_mm,
@@ -151,18 +153,18 @@ class Permissions:
             flip=question.flip,
         )
 
-    def part(self, question: PartQuestion) -> list[str]:
+    def part(self, question: "PartQuestion") -> list[str]:
         """Words for a part, its cutters and their conditions."""
-        if len(question.cutters) > self.limits.cutters:
+        if len(question.cutters) > self.limits.most_cutters:
             raise CallError(
-                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
+                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.most_cutters} in a call"
             )
         # The area between the samples is not looked at.
         words = spelled(area_budget=0, faces=question.faces, grid=question.grid, spacing=question.spacing_mm,
                         cutter=question.cutters, setup=question.setup)  # fmt: skip
         return [self.file(question.part), *self.conditions(question), *words]
 
-    def map(self, question: MapQuestion) -> list[str]:
+    def map(self, question: "MapQuestion") -> list[str]:
         """Words for a posture map."""
         tilt = None if question.tilt_deg is None else "{!r}:{!r}".format(*question.tilt_deg)
         words = spelled(at=",".join(map(repr, question.point)), within=question.within_mm, cutter=question.cutter,

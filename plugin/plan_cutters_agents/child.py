@@ -54,7 +54,7 @@ async def run(
     It ends with this call, however that ends, and with this process. It reads files in the folders `within` alone, those that
     are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
     """
-    more = [] if limits.memory_gb is None or words[0] != "plan" else [f"--memory={limits.memory_gb!r}"]
+    more = [] if limits.memory is None or words[0] != "plan" else [f"--memory={limits.memory!r}"]
     name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
     await tell(0.0, "starting")
     # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
@@ -82,7 +82,7 @@ async def run(
 
 def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
     folders = json.dumps([*map(str, within)])
-    return {**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
+    return {**os.environ, MOST_SAMPLES: str(limits.most_samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
 
 
 async def _pieces(pipe: IO[bytes] | None) -> AsyncIterator[bytes]:
@@ -143,10 +143,8 @@ class Call:
         """Id and name of each cutter of a library that may be judged; a CallError where there are too many."""
         rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
         libraries = [(each["id"], each["name"]) for each in rows]
-        if len(libraries) > self.permissions.limits.cutters:
-            raise CallError(
-                f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
-                "make a library of those in question",
-                file=library,
-            )
+        most = self.permissions.limits.most_cutters
+        if len(libraries) > most:
+            why = f"lists {len(libraries)} cutters, and this server judges at most {most} in a call"
+            raise CallError(f"{why}: make a library of those in question", file=library)
         return libraries

@@ -84,14 +84,14 @@ class Service:
                     self._working.discard(scope)
             if scope.cancelled_caught:
                 raise CallError("the server was ended")
-            answer = await anyio.to_thread.run_sync(fitting, reply.answer, self.limits.characters)
+            answer = await anyio.to_thread.run_sync(fitting, reply.answer, self.limits.most_characters)
         except Exception as error:
             match error:
                 case PlanError():
                     line = str(error)
                 case TimeoutError():
                     line = (
-                        f"no answer within {self.limits.seconds:g} s: sample more coarsely, choose fewer faces or "
+                        f"no answer within {self.limits.timeout:g} s: sample more coarsely, choose fewer faces or "
                         "cutters, or start the server with a longer --timeout"
                     )
                 case _:
@@ -130,7 +130,7 @@ class Service:
             shown = max(seconds, shown + 0.001)
             await context.session.report_progress(shown, None if rest is None else shown + rest, words)
 
-        with anyio.fail_after(self.limits.seconds):
+        with anyio.fail_after(self.limits.timeout):
             async with self._turns:
                 require_temporary()
                 with tempfile.TemporaryDirectory(prefix="plan-cutters-mcp-") as folder:

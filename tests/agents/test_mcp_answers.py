@@ -302,7 +302,7 @@ def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
     from plan_cutters.scene.spacing import MOST, affordable
 
     part, asked = SimpleNamespace(file="part.step"), SimpleNamespace(grid=100, spacing=None)
-    assert child._environment(Limits(samples=9_999), [])[MOST] == "9999"
+    assert child._environment(Limits(most_samples=9_999), [])[MOST] == "9999"
     affordable(part, [1], asked)
     for said, why in (
         ("9999", "at most 1e\\+04 are taken"),
