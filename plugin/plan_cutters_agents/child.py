@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
-from typing import IO, Any, Protocol
+from typing import IO, Protocol
 
 import anyio
 from anyio.to_thread import run_sync
@@ -38,46 +38,6 @@ _GRACE = 3.0
 _OUTPUT, _LOG = 256 << 20, 1 << 20
 #: Environment variable by which the command knows how many samples it may take.
 MOST_SAMPLES = "PLAN_CUTTERS_MOST_SAMPLES"
-
-
-async def run(
-    words: Sequence[str],
-    cwd: Path,
-    limits: Limits,
-    tell: ProgressListener,
-    *,
-    within: Sequence[Path],
-    answers: Sequence[int] = (0, 1, 4),
-) -> tuple[bytes, int]:
-    """Run `plan-cutters` with some words; its standard output and its exit code.
-
-    It ends with this call, however that ends, and with this process. It reads files in the folders `within` alone, those that
-    are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
-    """
-    more = [] if limits.memory is None or words[0] != "plan" else [f"--memory={limits.memory!r}"]
-    name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
-    await tell(0.0, "starting")
-    # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
-    child = Child(command(name, [*words[1:], *more]), Assignment(parent=os.getpid()), environment=_environment(limits, within),
-                  cwd=cwd, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, bufsize=0)  # fmt: skip
-    output, errors = bytearray(), bytearray()
-    try:
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_collect, child.process.stdout, output)
-            tasks.start_soon(_listen, child.process.stderr, errors, tell)
-        code = await run_sync(child.process.wait, abandon_on_cancel=True)
-    finally:
-        # In order first, so that it takes away what it had begun to write.
-        with anyio.CancelScope(shield=True), child.process:
-            await run_sync(child.end, _GRACE)
-    if len(output) > _OUTPUT:
-        raise CallError("the answer of the command is too long: choose fewer faces or cutters")
-    faults = [line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line)]
-    if code not in answers:
-        # Without the command's name: faults of a call stand for themselves.
-        last = faults[-1].partition(": ")[2][:2000] if faults else f"the command ended with exit code {code} and wrote nothing"
-        raise CallError(last)
-    return bytes(output), code
 
 
 def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
@@ -115,13 +75,43 @@ class Call:
     cwd: Path
     tell: ProgressListener
 
-    async def _run(self, words: Sequence[str], **more: Any) -> tuple[bytes, int]:
-        more = {"within": self.permissions.roots.folders, **more}
-        return await run(words, self.cwd, self.permissions.limits, self.tell, **more)
+    async def _run(self, words: Sequence[str], *folders: Path, answers: Sequence[int] = (0, 1, 4)) -> tuple[bytes, int]:
+        """Run `plan-cutters` with some words; its standard output and its exit code.
+
+        It ends with this call, however that ends, and with this process. It reads files in the roots and in `folders` alone,
+        those that are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
+        """
+        limits, within = self.permissions.limits, (*self.permissions.roots.folders, *folders)
+        more = [] if limits.memory is None or words[0] != "plan" else [f"--memory={limits.memory!r}"]
+        name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
+        await self.tell(0.0, "starting")
+        # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
+        child = Child(command(name, [*words[1:], *more]), Assignment(parent=os.getpid()), cwd=self.cwd,
+                      environment=_environment(limits, within), stdin=DEVNULL, stdout=PIPE, stderr=PIPE, bufsize=0)  # fmt: skip
+        output, errors = bytearray(), bytearray()
+        try:
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(_collect, child.process.stdout, output)
+                tasks.start_soon(_listen, child.process.stderr, errors, self.tell)
+            code = await run_sync(child.process.wait, abandon_on_cancel=True)
+        finally:
+            # In order first, so that it takes away what it had begun to write.
+            with anyio.CancelScope(shield=True), child.process:
+                await run_sync(child.end, _GRACE)
+        if len(output) > _OUTPUT:
+            raise CallError("the answer of the command is too long: choose fewer faces or cutters")
+        faults = [line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line)]
+        if code not in answers:
+            # Without the command's name: faults of a call stand for themselves.
+            last = (
+                faults[-1].partition(": ")[2][:2000] if faults else f"the command ended with exit code {code} and wrote nothing"
+            )
+            raise CallError(last)
+        return bytes(output), code
 
     async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
-        output, code = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
+        output, code = await self._run(["plan", *words, "--json=-"], self.cwd)
         return plan_of(output, "the plan", CallError), code
 
     async def plan_in(self, file: str) -> Plan:
