@@ -31,6 +31,8 @@ from plan_cutters_ci.wording import called, cutter_rows, face_rows, headline, ma
 Entry = dict[str, Any]
 #: Which faces a change was judged on.
 About = Literal["this face", "all faces of the plan", "nothing"]
+_OF_WITNESSES = ("point", "face", "verdict", "reason", "obstacle_face", "obstacle_point", "best_posture", "depth_mm", "samples",
+                 "inside_bodies")  # fmt: skip
 #: Shares that differ by less are equal.
 _SAME = 1e-9
 #: A cutter by its radius or diameter, and its length.
@@ -125,13 +127,13 @@ class PlanDifferenceAnswer(Answer):
     unreachable: list[str] = Field(description="target faces of the new plan that no cutter reaches whole")
 
 
-def _fields(record: BaseModel, names: str) -> Entry:
-    """Some fields of a record, by their names."""
-    return {name: getattr(record, name) for name in names.split()}
+def _fields(record: BaseModel, *names: str) -> Entry:
+    """Some fields of a record."""
+    return {name: getattr(record, name) for name in names}
 
 
 def _missing(plan: Plan) -> list[Entry]:
-    return [_fields(each, "face name why") for each in plan.missing]
+    return [_fields(each, "face", "name", "why") for each in plan.missing]
 
 
 def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
@@ -140,7 +142,7 @@ def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     every = [*zip(codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
     more: Entry = {}
     if (process := plan.process) is not None:
-        more = {**_fields(process, "asked_mm2 finished_share seconds"), "steps": [_step(each) for each in process.steps],
+        more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
                 "left": [_remaining(each) for each in process.left]}  # fmt: skip
     notes = [{"code": code, "text": text} for code, text in every]
     return PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
@@ -151,17 +153,17 @@ def _step(step: ProcessStep) -> Entry:
     own = None
     if step.own is not None:
         near = step.own.nearest
-        own = _fields(step.own, "number text asked_mm2 wrong") | {
+        own = _fields(step.own, "number", "text", "asked_mm2", "wrong") | {
             "leaves": [_remaining(each) for each in step.own.leaves],
-            "nearest": None if near is None else {"angles": near.angles_deg, **_fields(near, "axis area_mm2")},
+            "nearest": None if near is None else {"angles": near.angles_deg, **_fields(near, "axis", "area_mm2")},
         }
     axis = step.axis if step.angles_deg is None else None
-    return {"setup": step.setup + 1, "mode": step.mode, "angles": step.angles_deg, "axis": axis,
-            **_fields(step, "cutter faces take area_mm2 share alone_mm2 seconds clearance_mm"), "own": own}  # fmt: skip
+    more = _fields(step, "cutter", "faces", "take", "area_mm2", "share", "alone_mm2", "seconds", "clearance_mm")
+    return {"setup": step.setup + 1, "mode": step.mode, "angles": step.angles_deg, "axis": axis, **more, "own": own}
 
 
 def _remaining(area: RemainingEntry) -> Entry:
-    return _fields(area, "cause area_mm2 share faces place_mm needs")
+    return _fields(area, "cause", "area_mm2", "share", "faces", "place_mm", "needs")
 
 
 def compared(plan: Plan, code: int) -> Comparison:
@@ -174,8 +176,8 @@ def compared(plan: Plan, code: int) -> Comparison:
     widest = sorted(rows.items(), key=lambda row: min(row[1].values()) - max(row[1].values()))
     together = None
     if (least := plan.least_set) is not None:
-        runs = [_fields(each, "cutter setup share samples") for each in least.runs]
-        together = {"runs": runs, **_fields(least, "share left_share proven")}
+        runs = [_fields(each, "cutter", "setup", "share", "samples") for each in least.runs]
+        together = {"runs": runs, **_fields(least, "share", "left_share", "proven")}
     differ = [{"face": face, "reached": shares} for face, shares in widest]
     return Comparison(**_of_plan(plan, code), differ=differ, together=together)
 
@@ -194,10 +196,10 @@ def ranked(plan: Plan) -> list[CutterEntry]:
 def _of_plan(plan: Plan, code: int) -> Entry:
     text = plan.text or text_of(plan)
     # Given as `spacing_mm` in each call, the widest spacing makes the samples of all calls the same.
-    sampling = _fields(plan.effective, "spacing_mm sampled_by")
+    sampling = _fields(plan.effective, "spacing_mm", "sampled_by")
     return {
         "part": plan.part.file or "", "told": "\n".join([text.headline, *text.lines]), "exit_code": code,
-        "samples": {"count": plan.samples.count, **sampling, **_fields(plan.samples, "max_gap_mm unjudged inside_bodies")},
+        "samples": {"count": plan.samples.count, **sampling, **_fields(plan.samples, "max_gap_mm", "unjudged", "inside_bodies")},
         "selected": plan.selected or plan.selected_over_setups,
         "cutters": [_cutter(plan, c, text.cutters[c.id]) for c in ranked(plan)],
         "not_judged": [{"code": f.id, "text": f.unjudged} for f in plan.faces if f.target and f.unjudged],
@@ -211,7 +213,7 @@ def _cutter(plan: Plan, c: CutterEntry, text: str) -> Entry:
     faces = [{"face": name, "share": -share, "reason": main_reason(c.faces[name].area_share) or None} for share, name in by_face]
     return {
         "id": c.id, "name": c.name, "text": text, "feasible": c.feasible, "seen": c.seen,
-        **_fields(c.area_share, "reached inaccessible undecided"), "lost_by": dict(by_share(c.area_share.lost_by)),
+        **_fields(c.area_share, "reached", "inaccessible", "undecided"), "lost_by": dict(by_share(c.area_share.lost_by)),
         "faces": faces, "next": next(iter(_helps(plan, c)), None),
     }  # fmt: skip
 
@@ -264,10 +266,7 @@ def explained(
             for code, part in by_share(counts.area_share.lost_by)
         ],
         in_the_way=[each._asdict() for each in in_the_way(mine)],
-        witnesses=[
-            _fields(each, "point face verdict reason obstacle_face obstacle_point best_posture depth_mm samples inside_bodies")
-            for each in mine
-        ],
+        witnesses=[_fields(each, *_OF_WITNESSES) for each in mine],
         would_help=changes, help_is_about=about, no_help=unhelped, postures=postures, sample=sample, missing=_missing(plan),
     )  # fmt: skip
 

@@ -110,9 +110,9 @@ def _holders(request: ToolsRequest) -> int:
     """The built-in holders: listed, and drawn where that is requested."""
     from plan_cutters.library.words import pinned, standard
 
-    given = {"cutter": request.cutters, "holder": request.holder, "assume-stickout": request.assume_stickout,
+    named = {"cutter": request.cutters, "holder": request.holder, "assume-stickout": request.assume_stickout,
              "to-toml": request.to_toml}  # fmt: skip
-    others = [*request.files, *(f"--{word}" for word, value in given.items() if value)]
+    others = [*request.files, *(f"--{word}" for word, value in named.items() if value)]
     if others:
         raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {others[0]}")
     if request.draw is not None:
