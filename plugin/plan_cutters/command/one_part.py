@@ -62,10 +62,7 @@ def one_part(
     interrupts: list[int] = []
     try:
         watch.tell("start", 0, 1)
-        # Machine code is made meanwhile where there is none.
-        compiling = background_compile(options.posture_maps) if options.jobs > 1 else None
-        if compiling is not None and not request.quiet:
-            terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
+        compiling = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.interim import Interim
@@ -80,7 +77,7 @@ def one_part(
         source = pickle.loads(handed) if handed else part
         # A batch takes the output away: files are named as where they will be, or not at all.
         planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work,
-                          compiling=compiling or (lambda entry: None), excluded=omitted, interim=interim,
+                          compiling=compiling, excluded=omitted, interim=interim,
                           folder="" if out is None or assignment().job is not None else str(out),
                           cache=StageCache.of_user() if request.cache else None)  # fmt: skip
         try:
@@ -91,10 +88,7 @@ def one_part(
             # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
             from plan_cutters.document.notes import noted_coarser
 
-            coarser = copy.copy(options)  # past the checks
-            for word in ("spacing", "grid"):
-                object.__setattr__(coarser, word, None)
-            result = planned(coarser, remark=partial(noted_coarser, options))
+            result = planned(_default_density(options), remark=partial(noted_coarser, options))
         except (Exception, KeyboardInterrupt) as error:
             if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
                 raise
@@ -149,6 +143,22 @@ def _interrupted(out: Path | None) -> tuple[int, str]:
 def _tells(request: "PlanRequest") -> Callable[..., None]:
     """What tells results: where a program reads the plan on standard output, nothing else is written there."""
     return terminal.say if request.json_out == "-" else terminal.show
+
+
+def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
+    """Let machine code be made meanwhile where there is none, and say so; what waits for an entry of it."""
+    wait = background_compile(options.posture_maps) if options.jobs > 1 else None
+    if wait is not None and not quiet:
+        terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
+    return wait or (lambda entry: None)
+
+
+def _default_density(options: "Options") -> "Options":
+    """The same options with the default density of samples, in place of a spacing or a grid: a copy past the checks."""
+    made = copy.copy(options)
+    for word in ("spacing", "grid"):
+        object.__setattr__(made, word, None)
+    return made
 
 
 class ProgressListener:
