@@ -29,7 +29,7 @@ from plan_cutters.judging.phases import march_differs
 from plan_cutters.judging.posture_maps import posture_maps
 from plan_cutters.judging.reasons import Explained, Reasons, exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.witness import witnesses
-from plan_cutters.options import EFFORT
+from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest

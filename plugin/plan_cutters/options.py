@@ -5,26 +5,29 @@ import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack, cast
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
-from plan_cutters.domain.checks import Angle, choice, degrees_too, did_you_mean, flag, not_empty, number, shown, whole
+from plan_cutters.domain.checks import choice, did_you_mean, flag, not_empty, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.dimensions import notation
+from plan_cutters.domain.default_tools import builtin
+from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.host_axes import HostAxis, HostPlane
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
-from plan_cutters.domain.own_process import OwnProcess, operations_requested
+from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
+from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
-from plan_cutters.domain.standard_tools import builtin
+from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
-from plan_cutters.machines.read import process_requested
+from plan_cutters.machines.requested_operations import operations_requested, process_requested
+from plan_cutters.option_table import OPTIONS, Option
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
 #: Axes of the part by name; `auto`: the setups that the plan proposes.
@@ -32,10 +35,8 @@ SetupWord = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "X", "+X"
 #: A text is a word: type checkers find those that are none. A setup file is a path.
 Setup = SetupWord | HostAxis | Iterable[float] | HostPlane | Placement | os.PathLike[str]
 #: Options that are angles, and what each may be in degrees.
-ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_step": Angle(0.5, 90.0),
-          "axis_accuracy": Angle(0.0, 1.0)}  # fmt: skip
-
-
+ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP}
+ANGLES |= {word: Angle(*limits[:2]) for word in ("index_step", "axis_accuracy") if (limits := OPTIONS[word].limits)}
 #: What calls take beside options: it may be meant where a name is mistyped.
 OF_CALLS = ("part", "progress", "cache")
 #: Words of options that take no other text.
@@ -112,37 +113,6 @@ class PlanOptions(SceneOptions, total=False):
     propose: bool
 
 
-#: Gouge tolerances that can be requested, mm.
-LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
-#: Whether strips at sharp inside edges that no cutter enters are required.
-SHARP_EDGES = ("asked", "left")
-#: How much work each stage after the verdicts may take, in what it may take by itself.
-EFFORT: Mapping[str, float] = {"quick": 0.2, "normal": 1.0, "thorough": 5.0}
-#: Accuracy of rotary axes that state none, rad.
-_ACCURACY = math.radians(0.05)
-#: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
-_LONGEST, _MOST_JOBS = 1e6, 1024
-#: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
-_RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1, 1e6, "mm/min"),
-             "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
-             "index_step": (0.5, 90.0, "deg"), "axis_accuracy": (0.0, 1.0, "deg"), "index_time": (0.0, 1e5, "s"),
-             "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "link_time": (0.0, 1e4, "s"),
-             "overlap": (0.0, 1e3, "mm"), "border_cost": (0.0, 1e3, "s/mm")}  # fmt: skip
-#: The least and the largest value of the other numbers, and what is said of one beyond them.
-_LIMITS = {
-    "grid": (2, 5000, "must lie between 2 and 5000 samples a side"),
-    "spacing": (math.ulp(0.0), _LONGEST, f"must be a positive number of mm, at most {_LONGEST:g}"),
-    "allowance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
-    "holder_clearance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
-    "length_over_radius": (1.0, 1000.0, "must lie between 1 and 1000"),
-    "area_budget": (0, math.inf, "must not be negative"),
-    "map_budget": (1, math.inf, "must be at least 1 sample"),
-    "most_operations": (1, math.inf, "must be at least 1"),
-    "max_orientations": (1, math.inf, "must be at least 1"),
-    "jobs": (1, _MOST_JOBS, f"must be at least 1 and at most {_MOST_JOBS}"),
-}
-
-
 def machine_option(value: Any) -> Machine:
     """A machine, or what a text names: a file is read only where it is none of the names."""
     if isinstance(value, str | os.PathLike) and value != "unlimited":
@@ -159,27 +129,61 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+#: Accuracy of rotary axes that state none, rad.
+_ACCURACY = math.radians(0.05)
 #: Contacts between the samples unless a number is requested: so many for each sample, and at most.
 _BETWEEN, _MOST_BETWEEN = 24, 100_000
+_Class = TypeVar("_Class")
+
+
+def _within_limits(value: Any, option: Option) -> float:
+    """A number that an option may have."""
+    what = option.word.replace("_", " ")
+    checked = number(value, what) if option.kind is float else whole(value, what)
+    # Angles are rad here, and degrees where they are requested and read.
+    shown_value = math.degrees(checked) if option.unit == "deg" else checked
+    low, high, *must = option.limits or (-math.inf, math.inf)
+    if not low <= shown_value <= high:
+        written = shown_value if isinstance(shown_value, int) else f"{shown_value:g}"
+        why = must[0] if must else f"must lie between {low:g} and {high:,.9g} {option.unit}"
+        raise OptionError(f"{what} {written} {why}")
+    return checked
+
+
+#: Defaults that are none of the command line.
+_DEFAULTS: dict[str, Any] = {
+    "machine": field(default_factory=Machine), "setup": (0.0, 0.0, 1.0), "other_setups": (), "faces": None, "tilt": None,
+    "rotation": (0.0, 2 * math.pi), "jobs": field(default_factory=cores), "answers": (), "placement": None,
+    "other_placements": (), "propose": False,
+}  # fmt: skip
+
+
+def _with_defaults(made: type[_Class]) -> type[_Class]:
+    """Give attributes their defaults: these, or those of the command line, angles in radians."""
+    values = {
+        each.word: math.radians(x) if (x := each.default) is not None and each.unit == "deg" else x for each in OPTIONS.values()
+    }
+    for word, default in {**values, **_DEFAULTS}.items():
+        setattr(made, word, default)
+    return made
 
 
 @degrees_too(ANGLES)
 @dataclass(frozen=True, slots=True)
+@_with_defaults
 class Options:
-    """Options of a plan. Lengths mm, angles rad; degrees as `tilt_deg`, `rotation_deg`, `rotation_step_deg`, `index_step_deg`,
-    `axis_accuracy_deg`.
+    """Options of a plan: as on the command line, whose help says what each means. Lengths mm, angles rad; degrees as `tilt_deg`,
+    `rotation_deg`, `rotation_step_deg`, `index_step_deg`, `axis_accuracy_deg`.
 
     Attributes
     ----------
-    cutters : tuple of Cutter
-        May be given as one cutter or a list, and texts such as `R6L80` for cutters, or as one library. Empty, and no libraries:
-        the built-in ones.
-    libraries : tuple of Library
-        Tool libraries, as `library.read_library` reads them, whose cutters are judged, too; may be given as one.
+    cutters, libraries : tuple of Cutter, tuple of Library
+        Those of libraries (`library.read_library`) are judged, too. May be given as one cutter, text such as `R6L80` or library,
+        or as a list. Neither: the built-in cutters.
     holder : Holder, optional
         Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float
-        Stock left on the surface, and clearance required of neck, shank and holder, for cutters that do not say so themselves.
+        For cutters that do not say so themselves.
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
@@ -190,84 +194,32 @@ class Options:
     other_setups : tuple of (float, float, float)
         More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`. May be given in
         the same ways, with fixtures and clamped faces of their own.
-    faces : str or objects, optional
-        Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
-        the faces picked on the object that the part was made from; where none were, `sculptured,blends`.
-    ignore : str, list of str or objects
-        Faces that are neither targets nor obstacles, in the same words.
-    grid : int, optional
-        N x N samples a face.
-    spacing : float, optional
-        Largest distance between samples. Neither: from curvature, smallest cutter and a budget.
+    faces, ignore : str, list of str or objects
+        Target faces, and faces that are neither targets nor obstacles, in the words of the command line, or as numbers, or as
+        objects of the kernel or a CAD host. Default: the faces picked on the object that the part was made from; where none
+        were, `sculptured,blends`.
     tilt, rotation : tuple of float
         Tilts within 0 to pi, by default to pi/2 or as far as a cutter touches; rotations from the direction of largest curvature.
-    rotation_step : float
-    tolerance : float
-        Gouge tolerance.
-    jobs : int
-        Threads. None: as many as there are cores.
-    flip : bool
-        Machine the other side of open shells and loose faces.
-    area_budget : int, optional
-        Most contacts to look at between the samples for the selected cutter; 0: none. None: 24 for each sample, at most
-        100,000.
-    posture_maps : bool
-        Find every free tilt of every sample, too, for the cutter that the models show.
-    map_budget : int, optional
-        Most samples whose postures are mapped, evenly spread; the others are undecided at every tilt. None: as many as some
-        minutes allow.
     answers : tuple of str
-        What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
-    length_over_radius : float
-        Of the bare flat and ball ends whose largest radius is requested.
-    operations : str, optional
-        `fewest`, `fastest` or `both`: plan operations with fixed orientations, by their number, by their time, or both.
-    feed : float, optional
-        Of all cutters, mm/min; None: that of a library's finishing preset, and without one there are lengths and no times.
-    scallop, stepover : float
-        Height of the cusps between passes, mm, and the widest distance of passes, in diameters.
-    index_step : float, optional
-        Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
+        Of `domain.answers.ANSWERS`, or `all`; may be given as one text.
     axis_accuracy : float, optional
-        Of the rotary axes, rad: orientations of one setup that are nearer than this are one; floors and walls that are off the
-        tool axis by no more are square to it or along it. None: that of the machine's least accurate rotary axis, where its
-        file states one, else 0.05 deg.
-    index_time : float, optional
-        Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
-    change_time, setup_time : float
-        Seconds that another cutter and another setup take.
-    overlap : float
-        Width by which operations overlap at a common border, mm.
-    link_time : float
-        Seconds from the end of a pass to the next one.
+        None: that of the machine's least accurate rotary axis, where its file states one, else 0.05 deg.
     border_cost : float
-        Seconds that each mm of a border between two operations on a face that is bent in both directions counts where plans are
-        compared: the border shows as a mark. They are no part of the times that are written.
-    most_operations : int, optional
-        Fixed orientations at most: the rest is left to simultaneous motion.
-    sharp_edges : str
-        `left`: strips at sharp inside edges that no cutter enters are not required; else `asked`.
+        Seconds a mm, where plans are compared: the border shows as a mark. They are no part of the times that are written.
     effort : str
-        `quick`, `normal` or `thorough`: how much work advice and proofs after the verdicts may take (`EFFORT`). Verdicts and the
-        test of each step of a plan are the same with any.
+        How much work advice and proofs after the verdicts may take (`option_table.EFFORT`). Verdicts and the test of each step of
+        a plan are the same with any.
     max_orientations : int
-        Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
-        where `most_operations` is given.
+        Without effect where `most_operations` is given.
     process : OwnProcess, optional
         The planner's own steps, as a file or a mapping too; the rest is planned by `operations`, else the fastest or the fewest.
     patterns : bool
         Equal faces are judged once and planned once.
-    units : str, optional
-        Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
-    unit : str, optional
-        Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
         What holds the part: obstacles, never targets. May be given as texts such as `vise.step@0,0,-20` or `table:-5`, as
         trimesh meshes and shapes of a kernel or CAD host, or as one of these. Those that no setup file names stand in all setups.
-    placement : Placement, optional
-        How the part stands in `setup`, where more than the axis is known.
-    other_placements : tuple of (Placement or None)
-        The same of each of `other_setups`; empty where none says more than its axis.
+    placement, other_placements : Placement, optional, and tuple of them
+        How the part stands in `setup`, and in each of `other_setups`, where more than the axis is known.
     propose : bool
         The setups are to be proposed: as `setup="auto"` says it.
 
@@ -287,53 +239,53 @@ class Options:
     plan_cutters.errors.OptionError: grid 1 must lie between 2 and 5000 samples a side
     """
 
-    cutters: tuple[Cutter, ...] = ()
-    libraries: tuple[Library, ...] = ()
-    holder: Holder | None = None
-    allowance: float = 0.0
-    holder_clearance: float = 0.0
-    machine: Machine = field(default_factory=Machine)
-    setup: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    other_setups: tuple[tuple[float, float, float], ...] = ()
-    faces: Any = None
-    ignore: Any = ()
-    grid: int | None = None
-    spacing: float | None = None
-    tilt: tuple[float, float] = cast("tuple[float, float]", None)
-    rotation: tuple[float, float] = (0.0, 2 * math.pi)
-    rotation_step: float = math.radians(10)
-    tolerance: float = 0.01
-    jobs: int = field(default_factory=cores)
-    flip: bool = False
-    area_budget: int | None = None
-    posture_maps: bool = False
-    map_budget: int | None = None
-    answers: tuple[Answer, ...] = ()
-    length_over_radius: float = 10.0
-    operations: Operations | None = None
-    feed: float | None = None
-    scallop: float = 0.01
-    stepover: float = 0.75
-    index_step: float | None = None
-    axis_accuracy: float | None = None
-    index_time: float | None = None
-    change_time: float = 20.0
-    setup_time: float = 300.0
-    overlap: float = 2.0
-    link_time: float = 1.0
-    border_cost: float = 0.05
-    most_operations: int | None = None
-    sharp_edges: SharpEdges = "asked"
-    effort: Effort = "normal"
-    max_orientations: int = 8
-    process: OwnProcess | None = None
-    patterns: bool = True
-    units: Literal["mm", "in"] | None = None
-    unit: str | None = None
-    fixtures: tuple[Fixture, ...] = ()
-    placement: Placement | None = None
-    other_placements: tuple[Placement | None, ...] = ()
-    propose: bool = False
+    cutters: tuple[Cutter, ...]
+    libraries: tuple[Library, ...]
+    holder: Holder | None
+    allowance: float
+    holder_clearance: float
+    machine: Machine
+    setup: tuple[float, float, float]
+    other_setups: tuple[tuple[float, float, float], ...]
+    faces: Any
+    ignore: Any
+    grid: int | None
+    spacing: float | None
+    tilt: tuple[float, float]
+    rotation: tuple[float, float]
+    rotation_step: float
+    tolerance: float
+    jobs: int
+    flip: bool
+    area_budget: int | None
+    posture_maps: bool
+    map_budget: int | None
+    answers: tuple[Answer, ...]
+    length_over_radius: float
+    operations: Operations | None
+    feed: float | None
+    scallop: float
+    stepover: float
+    index_step: float | None
+    axis_accuracy: float | None
+    index_time: float | None
+    change_time: float
+    setup_time: float
+    overlap: float
+    link_time: float
+    border_cost: float
+    most_operations: int | None
+    sharp_edges: SharpEdges
+    effort: Effort
+    max_orientations: int
+    process: OwnProcess | None
+    patterns: bool
+    units: Literal["mm", "in"] | None
+    unit: str | None
+    fixtures: tuple[Fixture, ...]
+    placement: Placement | None
+    other_placements: tuple[Placement | None, ...]
+    propose: bool
 
     if TYPE_CHECKING:
 
@@ -345,7 +297,6 @@ class Options:
             raise OptionError("give a grid or a spacing, not both")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
-        self._check_numbers()
         if self.operations is not None or self.process is not None:
             setups = MOST_PROPOSED if self.propose else 1 + len(self.other_setups)
             which = operations_requested(self.operations, self.process, self.judged, self.feeds, self.machine, setups)
@@ -354,19 +305,6 @@ class Options:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
         object.__setattr__(self, "tilt", (0.0, largest_tilt(self.judged)) if self.tilt is None else self.tilt)
-
-    def _check_numbers(self) -> None:
-        """Every number within its limits."""
-        for word, (low, high, must) in _LIMITS.items():
-            value = getattr(self, word)
-            if value is not None and not low <= value <= high:
-                written = value if isinstance(value, int) else f"{value:g}"
-                raise OptionError(f"{word.replace('_', ' ')} {written} {must}")
-        for word, (low, high, unit_) in _RECKONED.items():
-            value = getattr(self, word)
-            # Angles are rad here, and degrees where they are requested and read.
-            if value is not None and not low <= (value := math.degrees(value) if unit_ == "deg" else value) <= high:
-                raise OptionError(f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}")
 
     def _check_kinds(self) -> None:
         """Every value of the type that its attribute says."""
@@ -383,33 +321,18 @@ class Options:
         take(machine=machine_option(self.machine))
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
                             propose=flag(self.propose, "propose")))  # fmt: skip
-        take(tolerance=number(self.tolerance, "tolerance"))
-        take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
-        for word in ("area_budget", "map_budget", "most_operations", "grid"):
-            if getattr(self, word) is not None:
-                take(**{word: whole(getattr(self, word), word.replace("_", " "))})
-        take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
-        take(patterns=flag(self.patterns, "patterns"))
-        take(answers=answers_of(self.answers), operations=operations_of(self.operations))
-        if self.sharp_edges not in SHARP_EDGES:
-            raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
-        if self.effort not in tuple(EFFORT):
-            raise OptionError(f"effort: {shown(self.effort)} is none of {', '.join(EFFORT)}")
-        if self.units not in (None, "mm", "in"):
-            raise OptionError(f"units: {shown(self.units)} is none of mm, in")
-        take(process=process_requested(self.process))
-        take(max_orientations=whole(self.max_orientations, "max orientations"))
-        for word in _RECKONED:
-            if getattr(self, word) is not None:
-                take(**{word: number(getattr(self, word), word.replace("_", " "))})
-        take(length_over_radius=number(self.length_over_radius, "length over radius"))
-        take(allowance=number(self.allowance, "allowance"))
-        take(holder_clearance=number(self.holder_clearance, "holder clearance"))
-        take(holder=None if self.holder is None else Holder.of(self.holder))
+        take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=process_requested(self.process))
+        take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
+        for word, each in OPTIONS.items():
+            value = getattr(self, word)
+            if each.kind is bool:
+                take(**{word: flag(value, word)})
+            elif each.limits is not None and (value is not None or each.default is not None):
+                take(**{word: _within_limits(value, each)})
+            elif word in ("sharp_edges", "effort", "units") and value != each.default and value not in each.choices:
+                raise OptionError(f"{word.replace('_', ' ')}: {shown(value)} is none of {', '.join(each.choices)}")
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
-        if self.spacing is not None:
-            take(spacing=number(self.spacing, "spacing"))
         if self.unit is not None and not isinstance(self.unit, str):
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
         postures = self.postures

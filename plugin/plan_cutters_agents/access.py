@@ -5,10 +5,13 @@ import stat
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote, urlsplit
 
 from plan_cutters.errors import PlanError
-from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
+
+if TYPE_CHECKING:
+    from plan_cutters_agents.requests import Conditions, MapQuestion, PartQuestion
 
 
 class CallError(PlanError):
@@ -20,19 +23,19 @@ class Limits:
     """Largest values of a call."""
 
     #: Size of a file that is read, millions of bytes.
-    file_mb: float = 200.0
+    most_mb: float = 200.0
     #: Samples of a plan, all target faces together.
-    samples: int = 200_000
+    most_samples: int = 200_000
     #: Cutters of a call, those of a library included.
-    cutters: int = 50
+    most_cutters: int = 50
     #: Of a call, by the clock, waiting for its turn included.
-    seconds: float = 900.0
+    timeout: float = 900.0
     #: Of an answer, as JSON. Lists are cut until it fits.
-    characters: int = 40_000
+    most_characters: int = 40_000
     #: That work at the same time; the others wait.
     calls: int = 2
     #: Of each process; None: what the command takes by default.
-    memory_gb: float | None = None
+    memory: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +113,20 @@ def _folder(path: str | os.PathLike[str]) -> Path | None:
     return there if there.is_dir() else None
 
 
+def spelled(**values: Any) -> list[str]:
+    """Options as a command line has them: flags, numbers and texts, each of a list; nothing for None and False.
+
+    >>> spelled(flip=True, grid=None, rotation_step=5.0, setup=["+z", "-y"])
+    ['--flip', '--rotation-step=5.0', '--setup=+z', '--setup=-y']
+    """
+    words = []
+    for name, value in values.items():
+        for each in value if isinstance(value, list) else [] if value is None or value is False else [value]:
+            text = "" if each is True else f"={each}"
+            words.append(f"--{name.replace('_', '-')}{text}")
+    return words
+
+
 @dataclass(frozen=True)
 class Permissions:
     """A call may read and write here, and cost so much: questions become words of the command, with files in roots alone."""
@@ -119,43 +136,40 @@ class Permissions:
 
     def file(self, text: str) -> str:
         """The path of a file that may be read."""
-        return str(self.roots.file(text, self.limits.file_mb))
+        return str(self.roots.file(text, self.limits.most_mb))
 
-    def conditions(self, question: Conditions) -> list[str]:
+    def conditions(self, question: "Conditions") -> list[str]:
         """Words for what cutters are judged under, without the cutters."""
-        options = [
-            f"--tolerance={question.tolerance_mm!r}",
-            f"--allowance={question.allowance_mm!r}",
-            f"--holder-clearance={question.holder_clearance_mm!r}",
-            f"--machine={self._machine(question.machine)}",
-        ]
-        options += [f"--cutters={self.file(question.library)}"] if question.library is not None else []
-        options += [f"--holder={self._holder(question.holder)}"] if question.holder is not None else []
-        options += [f"--fixture={self._fixture(each)}" for each in question.fixtures]
-        options += [f"--ignore={each}" for each in question.ignore]
-        options += [f"--unit={question.unit}"] if question.unit is not None else []
-        return options + ["--flip"] * question.flip
+        return spelled(
+            tolerance=question.tolerance_mm,
+            allowance=question.allowance_mm,
+            holder_clearance=question.holder_clearance_mm,
+            machine=self._machine(question.machine),
+            cutters=None if question.library is None else self.file(question.library),
+            holder=None if question.holder is None else self._holder(question.holder),
+            fixture=[self._fixture(each) for each in question.fixtures],
+            ignore=question.ignore,
+            unit=question.unit,
+            flip=question.flip,
+        )
 
-    def part(self, question: PartQuestion) -> list[str]:
+    def part(self, question: "PartQuestion") -> list[str]:
         """Words for a part, its cutters and their conditions."""
-        if len(question.cutters) > self.limits.cutters:
+        if len(question.cutters) > self.limits.most_cutters:
             raise CallError(
-                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
+                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.most_cutters} in a call"
             )
         # The area between the samples is not looked at.
-        options = [self.file(question.part), *self.conditions(question), "--area-budget=0", f"--faces={question.faces}"]
-        options += [f"--grid={question.grid}"] if question.grid is not None else []
-        options += [f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else []
-        options += [f"--cutter={each}" for each in question.cutters]
-        return options + [f"--setup={each}" for each in question.setup]
+        words = spelled(area_budget=0, faces=question.faces, grid=question.grid, spacing=question.spacing_mm,
+                        cutter=question.cutters, setup=question.setup)  # fmt: skip
+        return [self.file(question.part), *self.conditions(question), *words]
 
-    def map(self, question: MapQuestion) -> list[str]:
+    def map(self, question: "MapQuestion") -> list[str]:
         """Words for a posture map."""
-        at = ",".join(repr(x) for x in question.point)
-        words = [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
-                 f"--cutter={question.cutter}", f"--setup={question.setup}",
-                 f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
-        return words if question.tilt_deg is None else [*words, "--tilt={!r}:{!r}".format(*question.tilt_deg)]
+        tilt = None if question.tilt_deg is None else "{!r}:{!r}".format(*question.tilt_deg)
+        words = spelled(at=",".join(map(repr, question.point)), within=question.within_mm, cutter=question.cutter,
+                        setup=question.setup, rotation_step=question.rotation_step_deg, tilt=tilt)  # fmt: skip
+        return [self.file(question.part), *self.conditions(question), *words]
 
     def _machine(self, text: str) -> str:
         from plan_cutters.domain.machine import builtin_machines
@@ -185,14 +199,11 @@ class Permissions:
         return self.file(text)
 
     def _fixture(self, text: str) -> str:
-        from dataclasses import replace
-
         from plan_cutters.domain.fixture import Fixture
 
         fixture = Fixture.parse(text)
         if fixture.kind:
             return text
-        placed = replace(fixture, source=self.file(fixture.source), placement=fixture.placement)
         # Placement and unit are said, so that nothing in the path of a root is taken for them.
-        where = ",".join(repr(x) for x in placed.placement)
-        return f"{placed.source}@{where}{f':{placed.unit}' if placed.unit else ''}"
+        where = ",".join(map(repr, fixture.placement))
+        return f"{self.file(fixture.source)}@{where}{f':{fixture.unit}' if fixture.unit else ''}"

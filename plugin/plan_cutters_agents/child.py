@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
-from typing import IO, Any, Protocol
+from typing import IO, Protocol
 
 import anyio
 from anyio.to_thread import run_sync
@@ -16,8 +16,8 @@ from plan_cutters.files.pictures import draws_pictures
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters_agents.access import CallError, Limits, Permissions
+from plan_cutters_agents.outputs import tools_in
 from plan_cutters_agents.requests import MapQuestion
-from plan_cutters_agents.shop import tools_in
 from plan_cutters_base.user_files import WITHIN
 from plan_cutters_base.workers.assignment import Assignment
 from plan_cutters_base.workers.child import Child, command
@@ -40,49 +40,9 @@ _OUTPUT, _LOG = 256 << 20, 1 << 20
 MOST_SAMPLES = "PLAN_CUTTERS_MOST_SAMPLES"
 
 
-async def run(
-    words: Sequence[str],
-    cwd: Path,
-    limits: Limits,
-    tell: ProgressListener,
-    *,
-    within: Sequence[Path],
-    answers: Sequence[int] = (0, 1, 4),
-) -> tuple[bytes, int]:
-    """Run `plan-cutters` with some words; its standard output and its exit code.
-
-    It ends with this call, however that ends, and with this process. It reads files in the folders `within` alone, those that
-    are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
-    """
-    more = [] if limits.memory_gb is None or words[0] != "plan" else [f"--memory={limits.memory_gb!r}"]
-    name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
-    await tell(0.0, "starting")
-    # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
-    child = Child(command(name, [*words[1:], *more]), Assignment(parent=os.getpid()), environment=_environment(limits, within),
-                  cwd=cwd, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, bufsize=0)  # fmt: skip
-    output, errors = bytearray(), bytearray()
-    try:
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_collect, child.process.stdout, output)
-            tasks.start_soon(_listen, child.process.stderr, errors, tell)
-        code = await run_sync(child.process.wait, abandon_on_cancel=True)
-    finally:
-        # In order first, so that it takes away what it had begun to write.
-        with anyio.CancelScope(shield=True), child.process:
-            await run_sync(child.end, _GRACE)
-    if len(output) > _OUTPUT:
-        raise CallError("the answer of the command is too long: choose fewer faces or cutters")
-    faults = [line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line)]
-    if code not in answers:
-        # Without the command's name: faults of a call stand for themselves.
-        last = faults[-1].partition(": ")[2][:2000] if faults else f"the command ended with exit code {code} and wrote nothing"
-        raise CallError(last)
-    return bytes(output), code
-
-
 def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
     folders = json.dumps([*map(str, within)])
-    return {**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
+    return {**os.environ, MOST_SAMPLES: str(limits.most_samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
 
 
 async def _pieces(pipe: IO[bytes] | None) -> AsyncIterator[bytes]:
@@ -115,13 +75,43 @@ class Call:
     cwd: Path
     tell: ProgressListener
 
-    async def _run(self, words: Sequence[str], **more: Any) -> tuple[bytes, int]:
-        more = {"within": self.permissions.roots.folders, **more}
-        return await run(words, self.cwd, self.permissions.limits, self.tell, **more)
+    async def _run(self, words: Sequence[str], *folders: Path, answers: Sequence[int] = (0, 1, 4)) -> tuple[bytes, int]:
+        """Run `plan-cutters` with some words; its standard output and its exit code.
+
+        It ends with this call, however that ends, and with this process. It reads files in the roots and in `folders` alone,
+        those that are named by files, too. Where its exit code is none of `answers`, its own last line is raised as a CallError.
+        """
+        limits, within = self.permissions.limits, (*self.permissions.roots.folders, *folders)
+        more = [] if limits.memory is None or words[0] != "plan" else [f"--memory={limits.memory!r}"]
+        name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
+        await self.tell(0.0, "starting")
+        # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
+        child = Child(command(name, [*words[1:], *more]), Assignment(parent=os.getpid()), cwd=self.cwd,
+                      environment=_environment(limits, within), stdin=DEVNULL, stdout=PIPE, stderr=PIPE, bufsize=0)  # fmt: skip
+        output, errors = bytearray(), bytearray()
+        try:
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(_collect, child.process.stdout, output)
+                tasks.start_soon(_listen, child.process.stderr, errors, self.tell)
+            code = await run_sync(child.process.wait, abandon_on_cancel=True)
+        finally:
+            # In order first, so that it takes away what it had begun to write.
+            with anyio.CancelScope(shield=True), child.process:
+                await run_sync(child.end, _GRACE)
+        if len(output) > _OUTPUT:
+            raise CallError("the answer of the command is too long: choose fewer faces or cutters")
+        faults = [line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line)]
+        if code not in answers:
+            # Without the command's name: faults of a call stand for themselves.
+            last = (
+                faults[-1].partition(": ")[2][:2000] if faults else f"the command ended with exit code {code} and wrote nothing"
+            )
+            raise CallError(last)
+        return bytes(output), code
 
     async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
-        output, code = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
+        output, code = await self._run(["plan", *words, "--json=-"], self.cwd)
         return plan_of(output, "the plan", CallError), code
 
     async def plan_in(self, file: str) -> Plan:
@@ -142,11 +132,9 @@ class Call:
     async def tools_of(self, library: str) -> list[tuple[str, str]]:
         """Id and name of each cutter of a library that may be judged; a CallError where there are too many."""
         rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
-        libraries = [(each.id, each.name) for each in rows]
-        if len(libraries) > self.permissions.limits.cutters:
-            raise CallError(
-                f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
-                "make a library of those in question",
-                file=library,
-            )
+        libraries = [(each["id"], each["name"]) for each in rows]
+        most = self.permissions.limits.most_cutters
+        if len(libraries) > most:
+            why = f"lists {len(libraries)} cutters, and this server judges at most {most} in a call"
+            raise CallError(f"{why}: make a library of those in question", file=library)
         return libraries

@@ -13,6 +13,7 @@ from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.validation import Folder
+from plan_cutters_agents.access import Limits
 from plan_cutters_base.workers.assignment import INTERRUPTED
 
 _SELF = "plan-cutters mcp"
@@ -21,18 +22,11 @@ _access, _limits = heading("Access"), heading("Limits of a call")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class McpRequest:
+class McpRequest(Limits):
     """Tools of agents: `plan-cutters mcp`."""
 
     roots: tuple[str, ...]
     client_roots: bool
-    most_mb: float
-    most_samples: int
-    most_cutters: int
-    most_characters: int
-    timeout: float
-    memory: float | None
-    calls: int
     debug: bool
 
 
@@ -83,17 +77,13 @@ def command(request: McpRequest) -> int:
         raise OptionError(f"the extra is not installed: {extra_hint('mcp')}")
     if sys.stdin is None or sys.stdout is None:
         raise OptionError("standard input or output is closed: a client talks over them")
-    from plan_cutters_agents.access import Limits
     from plan_cutters_agents.server import serve, service_of
 
-    limits = Limits(file_mb=request.most_mb, samples=request.most_samples, cutters=request.most_cutters,
-                    seconds=request.timeout, characters=request.most_characters, calls=request.calls,
-                    memory_gb=request.memory)  # fmt: skip
     if request.debug:
         import logging
 
         logging.basicConfig(level=logging.DEBUG)
-    serve(service_of(request.roots, limits, client_roots=request.client_roots), lambda: os._exit(INTERRUPTED))
+    serve(service_of(request.roots, request, client_roots=request.client_roots), lambda: os._exit(INTERRUPTED))
     # A thread may still wait for standard input.
     sys.stdout.flush()
     os._exit(0)

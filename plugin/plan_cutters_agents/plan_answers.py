@@ -1,14 +1,21 @@
-"""Answers made of plans: which cutters finish and in which steps, how they differ, why a face is not reached, what changed."""
+"""The answers to an agent: their fields are the output schemas of the tools, and most are made of plans.
+
+Lengths are mm, angles deg, part coordinates; shares are of an area, 0 to 1. Entries of lists have the names of `plan.json`, where
+they are of it (`docs/json.md`). Lists are whole here: `short` cuts them.
+"""
 
 import math
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
 
 from plan_cutters.domain.figures import listed
+from plan_cutters.plan_file.frozen import Vector
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.operations import OwnStepEntry
+from plan_cutters.plan_file.operations import ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.cutters import main_reason, reason
@@ -16,65 +23,169 @@ from plan_cutters.plan_file.words.face import face_text, helping, in_the_way, po
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import first_tries
 from plan_cutters.plan_file.words.text import shown, text_of
-from plan_cutters_agents import answers
 from plan_cutters_agents.access import CallError
-from plan_cutters_agents.answers import Note, Vector
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.wording import called, cutter_rows, face_rows, headline, mark, remarks
 
+#: What a list of an answer, or an object in it, holds.
+Entry = dict[str, Any]
+#: Which faces a change was judged on.
+About = Literal["this face", "all faces of the plan", "nothing"]
+_OF_WITNESSES = ("point", "face", "verdict", "reason", "obstacle_face", "obstacle_point", "best_posture", "depth_mm", "samples",
+                 "inside_bodies")  # fmt: skip
 #: Shares that differ by less are equal.
 _SAME = 1e-9
 #: A cutter by its radius or diameter, and its length.
 _PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
 
 
-def planned(plan: Plan, code: int, files: Mapping[str, str]) -> answers.PlanAnswer:
+class Answer(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+    format_version: int = 1
+    part: str
+    told: str = Field(description="the answer in sentences")
+
+
+class OfPlan(Answer):
+    """An answer about a plan has these fields."""
+
+    exit_code: int = Field(description="as of the command: 0 a cutter finishes, 1 none does, 4 not all could be judged")
+    selected: str | None = Field(description="id of the cutter to take")
+    samples: Entry
+    cutters: list[Entry] = Field(description="those that reach most first")
+    not_judged: list[Entry] = Field(description="target faces that could not be judged, and why: `code` is the face")
+    missing: list[Entry] = Field(description="obstacles that are missing or guessed: with one, nothing is feasible beyond doubt")
+
+
+class PlanAnswer(OfPlan):
+    format: Literal["plan-cutters-agent-plan"] = "plan-cutters-agent-plan"
+    asked_mm2: float | None = Field(None, description="of the faces to machine, that the steps are to finish")
+    finished_share: float | None = Field(None, description="by all steps together; 1 only where nothing is left")
+    seconds: float | None = Field(None, description="of all steps, turns and changes of cutters; null without a feed")
+    steps: list[Entry] = Field([], description="of the process, in their order")
+    left: list[Entry] = Field([], description="what no step finishes, the largest area first")
+    notes: list[Entry] = Field(description="what these verdicts do not say")
+    files: dict[str, str] = Field({}, description="format -> path, where `out` was given")
+    not_written: dict[str, str] = Field({})
+
+
+class Comparison(OfPlan):
+    format: Literal["plan-cutters-agent-comparison"] = "plan-cutters-agent-comparison"
+    differ: list[Entry] = Field(description="faces of which cutters reach different shares, the widest difference first")
+    together: Entry | None = Field(description="the fewest of them that reach all that any of them reaches")
+
+
+class MapAnswer(Answer):
+    format: Literal["plan-cutters-agent-map"] = "plan-cutters-agent-map"
+    cutter: str
+    exit_code: int = Field(description="0 some tilt is free, or the point under the flat, 1 none is, 4 none is surely free")
+    postures: Entry
+
+
+class Explanation(Answer):
+    format: Literal["plan-cutters-agent-explanation"] = "plan-cutters-agent-explanation"
+    cutter: str
+    face: str
+    reached: bool | None = Field(description="every judged sample of the face; null: undecided, or not to be judged")
+    lost_share: float = Field(description="of the face")
+    counts: dict[str, int] = Field(description="samples of the face by verdict")
+    reasons: list[Entry] = Field(description="the one that loses most first; `try_first` is a rule of thumb, not computed")
+    in_the_way: list[Entry]
+    witnesses: list[Entry] = Field(description="worst spots, the deepest first; with a point, the nearest first")
+    would_help: list[Entry] = Field(description="changes that gain something, each of them judged, the best first")
+    help_is_about: About = "nothing"
+    no_help: str = Field("", description="why `would_help` is empty")
+    postures: Entry | None = Field(description="at the point, where a part was given")
+    sample: Entry | None = Field(description="nearest to the point, where a plan with samples.npz was given")
+    missing: list[Entry]
+
+
+class Picture(OfPlan):
+    format: Literal["plan-cutters-agent-picture"] = "plan-cutters-agent-picture"
+    shown: str = Field(description="id of the cutter whose verdicts are shown")
+    legend: dict[str, str] = Field(description="colour -> what it means")
+
+
+class ShopAnswer(Answer):
+    format: Literal["plan-cutters-agent-shop"] = "plan-cutters-agent-shop"
+    library: str = Field(description="empty: the built-in set")
+    tools: list[Entry]
+    unused: list[str] = Field(description="entries of the library that cannot be judged, and why")
+    machines: list[Entry]
+
+
+class PlanDifferenceAnswer(Answer):
+    format: Literal["plan-cutters-agent-difference"] = "plan-cutters-agent-difference"
+    comparable: bool
+    why_not: list[str]
+    lost: bool | None = Field(description="whether a face or cutter reaches less; null: not comparable")
+    won: bool | None
+    selected: list[str | None] = Field(description="ids of the cutters to take, old and new")
+    faces: list[Entry] = Field(description="the worst first")
+    cutters: list[Entry]
+    unreachable: list[str] = Field(description="target faces of the new plan that no cutter reaches whole")
+
+
+def _fields(record: BaseModel, *names: str) -> Entry:
+    """Some fields of a record."""
+    return {name: getattr(record, name) for name in names}
+
+
+def _missing(plan: Plan) -> list[Entry]:
+    return [_fields(each, "face", "name", "why") for each in plan.missing]
+
+
+def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     """Which cutters finish, in which steps, and what the others lose."""
     codes = [*plan.note_codes, *[""] * len(plan.notes)]
     every = [*zip(codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
-    notes = [Note(code=c, text=t) for c, t in every]
-    more: dict[str, Any] = {}
+    more: Entry = {}
     if (process := plan.process) is not None:
-        steps = [
-            answers.StepAnswer(
-                setup=step.setup + 1, mode=step.mode, angles=step.angles_deg, axis=step.axis if step.angles_deg is None else None,
-                cutter=step.cutter, faces=step.faces, take=step.take, area_mm2=step.area_mm2, share=step.share,
-                alone_mm2=step.alone_mm2, seconds=step.seconds, clearance_mm=step.clearance_mm,
-                own=None if step.own is None else _own(step.own),
-            )
-            for step in process.steps
-        ]  # fmt: skip
-        more = {"asked_mm2": process.asked_mm2, "finished_share": process.finished_share, "seconds": process.seconds,
-                "steps": steps, "left": [answers.Remaining.model_validate(each) for each in process.left]}  # fmt: skip
-    return answers.PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
+        more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
+                "left": [_remaining(each) for each in process.left]}  # fmt: skip
+    notes = [{"code": code, "text": text} for code, text in every]
+    return PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
 
 
-def _own(own: OwnStepEntry) -> answers.OwnStepAnswer:
-    near = own.nearest
-    return answers.OwnStepAnswer(
-        number=own.number, text=own.text, asked_mm2=own.asked_mm2, wrong=own.wrong,
-        leaves=[answers.Remaining.model_validate(each) for each in own.leaves],
-        nearest=None if near is None else
-        answers.NearestOrientation(angles=near.angles_deg, axis=near.axis, area_mm2=near.area_mm2),
-    )  # fmt: skip
+def _step(step: ProcessStep) -> Entry:
+    """A step of the process, in the words of `process`: to edit and to judge again; setups from 1, `own` None where planned."""
+    own = None
+    if step.own is not None:
+        near = step.own.nearest
+        own = _fields(step.own, "number", "text", "asked_mm2", "wrong") | {
+            "leaves": [_remaining(each) for each in step.own.leaves],
+            "nearest": None if near is None else {"angles": near.angles_deg, **_fields(near, "axis", "area_mm2")},
+        }
+    axis = step.axis if step.angles_deg is None else None
+    more = _fields(step, "cutter", "faces", "take", "area_mm2", "share", "alone_mm2", "seconds", "clearance_mm")
+    return {"setup": step.setup + 1, "mode": step.mode, "angles": step.angles_deg, "axis": axis, **more, "own": own}
 
 
-def compared(plan: Plan, code: int) -> answers.Comparison:
+def _remaining(area: RemainingEntry) -> Entry:
+    return _fields(area, "cause", "area_mm2", "share", "faces", "place_mm", "needs")
+
+
+def compared(plan: Plan, code: int) -> Comparison:
     """On which faces cutters differ, and which of them do it together."""
-    rows = []
+    rows: dict[str, dict[str, float]] = {}
     for face in plan.faces:
         shares = {c.id: c.faces[face.id].area_share.reached for c in plan.cutters if face.id in c.faces}
         if shares and max(shares.values()) - min(shares.values()) > _SAME:
-            rows.append(answers.FaceRow(face=face.id, reached=shares))
-    rows.sort(key=lambda row: min(row.reached.values()) - max(row.reached.values()))
-    together = None if plan.least_set is None else answers.LeastSet.model_validate(plan.least_set)
-    return answers.Comparison(**_of_plan(plan, code), differ=rows, together=together)
+            rows[face.id] = shares
+    widest = sorted(rows.items(), key=lambda row: min(row[1].values()) - max(row[1].values()))
+    together = None
+    if (least := plan.least_set) is not None:
+        runs = [_fields(each, "cutter", "setup", "share", "samples") for each in least.runs]
+        together = {"runs": runs, **_fields(least, "share", "left_share", "proven")}
+    differ = [{"face": face, "reached": shares} for face, shares in widest]
+    return Comparison(**_of_plan(plan, code), differ=differ, together=together)
 
 
-def pictured(plan: Plan, code: int) -> answers.Picture:
+def pictured(plan: Plan, code: int) -> Picture:
     """Describe a picture: whose verdicts it shows, and its colours."""
     legend = {colour: plan.legend_words.get(word, word) for word, colour in plan.legend.items()}
-    return answers.Picture(**_of_plan(plan, code), shown=shown(plan).id, legend=legend)
+    return Picture(**_of_plan(plan, code), shown=shown(plan).id, legend=legend)
 
 
 def ranked(plan: Plan) -> list[CutterEntry]:
@@ -82,47 +193,46 @@ def ranked(plan: Plan) -> list[CutterEntry]:
     return sorted(plan.cutters, key=lambda c: (c.id != plan.selected, leaves(c)))
 
 
-def _of_plan(plan: Plan, code: int) -> dict[str, Any]:
+def _of_plan(plan: Plan, code: int) -> Entry:
     text = plan.text or text_of(plan)
-    sampling = {"spacing_mm": plan.effective.spacing_mm, "sampled_by": plan.effective.sampled_by}
+    # Given as `spacing_mm` in each call, the widest spacing makes the samples of all calls the same.
+    sampling = _fields(plan.effective, "spacing_mm", "sampled_by")
     return {
         "part": plan.part.file or "", "told": "\n".join([text.headline, *text.lines]), "exit_code": code,
-        "samples": answers.Samples.model_validate(plan.samples).model_copy(update=sampling),
+        "samples": {"count": plan.samples.count, **sampling, **_fields(plan.samples, "max_gap_mm", "unjudged", "inside_bodies")},
         "selected": plan.selected or plan.selected_over_setups,
         "cutters": [_cutter(plan, c, text.cutters[c.id]) for c in ranked(plan)],
-        "not_judged": [Note(code=f.id, text=f.unjudged) for f in plan.faces if f.target and f.unjudged],
-        "missing": [answers.Missing.model_validate(each) for each in plan.missing],
+        "not_judged": [{"code": f.id, "text": f.unjudged} for f in plan.faces if f.target and f.unjudged],
+        "missing": _missing(plan),
     }  # fmt: skip
 
 
-def _cutter(plan: Plan, c: CutterEntry, text: str) -> answers.CutterAnswer:
+def _cutter(plan: Plan, c: CutterEntry, text: str) -> Entry:
+    """A cutter, what it reaches, the faces that it does not, the worst first, and the step that gains most."""
     by_face = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
-    faces = [
-        answers.Lost(face=name, share=-share, reason=main_reason(c.faces[name].area_share) or None) for share, name in by_face
-    ]
-    share = c.area_share
-    return answers.CutterAnswer(
-        id=c.id, name=c.name, text=text, feasible=c.feasible, seen=c.seen, reached=share.reached,
-        inaccessible=share.inaccessible, undecided=share.undecided, lost_by=dict(by_share(share.lost_by)), faces=faces,
-        next=next(iter(_helps(plan, c)), None),
-    )  # fmt: skip
+    faces = [{"face": name, "share": -share, "reason": main_reason(c.faces[name].area_share) or None} for share, name in by_face]
+    return {
+        "id": c.id, "name": c.name, "text": text, "feasible": c.feasible, "seen": c.seen,
+        **_fields(c.area_share, "reached", "inaccessible", "undecided"), "lost_by": dict(by_share(c.area_share.lost_by)),
+        "faces": faces, "next": next(iter(_helps(plan, c)), None),
+    }  # fmt: skip
 
 
-def _helps(plan: Plan, c: CutterEntry) -> list[answers.Help]:
-    """The steps that gain something."""
+def _helps(plan: Plan, c: CutterEntry) -> list[Entry]:
+    """The steps that gain something; `finishes`: whether all is reached then, None where that is not decided."""
     mend = c.mend
     return [] if mend is None else [
-        answers.Help(what=named(plan, each.why), things=[move.thing for move in each.changes],
-                     finishes=None if mend.unsure and not each.left else not each.left,
-                     lost_before=each.lost_before, lost_after=each.lost_after, gained_samples=each.gained, option=each.option)
+        {"what": named(plan, each.why), "things": [move.thing for move in each.changes],
+         "finishes": None if mend.unsure and not each.left else not each.left,
+         "lost_before": each.lost_before, "lost_after": each.lost_after, "gained_samples": each.gained, "option": each.option}
         for each in helping(mend)
     ]  # fmt: skip
 
 
 def explained(
-    plan: Plan, cutter: CutterEntry, face: str, *, point: Vector | None = None, postures: answers.Postures | None = None,
-    sample: answers.Sample | None = None,
-) -> answers.Explanation:  # fmt: skip
+    plan: Plan, cutter: CutterEntry, face: str, *, point: Vector | None = None, postures: Entry | None = None,
+    sample: Entry | None = None,
+) -> Explanation:  # fmt: skip
     """Why a cutter does not reach a face, and what would help; a CallError where the plan says nothing about the face."""
     entry = next((f for f in plan.faces if f.id == face), None)
     if entry is None:
@@ -139,30 +249,29 @@ def explained(
     changes, about, unhelped = _helping(
         plan, cutter, alone=[f.id for f in plan.faces if f.target] == [face], lost=bool(counts.not_reached)
     )
-    texts = [] if sample is None else [sample_text(sample.distance_mm, sample.verdict, sample.reason)]
+    texts = [] if sample is None else [sample_text(sample["distance_mm"], sample["verdict"], sample["reason"])]
     if postures is not None:
-        free = postures.free_share or float(any(row.free for row in postures.rotations))
-        causes = by_share(postures.forbidden)
-        texts.append(posture_text(postures.face, free, postures.undecided_share, causes, certified=postures.certified))
+        free = postures["free_share"] or float(any(row["free"] for row in postures["rotations"]))
+        certified, causes = postures["certified"], by_share(postures["forbidden"])
+        texts.append(posture_text(postures["face"], free, postures["undecided_share"], causes, certified=certified))
     texts.append(face_text(plan, cutter, entry, unhelped))
-    return answers.Explanation(
+    return Explanation(
         part=plan.part.file or "", told=" ".join(texts), cutter=cutter.id, face=face,
         reached=False if counts.blocked else None if unsure else True, lost_share=counts.area_share.not_reached,
         counts={"reached": counts.reached, "inaccessible": counts.blocked, "undecided": counts.undecided,
                 "unjudged": counts.unjudged, "inside_bodies": counts.inside_bodies},
         reasons=[
-            answers.Reason(code=code, name=reason(code), meaning=REASONS[code].sentence if code in REASONS else "",
-                           try_first=first_tries(code, cutter.mend), share=part)
+            {"code": code, "name": reason(code), "meaning": REASONS[code].sentence if code in REASONS else "",
+             "try_first": first_tries(code, cutter.mend), "share": part}
             for code, part in by_share(counts.area_share.lost_by)
         ],
-        in_the_way=[answers.InTheWay(**each._asdict()) for each in in_the_way(mine)],
-        witnesses=[answers.Witness.model_validate(each) for each in mine], would_help=changes, help_is_about=about,
-        no_help=unhelped, postures=postures, sample=sample,
-        missing=[answers.Missing.model_validate(each) for each in plan.missing],
+        in_the_way=[each._asdict() for each in in_the_way(mine)],
+        witnesses=[_fields(each, *_OF_WITNESSES) for each in mine],
+        would_help=changes, help_is_about=about, no_help=unhelped, postures=postures, sample=sample, missing=_missing(plan),
     )  # fmt: skip
 
 
-def _helping(plan: Plan, cutter: CutterEntry, *, alone: bool, lost: bool) -> tuple[list[answers.Help], answers.About, str]:
+def _helping(plan: Plan, cutter: CutterEntry, *, alone: bool, lost: bool) -> tuple[list[Entry], About, str]:
     """Give the changes that would help, the faces that they are about, and why there are none."""
     if cutter.mend is not None:
         found = _helps(plan, cutter)
@@ -175,22 +284,22 @@ def _helping(plan: Plan, cutter: CutterEntry, *, alone: bool, lost: bool) -> tup
     return [], "nothing", "the plan was made without --answers mend: ask with `part`"
 
 
-def difference(old: Plan, new: Plan) -> answers.PlanDifferenceAnswer:
+def difference(old: Plan, new: Plan) -> PlanDifferenceAnswer:
     """Say what became of the faces and cutters; of plans that are not comparable the reasons alone."""
     result = compare(old, new, name=new.part.file or "part")
     faces = [
-        answers.ChangedRow(name=called(each.old, each.new), what=mark(each), was=row[-2], now=row[-1])
+        {"name": called(each.old, each.new), "what": mark(each), "was": row[-2], "now": row[-1], "changed": ""}
         for each, row in zip(result.faces, face_rows(result), strict=False)
     ]
     cutters = [
-        answers.ChangedRow(name=row[1], what=mark(each), was=row[2], now=row[3], changed=row[-1])
+        {"name": row[1], "what": mark(each), "was": row[2], "now": row[3], "changed": row[-1]}
         for each, row in zip(result.cutters, cutter_rows(result), strict=False)
     ]
-    return answers.PlanDifferenceAnswer(
-        part=new.part.file or "", told="\n".join([headline(result), *result.why_not, *remarks(result)]),
-        comparable=result.comparable, why_not=result.why_not, lost=result.lost if result.comparable else None,
-        won=result.won if result.comparable else None, selected=[*result.selected], faces=faces, cutters=cutters,
-        unreachable=result.unreachable if result.comparable else [],
+    comparable = result.comparable
+    return PlanDifferenceAnswer(
+        part=new.part.file or "", told="\n".join([headline(result), *result.why_not, *remarks(result)]), comparable=comparable,
+        why_not=result.why_not, lost=result.lost if comparable else None, won=result.won if comparable else None,
+        selected=[*result.selected], faces=faces, cutters=cutters, unreachable=result.unreachable if comparable else [],
     )  # fmt: skip
 
 

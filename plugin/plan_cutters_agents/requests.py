@@ -57,36 +57,30 @@ class Question(BaseModel):
 class Conditions(Question):
     """Cutters are judged under these conditions."""
 
-    library: Path | None = Field(
-        default=None, description="a tool library, in a root: its tools are judged in place of `cutters`"
-    )
+    library: Path | None = Field(None, description="a tool library, in a root: its tools are judged in place of `cutters`")
     holder: Word | None = Field(
-        default=None, description="of cutters without one: er32, hsk63a-er32, D30L30, none, or a file with a holder"
+        None, description="of cutters without one: er32, hsk63a-er32, D30L30, none, or a file with a holder"
     )
-    machine: Word = Field(default="unlimited", description="unlimited, tilt:DEG, a built-in machine, or a machine file in a root")
+    machine: Word = Field("unlimited", description="unlimited, tilt:DEG, a built-in machine, or a machine file in a root")
     fixtures: list[Word] = Field(
-        default=[],
-        max_length=50,
-        description="bodies in the way: FILE@X,Y,Z[,RX,RY,RZ][:UNIT], box:X,Y,Z@..., cylinder:R,H@..., table",
+        [], max_length=50, description="bodies in the way: FILE@X,Y,Z[,RX,RY,RZ][:UNIT], box:X,Y,Z@..., cylinder:R,H@..., table"
     )
-    ignore: list[Word] = Field(default=[], max_length=50, description="faces that are neither machined nor obstacles")
+    ignore: list[Word] = Field([], max_length=50, description="faces that are neither machined nor obstacles")
     unit: Literal["um", "mm", "cm", "m", "km", "mil", "in", "ft"] | None = Field(
-        default=None, description="if the file states a wrong one"
+        None, description="if the file states a wrong one"
     )
-    flip: bool = Field(default=False, description="machine the other side of open shells")
-    tolerance_mm: float = Field(default=0.01, gt=0.0, le=10.0, description="gouge tolerance")
-    allowance_mm: float = Field(default=0.0, ge=-100.0, le=100.0, description="stock left on the surface")
-    holder_clearance_mm: float = Field(default=0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder")
+    flip: bool = Field(False, description="machine the other side of open shells")
+    tolerance_mm: float = Field(0.01, gt=0.0, le=10.0, description="gouge tolerance")
+    allowance_mm: float = Field(0.0, ge=-100.0, le=100.0, description="stock left on the surface")
+    holder_clearance_mm: float = Field(0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder")
 
 
 class Sampling(Question):
     """How densely a surface is looked at: by default from its curvature and the smallest cutter."""
 
-    grid: int | None = Field(default=None, ge=2, le=2000, description="so many samples a side and face")
+    grid: int | None = Field(None, ge=2, le=2000, description="so many samples a side and face")
     spacing_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        description="largest distance of neighbouring samples: with one value in all calls shares can be compared",
+        None, gt=0.0, description="largest distance of neighbouring samples: with one value in all calls shares can be compared"
     )
 
     @model_validator(mode="after")
@@ -101,35 +95,35 @@ class PartQuestion(Conditions, Sampling):
 
     part: Path = Field(description="STEP, IGES or BREP, in a root")
     cutters: list[Word] = Field(
-        default=[],
+        [],
         max_length=200,
         description="D12L80 (diameter, length from tip to holder) or R6L80 (radius); rc1 corner radius (rc6: ball), T5 taper, "
         "F20 flutes, N11x40 neck, S12 shank; without any, the built-in tool set is judged",
     )
     setup: list[Axis] = Field(
-        default=["0,0,1"],
+        ["0,0,1"],
         min_length=1,
         max_length=12,
         description="directions of the part along the machine's spindle: +z, -y, or x,y,z; every cutter is judged in each",
     )
-    faces: Word = Field(default="sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX")
+    faces: Word = Field("sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX")
 
 
 class PlanQuestion(PartQuestion):
     """Which cutters finish a part?"""
 
-    answers: list[Answer] = Field(default=[], description="; ".join(f"{kind.word}: {kind.meaning}" for kind in KINDS))
+    answers: list[Answer] = Field([], description="; ".join(f"{kind.word}: {kind.meaning}" for kind in KINDS))
     operations: Literal["fewest", "fastest", "both"] | None = Field(
-        default=None, description="plan fixed orientations and simultaneous steps: `steps` has them; fastest and both need a feed"
+        None, description="plan fixed orientations and simultaneous steps: `steps` has them; fastest and both need a feed"
     )
-    feed_mm_min: float | None = Field(default=None, ge=0.1, le=1e6, description="of all cutters; a library may state feeds")
+    feed_mm_min: float | None = Field(None, ge=0.1, le=1e6, description="of all cutters; a library may state feeds")
     process: Process | None = Field(
-        default=None,
+        None,
         description="your own steps, judged as they stand, in their order: edit `steps` of an answer; the rest is planned behind "
         "them, or left; needs no `operations`",
     )
-    out: Path | None = Field(default=None, description="folder in a root for files; without it, none is written")
-    formats: list[Format] = Field(default=["json"], min_length=1, description="of these files")
+    out: Path | None = Field(None, description="folder in a root for files; without it, none is written")
+    formats: list[Format] = Field(["json"], min_length=1, description="of these files")
 
 
 class CompareQuestion(PartQuestion):
@@ -145,15 +139,15 @@ class CompareQuestion(PartQuestion):
 class ExplainQuestion(Conditions, Sampling):
     """Why does a cutter not reach a face or a point, and what would help?"""
 
-    part: Path | None = Field(default=None, description="STEP, IGES or BREP, in a root: it is judged now")
-    plan: Path | None = Field(default=None, description="or a plan.json in a root: it answers at once")
+    part: Path | None = Field(None, description="STEP, IGES or BREP, in a root: it is judged now")
+    plan: Path | None = Field(None, description="or a plan.json in a root: it answers at once")
     cutter: Word = Field(
         description="R6L80 and so on; an id, a name or their beginning (R6) where that is one of the plan or library"
     )
     face: Face | None = None
-    point: Point | None = Field(default=None, description="instead of a face: x, y, z in part coordinates, mm")
-    within_mm: float = Field(default=1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
-    setup: list[Axis] = Field(default=["0,0,1"], min_length=1, max_length=12, description="as of `plan_part`")
+    point: Point | None = Field(None, description="instead of a face: x, y, z in part coordinates, mm")
+    within_mm: float = Field(1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
+    setup: list[Axis] = Field(["0,0,1"], min_length=1, max_length=12, description="as of `plan_part`")
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
@@ -172,18 +166,18 @@ class MapQuestion(Conditions):
     part: Path = Field(description="STEP, IGES or BREP, in a root")
     cutter: Word = Field(description="R6L80 and so on; with `library` the id or the name of a tool there")
     point: Point
-    within_mm: float = Field(default=1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
-    setup: Axis = Field(default="0,0,1", description="direction of the part along the spindle")
-    tilt_deg: tuple[float, float] | None = Field(default=None, description="tilts to search, from the normal")
-    rotation_step_deg: float = Field(default=10.0, ge=1.0, le=360.0, description="step between rotations")
-    picture: bool = Field(default=False, description="also draw it: tilt against rotation")
+    within_mm: float = Field(1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
+    setup: Axis = Field("0,0,1", description="direction of the part along the spindle")
+    tilt_deg: tuple[float, float] | None = Field(None, description="tilts to search, from the normal")
+    rotation_step_deg: float = Field(10.0, ge=1.0, le=360.0, description="step between rotations")
+    picture: bool = Field(False, description="also draw it: tilt against rotation")
 
 
 class ShopQuestion(Question):
     """Which tools and machines are there?"""
 
-    library: Path | None = Field(default=None, description="a tool library, in a root; without it, the built-in set is listed")
-    machines: bool = Field(default=True, description="list the built-in machines, too")
+    library: Path | None = Field(None, description="a tool library, in a root; without it, the built-in set is listed")
+    machines: bool = Field(True, description="list the built-in machines, too")
 
 
 class DifferenceQuestion(Question):

@@ -40,15 +40,9 @@ _ROOTS = "roots"
 
 
 class Service:
-    """Answers calls.
+    """Answers calls within the roots and limits that the server was started with.
 
-    Parameters
-    ----------
-    roots : Roots
-        That the server was started with.
-    limits : Limits
-    client_roots : bool
-        Whether folders that the client offers are roots as well.
+    `client_roots`: folders that the client offers are roots as well.
     """
 
     def __init__(self, roots: Roots, limits: Limits, *, client_roots: bool) -> None:
@@ -90,21 +84,32 @@ class Service:
                     self._working.discard(scope)
             if scope.cancelled_caught:
                 raise CallError("the server was ended")
-            answer = await anyio.to_thread.run_sync(fitting, reply.answer, self.limits.characters)
-        except PlanError as error:
-            return _failed(str(error))
-        except TimeoutError:
-            return _failed(
-                f"no answer within {self.limits.seconds:g} s: sample more coarsely, choose fewer faces or "
-                "cutters, or start the server with a longer --timeout"
-            )
+            answer = await anyio.to_thread.run_sync(fitting, reply.answer, self.limits.most_characters)
         except Exception as error:
-            logging.getLogger(__name__).debug("internal error", exc_info=True)
-            return _failed(f"internal error ({type(error).__name__}: {error})")
+            match error:
+                case PlanError():
+                    line = str(error)
+                case TimeoutError():
+                    line = (
+                        f"no answer within {self.limits.timeout:g} s: sample more coarsely, choose fewer faces or "
+                        "cutters, or start the server with a longer --timeout"
+                    )
+                case _:
+                    logging.getLogger(__name__).debug("internal error", exc_info=True)
+                    line = f"internal error ({type(error).__name__}: {error})"
+            return types.CallToolResult(content=[types.TextContent(text=" ".join(line.split())[:2000])], is_error=True)
         content: list[Any] = [types.TextContent(text=json.dumps(answer, ensure_ascii=False))]
         if reply.picture is not None:
             content.append(types.ImageContent(data=base64.b64encode(reply.picture).decode(), mime_type="image/png"))
-        content += [_link(what, Path(file)) for what, file in reply.files.items()]
+        # For clients that open files themselves.
+        content += [
+            types.ResourceLink(
+                name=file.name, uri=file.absolute().as_uri(), description=what,
+                mime_type=_MEDIA.get(file.suffix.lower(), "application/octet-stream"),
+                size=file.stat().st_size if file.is_file() else None,
+            )
+            for what, file in ((what, Path(name)) for what, name in reply.files.items())
+        ]  # fmt: skip
         return types.CallToolResult(content=content, structured_content=answer)
 
     async def end(self) -> None:
@@ -125,7 +130,7 @@ class Service:
             shown = max(seconds, shown + 0.001)
             await context.session.report_progress(shown, None if rest is None else shown + rest, words)
 
-        with anyio.fail_after(self.limits.seconds):
+        with anyio.fail_after(self.limits.timeout):
             async with self._turns:
                 require_temporary()
                 with tempfile.TemporaryDirectory(prefix="plan-cutters-mcp-") as folder:
@@ -161,22 +166,6 @@ def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
         place = ".".join(map(str, faults[0]["loc"]))
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
         raise CallError(f"{place + ': ' if place else ''}{faults[0]['msg'].removeprefix('Value error, ')}{more}") from None
-
-
-def _link(what: str, file: Path) -> "types.ResourceLink":
-    """A link to a written file, for clients that open files themselves."""
-    import mcp.types as types
-
-    return types.ResourceLink(
-        name=file.name, uri=file.absolute().as_uri(), mime_type=_MEDIA.get(file.suffix.lower(), "application/octet-stream"),
-        description=what, size=file.stat().st_size if file.is_file() else None,
-    )  # fmt: skip
-
-
-def _failed(line: str) -> "types.CallToolResult":
-    import mcp.types as types
-
-    return types.CallToolResult(content=[types.TextContent(text=" ".join(line.split())[:2000])], is_error=True)
 
 
 def service_of(folders: Sequence[str], limits: Limits, *, client_roots: bool) -> Service:

@@ -77,7 +77,7 @@ def question_schema(model: type[BaseModel], known: type[BaseModel]) -> dict[str,
     described = {} if known is model else known.model_json_schema()["properties"]
     fields = {}
     for name, field in schema["properties"].items():
-        fields[name] = _field(field, schema.get("$defs", {}))
+        fields[name] = _field(field)
         if described.get(name, {}).get("description") == field.get("description", ""):
             fields[name] = {key: fields[name][key] for key in ("type", "items") if key in fields[name]}
     required = {"required": schema["required"]} if "required" in schema else {}
@@ -86,37 +86,28 @@ def question_schema(model: type[BaseModel], known: type[BaseModel]) -> dict[str,
 
 def answer_schema(model: type[BaseModel]) -> dict[str, Any]:
     """The schema of an answer: its fields and their types, but not what lists and objects hold: their names say it."""
-    schema = model.model_json_schema(mode="serialization")
-    fields = {}
-    for name, field in schema["properties"].items():
-        needed = _field(field, schema.get("$defs", {}), nullable=True)
-        fields[name] = {key: value for key, value in needed.items() if key in ("type", "const", "enum")}
+    fields: dict[str, Any] = {}
+    for name, field in model.model_json_schema(mode="serialization")["properties"].items():
+        either = {"type": [each["type"] for each in field["anyOf"]]} if "anyOf" in field else field
+        fields[name] = {key: either[key] for key in ("type", "enum", "const") if key in either}
         if name in LISTS:
             fields[f"more_{name}"] = {"type": "integer"}
     # An answer has all its fields; to list them again would say nothing new.
     return {"type": "object", "properties": fields}
 
 
-def _field(field: dict[str, Any], definitions: dict[str, Any], *, nullable: bool = False) -> dict[str, Any]:
-    """A field without what need not be read; `nullable`: that it may be null is said."""
-    if reference := field.get("$ref", ""):
-        there = definitions[reference.rpartition("/")[2]]
-        field = {key: there[key] for key in ("type", "enum", "const") if key in there} | field
+def _field(field: dict[str, Any]) -> dict[str, Any]:
+    """A field without what need not be read, as that it may be null."""
     needed = {key: field[key] for key in _FIELDS if key in field and field[key] not in (None, [], "")}
     if len(needed.get("pattern", "")) > _PATTERN:
         del needed["pattern"]
     if choices := field.get("anyOf"):
-        made = [_field(each, definitions) for each in choices]
-        types = [each["type"] for each in made if "type" in each]
-        merged = next((each for each in made if each.get("type") != "null"), {})
-        needed = {**merged, **needed}
-        if nullable and len(types) > 1:
-            needed["type"] = types
+        needed = {**_field(next(each for each in choices if each.get("type") != "null")), **needed}
     if "prefixItems" in needed:
         # Points and ranges: so many numbers.
         items = needed.pop("prefixItems")
         needed |= {"items": {"type": "number"}, "minItems": len(items), "maxItems": len(items)}
     if isinstance(needed.get("items"), dict):
-        items = _field(needed["items"], definitions)
+        items = _field(needed["items"])
         needed["items"] = {key: value for key, value in items.items() if key not in ("description", "pattern")}
     return needed

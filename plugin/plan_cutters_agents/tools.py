@@ -13,12 +13,12 @@ import anyio.to_thread
 from plan_cutters.domain.figures import percent
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.model import Plan
-from plan_cutters_agents import answers, requests
-from plan_cutters_agents.access import CallError
-from plan_cutters_agents.at_point import nearest_sample, postures_of
+from plan_cutters_agents import plan_answers as answers
+from plan_cutters_agents import requests
+from plan_cutters_agents.access import CallError, spelled
 from plan_cutters_agents.child import Call
+from plan_cutters_agents.outputs import built_in_tools, machines_in, nearest_sample, postures_of, tools_in
 from plan_cutters_agents.plan_answers import chosen, compared, cutter_of, difference, explained, pictured, planned
-from plan_cutters_agents.shop import built_in_tools, machines_in, tools_in
 from plan_cutters_agents.short import LISTS, short
 
 #: How long lists may be, until the answer is short enough; of rotations in an explanation.
@@ -69,9 +69,7 @@ def fitting(answer: answers.Answer, characters: int) -> dict[str, Any]:
 async def plan_part(question: requests.PlanQuestion, call: Call) -> Reply:
     """Plan a part, into a folder where one is named."""
     words = await _part(question, call)
-    words += [f"--answers={','.join(question.answers)}"] if question.answers else []
-    words += [f"--operations={question.operations}"] if question.operations is not None else []
-    words += [f"--feed={question.feed_mm_min!r}"] if question.feed_mm_min is not None else []
+    words += spelled(answers=",".join(question.answers) or None, operations=question.operations, feed=question.feed_mm_min)
     if question.process is not None:
         # Beside nothing else: the name is the place that its faults are told with.
         file = call.cwd / "process.json"
@@ -115,8 +113,9 @@ async def posture_map(question: requests.MapQuestion, call: Call) -> Reply:
     output, code = await call.map(question, spec)
     picture = (call.cwd / "map.png").read_bytes() if question.picture else None
     cutter, postures = json.loads(output)["cutter"], postures_of(output)
-    free = f"{percent(postures.free_share)} of the postures searched are free, {percent(postures.undecided_share)} undecided"
-    text = f"{cutter} at ({', '.join(f'{x:.6g}' for x in postures.point)}) on {postures.face}: {free}."
+    free, undecided = percent(postures["free_share"]), percent(postures["undecided_share"])
+    where = f"({', '.join(f'{x:.6g}' for x in postures['point'])}) on {postures['face']}"
+    text = f"{cutter} at {where}: {free} of the postures searched are free, {undecided} undecided."
     part = Path(question.part).name
     return Reply(answers.MapAnswer(part=part, told=text, cutter=cutter, exit_code=code, postures=postures), picture)
 
@@ -129,7 +128,7 @@ async def explain_sample(question: requests.ExplainQuestion, call: Call) -> Repl
         cutter, face = cutter_of(plan, question.cutter), question.face
         if question.point is not None:
             sample = await anyio.to_thread.run_sync(nearest_sample, question.plan, plan, cutter.id, question, call.permissions)
-            face = sample.face
+            face = sample["face"]
     else:
         plan, name, face, postures = await _judged(question, call)
         cutter = cutter_of(plan, name)

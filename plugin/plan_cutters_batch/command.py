@@ -16,6 +16,7 @@ from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanningRequest, Reported, takes
 from plan_cutters.command.validation import File, Words
 from plan_cutters.files.pictures import with_pictures
+from plan_cutters.option_table import OPTIONS
 from plan_cutters.report.folder import DEFAULT_FORMATS
 from plan_cutters_base.terminal_text import clean
 
@@ -60,13 +61,11 @@ class BatchRequest(PlanningRequest, Reported):
 )
 @click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
 @options(
-    "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "list_cutters", "machine", "setup", "fixture", "faces",
-    "ignore", "flip", "sharp_edges", "unit", "spacing", "grid", "area_budget", "effort", "tolerance", "allowance",
-    "holder_clearance", "tilt", "rotation", "rotation_step", "posture_maps", "map_budget",
-)  # fmt: skip
-@options(
+    *(each.called for each in OPTIONS.values() if each.word not in ("process", "jobs")),
+    "assume_stickout",
+    "skip_bad",
+    "list_cutters",
     "step_schema",
-    "units",
     "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
     junit={"help": "Also write what became of each part as JUnit XML; a file on this machine."},
@@ -76,11 +75,6 @@ class BatchRequest(PlanningRequest, Reported):
         f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"
     },
 )
-@options(
-    "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time",
-    "change_time", "setup_time", "overlap", "link_time", "border_cost", "most_operations", "max_orientations",
-    "no_patterns",
-)  # fmt: skip
 @_many("--cluster", brief="Scheduler of a running Dask cluster, or its scheduler file.", metavar="tcp://HOST:PORT|FILE",
        type=Words("ADDRESS", files=True),
        help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip

@@ -143,7 +143,7 @@ def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
         witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None) for x, depth in ((0, 1), (5, 3), (9, None))
     ]
     plan = Plan.model_validate(data)
-    assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1").witnesses] == [5, 0, 9]
+    assert [w["point"][0] for w in explained(plan, plan.cutters[1], "F1").witnesses] == [5, 0, 9]
     found = cut(explained(plan, plan.cutters[1], "F1", point=(8.0, 0.0, 0.0)), 2)
     assert ([w["point"][0] for w in found["witnesses"]], found["more_witnesses"]) == ([9, 5], 1)
 
@@ -195,14 +195,14 @@ def test_cutters_are_named_by_the_words_that_were_given():
         f"Take flat end D2 x 80. For part.step, {size(plan.part.size_mm)}: D2L80, judged without a holder, 80 mm up from its tip."
     )
     assert " ".join(found.told.split()).startswith(said)
-    assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
+    assert [c["id"] for c in found.cutters] == ["R1L80", "R2L80"]
     said = explained(plan, plan.cutters[1], "F1")
-    assert [each.what for each in said.would_help] == ["flat end D2 x 80 for the rest"]
+    assert [each["what"] for each in said.would_help] == ["flat end D2 x 80 for the rest"]
     assert said.told.startswith("flat end D4 x 80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
     assert "R2L80" not in said.told
     lost["mend"] |= {"unsure": True}
     plan = Plan.model_validate(data)
-    assert [each.finishes for each in explained(plan, plan.cutters[1], "F1").would_help] == [None]
+    assert [each["finishes"] for each in explained(plan, plan.cutters[1], "F1").would_help] == [None]
 
 
 def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something_does_not():
@@ -302,7 +302,7 @@ def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
     from plan_cutters.scene.preparation import MOST, affordable
 
     part, asked = SimpleNamespace(file="part.step"), SimpleNamespace(grid=100, spacing=None)
-    assert child._environment(Limits(samples=9_999), [])[MOST] == "9999"
+    assert child._environment(Limits(most_samples=9_999), [])[MOST] == "9999"
     affordable(part, [1], asked)
     for said, why in (
         ("9999", "at most 1e\\+04 are taken"),
@@ -347,5 +347,5 @@ def test_steps_are_told_in_the_words_in_which_they_are_given_back():
     assert (first["alone_mm2"], first["own"]["number"], first["own"]["more_leaves"]) == (6.0, 1, 2)
     assert (first["own"]["leaves"][0]["faces"], first["own"]["leaves"][0]["more_faces"]) == (["F2"], 1)
     assert first["own"]["nearest"]["angles"] == {"C": 0.0, "A": 90.0}
-    assert planned(read(process=process), 1, {}).steps[1].own is None
+    assert planned(read(process=process), 1, {}).steps[1]["own"] is None
     assert planned(read(), 1, {}).steps == []

@@ -322,7 +322,7 @@ def test_readers_take_a_plan_that_is_unfinished(stages, tmp_path):
         difference = compare(each, last.plan)
         assert difference.comparable
         assert (difference.lost, difference.won) == (False, False)
-        assert any(note.code == "run_unfinished" for note in planned(each, 1, {}).notes)
+        assert any(note["code"] == "run_unfinished" for note in planned(each, 1, {}).notes)
         written = replace(last, plan=each, maps=None).write(tmp_path / str(number), ("json", "html", "npz"))
         assert "html" in written.files
     assert json.loads((tmp_path / "0" / "plan.json").read_text())["process"]["doubts"]

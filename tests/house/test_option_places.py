@@ -20,6 +20,7 @@ from plan_cutters import Options, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.request import PlanRequest, planning_options
+from plan_cutters.option_table import OPTIONS
 from plan_cutters.options import ANGLES, PlanOptions, PointOptions, SceneOptions
 from plan_cutters.plan_file.effective import Effective
 from tests.support.places import ROOT
@@ -79,6 +80,7 @@ def test_every_option_can_be_given_on_the_command_line():
     given = cli.command.make_context("plan-cutters", ["part.step", "--setup", "+z", "--setup", "-y"]).params
     # Two come with setup files, the last one with the setup `auto`.
     assert set(planning_options(PlanRequest(**given))) == WORDS - {"placement", "other_placements", "propose"}
+    assert set(OPTIONS) == WORDS - {"placement", "other_placements", "propose", "other_setups"}
 
 
 def test_the_commands_declare_an_option_alike():

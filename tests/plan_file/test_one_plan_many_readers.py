@@ -93,7 +93,7 @@ def test_the_notebook_shows_it(result, first, lost):
 def test_agents_read_it(result):
     answer = planned(result.plan, 0, {})
     assert answer.told == "\n".join([result.plan.text.headline, *result.plan.text.lines])
-    assert {c.id: c.text for c in answer.cutters} == result.plan.text.cutters
+    assert {c["id"]: c["text"] for c in answer.cutters} == result.plan.text.cutters
 
 
 def test_a_row_of_many_parts_begins_it(result):

@@ -16,12 +16,7 @@ _LOOK = 0.05
 def begin(maps: bool) -> Callable[[str], None] | None:
     """Start the second process where there is no machine code yet; what waits for an entry of it, None where it is not needed.
 
-    An entry, `module.function`, is waited for until it is there or the process has ended.
-
-    Parameters
-    ----------
-    maps : bool
-        Whether posture maps will be requested.
+    An entry, `module.function`, is waited for until it is there or the process has ended. `maps`: posture maps will be requested.
     """
     from plan_cutters.kernels.jit import at_hand
 

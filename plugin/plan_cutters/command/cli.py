@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, NoReturn
+from typing import BinaryIO, NoReturn
 
 import click
 
@@ -20,7 +20,7 @@ from plan_cutters.command import option_groups, terminal
 from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts, raise_interrupts
 from plan_cutters.command.entry import module_of, sentences
 from plan_cutters.command.option_groups import EXAMPLES, options
-from plan_cutters.command.part_cases import PartCases
+from plan_cutters.command.progress import PartCases
 from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.validation import File
 from plan_cutters.errors import OptionError
@@ -30,9 +30,6 @@ from plan_cutters_base.workers.child import can_supervise
 from plan_cutters_base.workers.errors import Supervised, Unfinished
 from plan_cutters_base.workers.prompt import is_waited_for, let_go
 from plan_cutters_base.workers.supervise import default_memory
-
-if TYPE_CHECKING:
-    from plan_cutters.command.progress import Display
 
 #: The word for standard input.
 PIPE = "-"
@@ -45,14 +42,8 @@ def spooled(command: click.Command, words: Sequence[str]) -> Iterator[list[str]]
     """The words of a command, with a file of what comes through the pipe in place of `-`; the file is removed in the end.
 
     Its name is `stdin`, with the suffix of its kind, so that a plan says where its part came from. The kernel opens a part
-    more than once, which a pipe does not allow.
-
-    Raises
-    ------
-    OptionError
-        `-` stands twice, or nothing is piped.
-    ReadError
-        What comes is no CAD file.
+    more than once, which a pipe does not allow. OptionError where `-` stands twice, or nothing is piped; ReadError where what
+    comes is no CAD file.
     """
     # Behind an option that takes a value the word is that value, as in `--json -`.
     valued = {each for p in command.params if isinstance(p, click.Option) and not (p.is_flag or p.count) for each in p.opts}
@@ -76,10 +67,7 @@ def spooled(command: click.Command, words: Sequence[str]) -> Iterator[list[str]]
 def listed(sources: Sequence[str]) -> list[str]:
     """Sources of a batch, with the lines of standard input in place of `-`: empty ones and those that begin with # are none.
 
-    Raises
-    ------
-    OptionError
-        Nothing is piped, what comes is no text, or it has no line.
+    OptionError where nothing is piped, what comes is no text, or it has no line.
     """
     if PIPE not in sources:
         return list(sources)
@@ -154,7 +142,12 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
     if not is_child():
-        ended(_SELF, words, lambda: _piped(words, name))
+
+        def piped() -> int:
+            with spooled(command, words) as named:
+                return _watched(named, name)
+
+        ended(_SELF, words, piped)
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, interrupt)
     keep_interrupts()
@@ -176,26 +169,6 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     os._exit(code)
 
 
-def _shown(request: PlanRequest, out: Path, summarised: bool) -> None:
-    from plan_cutters.command.partial_plan import show_plan
-
-    show_plan(out, request, summarised=summarised)
-
-
-def _may_leave(request: PlanRequest) -> bool:
-    """Whether nobody needs more of the command than a summary before models are written."""
-    return len(request.parts) == 1 and request.json_out is None and request.case_files is None and request.timeout is None
-
-
-def _give_prompt_back(request: PlanRequest, display: "Display", code: int, out: Path) -> None:
-    """Give the prompt back: models are written behind it."""
-    display.clear()
-    if not request.quiet:
-        where = os.path.relpath(out) if request.out is None else request.out
-        terminal.say(f"Models are being written into {where} meanwhile; plan.json there names those that are done. --wait waits.")
-    let_go(code)
-
-
 def _part_cases(request: PlanRequest) -> PartCases | None:
     """What gathers test cases of the parts, where a file for them is requested."""
     return None if (files := request.case_files) is None else PartCases(files, request.parts)
@@ -210,15 +183,9 @@ def load() -> None:
     import_module("plan_cutters.pipeline")
 
 
-def _piped(words: list[str], name: str) -> int:
-    """Run the command with a file in place of what is piped to it."""
-    with spooled(command, words) as named:
-        return _watched(named, name)
-
-
 def _watched(words: list[str], name: str) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
-    from plan_cutters.command.partial_plan import supervised
+    from plan_cutters.command.partial_plan import show_plan, supervised, without_models
     from plan_cutters.command.progress import Display
     from plan_cutters.command.validation import check
     from plan_cutters.plan_file.words.names import called
@@ -251,21 +218,27 @@ def _watched(words: list[str], name: str) -> int:
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
     display.part_cases = cases = _part_cases(request)
+
+    def give_prompt_back(code: int, out: Path) -> None:
+        """Models are written behind the prompt."""
+        display.clear()
+        if not request.quiet:
+            where = os.path.relpath(out) if request.out is None else request.out
+            terminal.say(
+                f"Models are being written into {where} meanwhile; plan.json there names those that are done. --wait waits."
+            )
+        let_go(code)
+
+    # Nobody needs more of the command than a summary before models are written.
+    leaves = len(request.parts) == 1 and request.json_out is None and cases is None and request.timeout is None
     try:
         code = supervised(
-            words,
-            parts=request.parts,
-            read_timeout=request.read_timeout,
-            memory=memory,
-            display=display,
-            timeout=math.inf if request.timeout is None else request.timeout,
-            since=began(),
-            shows=partial(_shown, request),
-            leave=partial(_give_prompt_back, request, display) if is_waited_for() and _may_leave(request) else None,
-        )
+            words, parts=request.parts, read_timeout=request.read_timeout, memory=memory, display=display,
+            timeout=math.inf if request.timeout is None else request.timeout, since=began(),
+            shows=lambda out, summarised: show_plan(out, request, summarised=summarised),
+            leave=give_prompt_back if is_waited_for() and leaves else None,
+        )  # fmt: skip
     except Unfinished as stopped:
-        from plan_cutters.command.partial_plan import without_models
-
         display.clear()
         code = without_models(stopped, request)
     except Supervised as stopped:

@@ -84,10 +84,7 @@ def is_interrupt(error: BaseException) -> bool:
 def held_interrupts(came: list[int]) -> Iterator[None]:
     """Let the first interrupt wait for the end of the block, for files there become whole; the second one is raised.
 
-    Parameters
-    ----------
-    came : list of int
-        Interrupts that came by now; that which comes is added.
+    `came` has the interrupts that came by now; that which comes is added.
     """
 
     def hold(number: int, frame: object) -> None:

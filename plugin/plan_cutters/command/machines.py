@@ -12,9 +12,9 @@ from plan_cutters.command.codes import ENDED, USAGE, faults, run
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.validation import File, Words, machine_names
+from plan_cutters.command.validation import File, Words, machine_names, three
 from plan_cutters.domain.figures import exact_angle
-from plan_cutters.errors import PlanError
+from plan_cutters.errors import OptionError, PlanError
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
 
@@ -53,7 +53,6 @@ def command(request: MachinesRequest) -> int:
     Without an argument, the machines that are built in are listed.
     """
     from plan_cutters.domain.machine import builtin_machines
-    from plan_cutters.errors import OptionError
     from plan_cutters.machines.read import source_of
 
     machines = request.machines
@@ -61,7 +60,11 @@ def command(request: MachinesRequest) -> int:
         raise OptionError("which machine? give a name or a file")
     if request.to_toml is not None and len(machines) != 1:
         raise OptionError("--to-toml writes one machine: give one")
-    axis = None if request.angles is None else _vector(request.angles)
+    axis = None
+    if request.angles is not None:
+        axis = three(request.angles, f"--angles {request.angles!r}: a tool axis is three numbers, as 0,0,1")
+        if not (all(map(math.isfinite, axis)) and math.hypot(*axis) >= 1e-9):
+            raise OptionError(f"--angles {request.angles!r}: a tool axis is three finite numbers that are not all zero")
     turned = None if request.axis is None else _angles(request.axis)
     entries: list[dict[str, Any]] = []
     read: list[Machine] = []
@@ -89,21 +92,8 @@ def command(request: MachinesRequest) -> int:
     return USAGE if lines else 0
 
 
-def _vector(text: str) -> tuple[float, float, float]:
-    from plan_cutters.errors import OptionError
-
-    try:
-        x, y, z = (float(word) for word in text.split(","))
-    except ValueError:
-        raise OptionError(f"--angles {text!r}: a tool axis is three numbers, as 0,0,1") from None
-    if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z)) or math.hypot(x, y, z) < 1e-9:
-        raise OptionError(f"--angles {text!r}: a tool axis is three finite numbers that are not all zero")
-    return x, y, z
-
-
 def _angles(text: str) -> dict[str, float]:
     """Angles, rad, by the names of the axes."""
-    from plan_cutters.errors import OptionError
 
     angles: dict[str, float] = {}
     for word in text.split(","):

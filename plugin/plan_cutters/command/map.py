@@ -16,9 +16,11 @@ from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
-from plan_cutters.command.validation import File, Setup, Words, cutter_ids
+from plan_cutters.command.validation import File, Setup, Words, cutter_ids, three
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.option_table import LEAST_TOLERANCE, OPTIONS
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.whole import whole
+from plan_cutters_base.whole import refusal, whole
 from plan_cutters_base.workers.assignment import began, is_child, report
 from plan_cutters_base.workers.child import can_supervise
 from plan_cutters_base.workers.supervise import supervise
@@ -64,8 +66,7 @@ _point = heading("Point")
     help="How far the point may be from the part: the nearest point of a face is taken, and reported.  [default: 1]",
 )
 @options(
-    "holder", "machine", "fixture", "ignore", "flip", "unit", "allowance", "holder_clearance", "tilt", "rotation",
-    "debug",
+    *(each.called for each in OPTIONS.values() if each.of_a_point), "debug",
     cutter={"multiple": False, "default": None, "type": Words("SPEC|NAME", cutter_ids),
             "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there, unless it holds one alone."},
     cutters={"multiple": False, "default": None, "help": "Tool library that the cutter is taken from."},
@@ -85,13 +86,13 @@ def command(request: MapRequest) -> int:
     ones apart.
     """
     from cad_io.read.sniff import kind
-    from plan_cutters.errors import OptionError
     from plan_cutters.files.pictures import NO_PICTURES, draws_pictures
-    from plan_cutters_base.whole import refusal
 
     part = request.part
     report("part", part)
-    place = _point_of(request.at)
+    place = three(request.at, why := f"--at {request.at!r} is not 3 numbers, as 0,0,1")
+    if not all(map(math.isfinite, place)):
+        raise OptionError(why)
     if not request.within >= 0:
         raise OptionError("--within must be a distance in mm that is not negative")
     if request.json_out not in (None, "-"):
@@ -149,46 +150,29 @@ def command(request: MapRequest) -> int:
     elif not request.quiet:
         with paper(80) as console:
             _table(result, about, outs, console)
-    return _code(result)
-
-
-def _code(result: "PostureMap") -> int:
     if (result.lies_flat or result.lies_along or any(len(each) for each in result.free)) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
 
 
-def _point_of(text: str) -> tuple[float, float, float]:
-    from plan_cutters.errors import OptionError
-
-    try:
-        x, y, z = (float(word) for word in text.split(","))
-    except ValueError:
-        x = y = z = math.nan
-    if not all(map(math.isfinite, (x, y, z))):
-        raise OptionError(f"--at {text!r} is not 3 numbers, as 0,0,1")
-    return x, y, z
-
-
 def _options(request: MapRequest) -> "Options":
     """The options of a plan of one cutter, which is inline or of a library."""
-    from plan_cutters.errors import OptionError
-    from plan_cutters.options import LEAST_TOLERANCE, Options
+    from plan_cutters.options import Options
 
-    library = request.cutters
+    library = request.libraries
     setup = Setup().convert(request.setup, None, None)
     options = posture_options(request)
     if library:
         tools = read_tools((), (library,), request.holder, skip_bad=True)
-        cutters = tuple(each for each in tools.libraries[0] if request.cutter in (None, each.id, each.name))
+        cutters = tuple(each for each in tools.libraries[0] if request.cutters in (None, each.id, each.name))
         if len(cutters) != 1:
             many = "several tools are" if cutters else "no tool is"
-            which = "there: give one with --cutter" if request.cutter is None else f"called {request.cutter!r}"
+            which = "there: give one with --cutter" if request.cutters is None else f"called {request.cutters!r}"
             raise OptionError(f"{many} {which}; plan-cutters tools lists them", file=library)
-    elif request.cutter is None:
+    elif request.cutters is None:
         raise OptionError("give the cutter: --cutter D12L80, or the --cutters of a library")
     else:
-        tools = read_tools((request.cutter,), (), request.holder)
+        tools = read_tools((request.cutters,), (), request.holder)
         cutters = tools.cutters
     # A map may be requested with a smaller one, and with none.
     tolerance = max(request.tolerance, LEAST_TOLERANCE)
@@ -275,7 +259,6 @@ def _facts(
 
 def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
     """Draw the files, each whole or not at all."""
-    from plan_cutters.errors import PlanError
     from plan_cutters.report.drawing.posture_map import draw_map
 
     temporary: dict[Path, Path] = {}

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from plan_cutters.command import terminal
+from plan_cutters.command.background_compile import begin as background_compile
 from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_interrupt
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
 from plan_cutters.command.progress import Display, Teller
@@ -21,7 +22,7 @@ from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
 if TYPE_CHECKING:
-    from plan_cutters.command.part_cases import PartCases
+    from plan_cutters.command.progress import PartCases
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
@@ -74,9 +75,11 @@ def one_part(
         interim = Interim(clock, stands if staging else None, lambda: report("stands", ""), watch.looked)
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
-        planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                          excluded=omitted, interim=interim,
-                          folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
+        # A batch takes the output away: files are named as where they will be, or not at all.
+        planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work,
+                          compiling=compiling, excluded=omitted, interim=interim,
+                          folder="" if out is None or assignment().job is not None else str(out),
+                          cache=StageCache.of_user() if request.cache else None)  # fmt: skip
         try:
             result = planned(options)
         except TooManySamplesError:
@@ -137,11 +140,6 @@ def _interrupted(out: Path | None) -> tuple[int, str]:
     return INTERRUPTED, "" if is_child() else f"plan-cutters: {remaining_text(out, 'interrupted')}"
 
 
-def _folder(out: Path | None) -> str:
-    """How a command names the output; empty where there is none, or it will be somewhere else: a batch takes it away."""
-    return "" if out is None or assignment().job is not None else str(out)
-
-
 def _tells(request: "PlanRequest") -> Callable[..., None]:
     """What tells results: where a program reads the plan on standard output, nothing else is written there."""
     return terminal.say if request.json_out == "-" else terminal.show
@@ -149,9 +147,7 @@ def _tells(request: "PlanRequest") -> Callable[..., None]:
 
 def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
     """Let machine code be made meanwhile where there is none, and say so; what waits for an entry of it."""
-    from plan_cutters.command.background_compile import begin
-
-    wait = begin(options.posture_maps) if options.jobs > 1 else None
+    wait = background_compile(options.posture_maps) if options.jobs > 1 else None
     if wait is not None and not quiet:
         terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
     return wait or (lambda entry: None)

@@ -3,15 +3,14 @@
 import os
 import shutil
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import click
 
-from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.command import validation
 from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
-from plan_cutters.domain.answer_kinds import KINDS
+from plan_cutters.option_table import GROUPS, OPTIONS, Option
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 #: Width of the column of names; what is longer has a line of its own.
@@ -68,14 +67,8 @@ def heading(title: str) -> Any:
 class Command(click.Command):
     """A command whose help has headings in the order in which they are declared, then examples and exit codes.
 
-    Parameters
-    ----------
-    subcommands : callable
-        What help lists first, asked when it is shown: other commands, and what they answer, each as (str, str).
-    examples : sequence of (str, str)
-        A command line, and what it does.
-    codes : sequence of (str, str)
-        Exit codes, and what they mean.
+    `subcommands` are what help lists first, asked when it is shown. Each of these is a pair of texts: what is typed or seen, and
+    what it does or means.
     """
 
     def __init__(
@@ -176,347 +169,97 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -
     ctx.exit()
 
 
-class _Declared(NamedTuple):
-    """An option as it is declared: its group, the words that it is called by, and what click is told of it."""
-
-    group: str
-    words: tuple[str, ...]
-    more: dict[str, Any]
-
-
-def _group(title: str) -> Callable[..., _Declared]:
-    return lambda *words, **more: _Declared(title, words, more)
-
-
-_cutters, _machine, _faces = _group("Cutters"), _group("Machine and setup"), _group("Faces")
-_samples, _postures = _group("Sampling and tolerances"), _group("Postures")
-_output, _answers, _run = _group("Output"), _group("Answers"), _group("Run")
-_operations = _group("Plan of operations")
-
-_OPTIONS = (
-    _cutters(
-        "--cutter",
-        brief="D12L80, then rc1, T5, F20, N11x40, S12; repeatable.",
-        type=Words("SPEC", validation.cutter_ids),
-        multiple=True,
-        help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
-        "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
-        "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in tool set]",
+#: Of options whose values are no plain numbers, texts and choices.
+_SPECIAL: dict[str, dict[str, Any]] = {
+    "cutters": {"type": Words("SPEC", validation.cutter_ids)},
+    "libraries": {"type": File("FILE")},
+    "holder": {"type": Words("SPEC|FILE", validation.holder_words, files=True)},
+    "list_cutters": {"is_eager": True, "expose_value": False, "callback": _list_cutters},
+    "machine": {"type": Words("NAME|FILE", validation.machine_names, files=True)},
+    "setup": {"type": Setup(), "callback": named_setups},
+    "fixtures": {"type": File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), "callback": fixtures_of_setups},
+    "faces": {"type": Faces()},
+    "ignore": {"type": Faces()},
+    "tilt": {"type": Range()},
+    "rotation": {"type": Range()},
+    "out": {"type": Folder("DIR")},
+    "formats": {"type": Words("LIST", lambda: FORMATS, listed=True)},
+    "json_out": {"type": Words("-", lambda: ("-",))},
+    "junit": {"type": File("FILE")},
+    "sarif": {"type": File("FILE")},
+    "answers": {"type": Words("LIST", validation.answers, listed=True)},
+    "operations": {"type": Plans(OPTIONS["operations"].choices)},
+    "process": {"type": File("FILE")},
+    "check_operations": {"type": File("FILE")},
+}
+#: By the heading of help, in its order: the options of a plan, and what is about a run of the command.
+_OPTIONS = {
+    **GROUPS,
+    "Cutters": (
+        *GROUPS["Cutters"],
+        Option("assume_stickout", float, None, "Stick-out of the libraries' tools that state none.", brief=True, unit="mm"),
+        Option("skip_bad", bool, False, "If some tools of a library are broken, use the others."),
+        Option("list_cutters", bool, False, "List the built-in cutters and exit."),
     ),
-    _cutters(
-        "--cutters",
-        brief="Tool library: Fusion, FreeCAD, CSV, TOML; repeatable.",
-        type=File("FILE"),
-        multiple=True,
-        help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
-        "the command `tools` shows how it is understood. Repeatable.",
+    "Output": (
+        Option("out", str, None, "Folder for the files.  [default: <part>-plan]", brief=True),
+        Option(
+            "formats", str, None, brief="Of json, step, glb, html, npz, png, csv and more.",
+            help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+            f"[default: {','.join(DEFAULT_FORMATS)}]",
+        ),
+        Option(
+            "step_schema", str, "ap242", "Application protocol of the STEP file.  [default: ap242]",
+            choices=("ap242", "ap214", "ap203"),
+        ),
+        Option(
+            "json_out", str, None, typed="json", brief="The plan of one part on standard output.",
+            help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
+        ),
+        Option(
+            "junit", str, None,
+            "Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
+            "for each part.",
+        ),
+        Option("sarif", str, None, "Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
+        *GROUPS["Output"],
+        Option("verbose", bool, False, "Print all details, not only the summary.", brief=True),
+        Option("quiet", bool, False, "Print no progress and no summary, only errors.", brief=True),
+        Option(
+            "wait", bool, False,
+            "At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
+        ),
     ),
-    _cutters(
-        "--holder",
-        brief="Holder of cutters without one: er32, D30L30.",
-        type=Words("SPEC|FILE", validation.holder_words, files=True),
-        help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
-        "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
-        "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
+    "Plan of operations": (
+        *GROUPS["Plan of operations"],
+        Option(
+            "check_operations", str, None,
+            "Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
+        ),
     ),
-    _cutters(
-        "--assume-stickout", brief=True, type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."
+    "Run": (
+        *GROUPS["Run"],
+        Option(
+            "cache", bool, True, typed="no_cache",
+            help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
+        ),
+        Option(
+            "read_timeout", float, 120.0, unit="s",
+            help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.",
+        ),
+        Option(
+            "fail_under", float, None, metavar="PERCENT", brief="End with 0 where at least so much is finished.",
+            help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
+        ),
+        Option(
+            "timeout", float, None, unit="s", brief="Seconds for the whole of a part.",
+            help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "
+            "next one is planned.",
+        ),
+        Option("memory", float, None, "Most memory to use.  [default: 3/4 of the machine's]", unit="gb"),
+        Option("debug", bool, False, "Show tracebacks."),
     ),
-    _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
-    _cutters(
-        "--list-cutters",
-        is_flag=True,
-        is_eager=True,
-        expose_value=False,
-        callback=_list_cutters,
-        help="List the built-in cutters and exit.",
-    ),
-    _machine(
-        "--machine",
-        brief="Built-in name, tilt:DEG, or a machine file.",
-        default="unlimited",
-        type=Words("NAME|FILE", validation.machine_names, files=True),
-        help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
-        "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch.  "
-        "[default: unlimited]",
-    ),
-    _machine(
-        "--setup",
-        brief="Part axis along the spindle: +z, x,y,z; or `auto`.",
-        type=Setup(),
-        multiple=True,
-        callback=named_setups,
-        default=["0,0,1"],
-        help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
-        "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
-        "proposes the fewest that reach most, in a vise, a chuck or on a table, and plans what it proposes; setups named "
-        "behind it take its place.  "
-        "[default: 0,0,1]",
-    ),
-    _machine(
-        "--fixture",
-        brief="Body in the way: a file, table, vise, chuck.",
-        type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
-        multiple=True,
-        callback=fixtures_of_setups,
-        help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
-        "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. "
-        "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
-        "can grip there. With --setup auto all three are tried, or the one that is given. Repeatable.",
-    ),
-    _faces(
-        "--faces",
-        brief="sculptured, blends, all, F3,7-12, name:REGEX.",
-        default="sculptured,blends",
-        type=Faces(),
-        help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
-        "`blends` (fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, "
-        "`name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
-        "[default: sculptured,blends]",
-    ),
-    _faces(
-        "--ignore",
-        brief="Faces neither machined nor in the way.",
-        type=Faces(),
-        multiple=True,
-        help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
-    ),
-    _faces("--flip", is_flag=True, help="Machine the other side of open shells and loose faces."),
-    _faces(
-        "--sharp-edges",
-        type=click.Choice(["asked", "left"]),
-        default="asked",
-        help="`left`: the strips along sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
-        "required.  [default: all are required]",
-    ),
-    _samples(
-        "--effort",
-        type=click.Choice(["quick", "normal", "thorough"]),
-        default="normal",
-        help="Work that advice and proofs after the verdicts may take: a fifth of the usual, or five times as much.  "
-        "[default: normal]",
-    ),
-    _faces(
-        "--unit",
-        type=click.Choice(list(UNITS)),
-        help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",
-    ),
-    _samples(
-        "--spacing",
-        brief="Largest distance of neighbouring samples.",
-        type=float,
-        metavar="MM",
-        help="Largest distance of neighbouring samples.  [default: from curvature, the smallest cutter and a budget]",
-    ),
-    _samples("--grid", type=int, metavar="N", help="N x N samples in the parameters of each face, instead of a spacing."),
-    _samples(
-        "--area-budget",
-        type=int,
-        metavar="N",
-        help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at most 100000]",
-    ),
-    _samples("--tolerance", brief=True, type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
-    _samples("--allowance", brief=True, type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
-    _samples(
-        "--holder-clearance",
-        brief="Clearance of neck, shank and holder.  [default: 0]",
-        type=float,
-        default=0.0,
-        metavar="MM",
-        help="Clearance that neck, shank and holder must keep.  [default: 0]",
-    ),
-    _postures("--tilt", type=Range(), help="Tilts to search, deg from the normal.  [default: 0:90, or as far as cutters touch]"),
-    _postures(
-        "--rotation",
-        type=Range(),
-        default="0:360",
-        help="Rotations to search, degrees from the direction of the largest curvature.  [default: 0:360]",
-    ),
-    _postures("--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"),
-    _postures(
-        "--axis-accuracy",
-        type=float,
-        metavar="DEG",
-        help="Of the rotary axes: a floor or wall that is off by less is square to the axis or along it, and "
-        "orientations that are nearer are one.  [default: the machine's own, else 0.05]",
-    ),
-    _postures(
-        "--posture-maps",
-        is_flag=True,
-        help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
-    ),
-    _postures(
-        "--map-budget",
-        type=int,
-        metavar="N",
-        help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
-    ),
-    _output("-o", "--out", brief=True, type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
-    _output(
-        "--formats",
-        brief="Of json, step, glb, html, npz, png, csv and more.",
-        type=Words("LIST", lambda: FORMATS, listed=True),
-        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
-        f"[default: {','.join(DEFAULT_FORMATS)}]",
-    ),
-    _output(
-        "--step-schema",
-        type=click.Choice(["ap242", "ap214", "ap203"]),
-        default="ap242",
-        help="Application protocol of the STEP file.  [default: ap242]",
-    ),
-    _output(
-        "--json",
-        "json_out",
-        brief="The plan of one part on standard output.",
-        type=Words("-", lambda: ("-",)),
-        help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
-    ),
-    _output(
-        "--junit",
-        type=File("FILE"),
-        help="Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
-        "for each part.",
-    ),
-    _output("--sarif", type=File("FILE"), help="Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
-    _output(
-        "--units",
-        brief="Unit of lengths in the summary and on the page.",
-        type=click.Choice(["mm", "in"]),
-        help="Unit of lengths in the summary and on the page; files have mm.  [default: mm; in where all cutters are in inches]",
-    ),
-    _output("-v", "--verbose", brief=True, is_flag=True, help="Print all details, not only the summary."),
-    _output("--quiet", brief=True, is_flag=True, help="Print no progress and no summary, only errors."),
-    _output(
-        "--wait",
-        is_flag=True,
-        help="At a shell's prompt, end when the models are written, too. Scripts, pipes and containers always wait for them.",
-    ),
-    _answers(
-        "--answers",
-        brief="More questions to answer, or all.",
-        default="",
-        type=Words("LIST", validation.answers, listed=True),
-        help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all.",
-    ),
-    _answers(
-        "--length-over-radius",
-        type=float,
-        default=10.0,
-        metavar="N",
-        help="Length of the ends of --answers radius, in radii.  [default: 10]",
-    ),
-    _operations(
-        "--operations",
-        brief="Plan fixed orientations (3+2): two rotary axes.",
-        type=Plans(["fewest", "fastest", "both"]),
-        help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
-        "that there are no fewer, the fastest, or both. The machine has two rotary axes, or none is named. Only finishing is "
-        "planned.",
-    ),
-    _operations(
-        "--feed",
-        brief="Feed of all cutters.",
-        type=float,
-        metavar="MM/MIN",
-        help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
-        "cut lengths are reported, and no times]",
-    ),
-    _operations("--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"),
-    _operations(
-        "--stepover", type=float, default=0.75, metavar="N", help="Widest distance of passes, in diameters.  [default: 0.75]"
-    ),
-    _operations(
-        "--index-step",
-        type=float,
-        metavar="DEG",
-        help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
-    ),
-    _operations(
-        "--index-time",
-        type=float,
-        metavar="S",
-        help="Seconds that another orientation takes.  [default: by the rates of the machine's rotary axes, else 5]",
-    ),
-    _operations("--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"),
-    _operations("--setup-time", type=float, default=300.0, metavar="S", help="Seconds that another setup takes.  [default: 300]"),
-    _operations(
-        "--overlap", type=float, default=2.0, metavar="MM", help="Overlap of operations at a common border.  [default: 2]"
-    ),
-    _operations(
-        "--link-time", type=float, default=1.0, metavar="S", help="Seconds from the end of a pass to the next.  [default: 1]"
-    ),
-    _operations(
-        "--border-cost",
-        type=float,
-        default=0.05,
-        metavar="S",
-        help="Seconds that a mm of border between operations on a free-form face counts in comparisons.  [default: 0.05]",
-    ),
-    _operations(
-        "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
-    ),
-    _operations(
-        "--max-orientations",
-        type=int,
-        default=8,
-        metavar="N",
-        help="Where the fastest plan has more fixed orientations, simultaneous motion is recommended for the rest.  [default: 8]",
-    ),
-    _operations(
-        "--process",
-        brief="Your own steps: an edited process.toml.",
-        type=File("FILE"),
-        help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
-        "order, and the rest is planned behind them.",
-    ),
-    _operations(
-        "--check-operations",
-        type=File("FILE"),
-        help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
-    ),
-    _run(
-        "--no-patterns",
-        "patterns",
-        is_flag=True,
-        default=True,
-        flag_value=False,
-        help="Judge and plan each face by itself, also where faces are equal.",
-    ),
-    _run("--jobs", brief=True, type=int, metavar="N", help="Threads.  [default: all cores]"),
-    _run(
-        "--no-cache",
-        "cache",
-        is_flag=True,
-        default=True,
-        flag_value=False,
-        help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
-    ),
-    _run(
-        "--read-timeout",
-        type=float,
-        default=120.0,
-        metavar="S",
-        help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.  [default: 120]",
-    ),
-    _run(
-        "--fail-under",
-        brief="End with 0 where at least so much is finished.",
-        type=float,
-        metavar="PERCENT",
-        help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
-    ),
-    _run(
-        "--timeout",
-        brief="Seconds for the whole of a part.",
-        type=float,
-        metavar="S",
-        help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "
-        "next one is planned.",
-    ),
-    _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
-    _run("--debug", is_flag=True, help="Show tracebacks."),
-)
+}  # fmt: skip
 
 
 def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -526,11 +269,26 @@ def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., A
     """
 
     def declare(function: Callable[..., Any]) -> Callable[..., Any]:
-        for option in reversed(_OPTIONS):
-            name = next(word for word in option.words if word.startswith("--"))[2:].replace("-", "_")
-            if not names or name in names or name in changes:
-                more = {**option.more, **changes.get(name, {})}
-                function = heading(option.group)(*option.words, **more)(function)
+        for group, each in reversed([(group, each) for group, rows in _OPTIONS.items() for each in rows]):
+            if not names or each.called in names or each.called in changes:
+                short = {"out": ("-o",), "verbose": ("-v",)}.get(each.word, ())
+                words = (*short, f"--{each.called.replace('_', '-')}", each.word)
+                function = heading(group)(*words, **{**_of_click(each), **changes.get(each.called, {})})(function)
         return function
 
     return declare
+
+
+def _of_click(option: Option) -> dict[str, Any]:
+    """What click is told of an option."""
+    more: dict[str, Any] = {"help": option.help, "brief": option.brief}
+    if option.kind is bool:
+        more |= {"is_flag": True, **({"flag_value": False} if option.default else {})}
+    elif option.kind in (int, float):
+        more |= {"type": option.kind, "metavar": option.metavar or option.unit.upper() or "N"}
+        more["help"] += "" if option.default is None else f"  [default: {option.default:g}]"
+    elif option.choices:
+        more["type"] = click.Choice(option.choices)
+    more |= {"multiple": True} if option.several else {}
+    more |= {} if option.default in (None, ()) else {"default": option.default}
+    return {**more, **_SPECIAL.get(option.word, {})}

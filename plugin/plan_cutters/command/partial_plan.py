@@ -57,25 +57,25 @@ def remaining_text(out: Path, why: str) -> str:
     from plan_cutters.report.folder import ended
 
     missing = ", ".join(map(file_name, ended(out, why)))
-    if text := verdicts_text(out):
-        return f"{why}; {text}{not_in_time(missing)}"
+    if text := verdicts_text(out, missing):
+        return f"{why}; {text}"
     if missing:
         return f"{missing} in {out}: not written: {why}"
     return f"{why}; {'its plan' if (out / PLAN).is_file() else 'what stands'} is in {out}"
 
 
-def not_in_time(missing: str) -> str:
-    """A sentence about files that there was no time for; empty where there are none."""
-    return f" There was no time to write {missing}: the same command without those options does." if missing else ""
+def verdicts_text(out: Path, missing: str = "") -> str:
+    """Where a plan that has the verdicts alone stands, what it is without, and files that there was no time for.
 
-
-def verdicts_text(out: Path) -> str:
-    """Where a plan that has the verdicts alone stands, and what it is without; empty where there is another one or none."""
+    It is empty where there is another plan or none.
+    """
     from plan_cutters.report import PLAN
     from plan_cutters.report.to_json import unfinished
 
-    text = unfinished(out / PLAN)
-    return f"the plan of the verdicts is in {out / PLAN}. {text}" if text else ""
+    if not (text := unfinished(out / PLAN)):
+        return ""
+    late = f" There was no time to write {missing}: the same command without those options does." if missing else ""
+    return f"the plan of the verdicts is in {out / PLAN}. {text}{late}"
 
 
 #: Faces that are set aside for a part: with more of them, the file is rather to be exported again.
@@ -137,6 +137,6 @@ def _failure_text(out: Path | None, timeout: float) -> str:
     from plan_cutters.report.folder import ended
 
     missing = ", ".join(map(file_name, ended(out, why)))
-    if text := verdicts_text(out):
-        return f"{why}: {advice}; {text}{not_in_time(missing)}"
+    if text := verdicts_text(out, missing):
+        return f"{why}: {advice}; {text}"
     return f"{why}: the plan is in {out}{f', without {missing}' if missing else ''}; {advice}"

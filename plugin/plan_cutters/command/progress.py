@@ -4,16 +4,23 @@ The process that waits draws it: the clock runs on while the CAD kernel holds th
 """
 
 import contextlib
+import json
 import time
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from plan_cutters.command import terminal
-from plan_cutters.command.part_cases import PartCases
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.domain.figures import part_done
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import report
+from plan_cutters_base.workers.assignment import is_child, report
+
+if TYPE_CHECKING:
+    from plan_cutters.cases.case import Case
+    from plan_cutters.cases.files import CaseFiles
+    from plan_cutters.plan_file.model import Plan
+
+_SELF = "plan-cutters"
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {
@@ -59,21 +66,58 @@ def work_of(stage: str) -> str:
     return _WORDS.get(stage, "judging the cutters")
 
 
-class Display:
-    """Shows what is told.
+class PartCases:
+    """Gathers what came of each part, for the files of `--junit` and `--sarif`.
 
-    Parameters
-    ----------
-    quiet : bool
-        Show no progress; texts for people are shown all the same.
-    cutters : int
-        How many are judged.
-    began : float
-        When the command began (`time.monotonic`).
-    itself : bool
-        Draw without being ticked.
-    names : mapping, optional
-        What cutters are called, by their ids.
+    Cases of a part come from the process that plans it, and are written when all parts ended; one of which nothing is known then
+    is an error.
+    """
+
+    def __init__(self, files: "CaseFiles", parts: Sequence[str]) -> None:
+        self.files, self.parts = files, parts
+        self.part = ""
+        self.cases: dict[str, list[Case]] = {}
+        self.faults: dict[str, str] = {}
+
+    def planned(self, part: str, plan: "Plan", code: int) -> None:
+        """Take the cases of a plan, or hand them to the process that gathers them."""
+        from plan_cutters.cases.plan import plan_cases
+
+        cases = plan_cases(plan, code, part)
+        if is_child():
+            report("cases", json.dumps(cases))
+        else:
+            self.cases[part] = cases
+
+    def handed(self, text: str) -> None:
+        """Take the cases of the part that began last."""
+        from plan_cutters.cases.case import Case
+
+        self.cases[self.part] = [Case(*each) for each in json.loads(text)]
+
+    def failed(self, line: str, part: str | None = None) -> None:
+        """Take the line on a part without a plan, by default the one that began last."""
+        if is_child():
+            report("failed", line)
+        self.faults.setdefault(self.part if part is None else part, line.removeprefix("plan-cutters: "))
+
+    def write(self, rest: str = "not planned") -> None:
+        """Write the files; `rest`: why parts of which nothing is known have no plan. PlanError where one cannot be written."""
+        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.plan import PROCESS
+
+        cases: list[Case] = []
+        for part in self.parts:
+            fault = Case(part, PROCESS, "error", "not_planned", self.faults.get(part, rest))
+            cases += self.cases.get(part, [fault])
+        self.files.write(_SELF, cases)
+
+
+class Display:
+    """Shows what is told; where it is quiet, texts for people alone.
+
+    `cutters` says how many are judged, `names` what they are called, by their ids; `began` is when the command did
+    (`time.monotonic`). It draws by `itself`, without being ticked, where that is requested.
     """
 
     def __init__(

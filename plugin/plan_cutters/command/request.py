@@ -5,10 +5,12 @@ Records are neither compared nor printed: to make what that takes would cost tim
 """
 
 import functools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar, cast
+from math import radians
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+
+from plan_cutters.option_table import OPTIONS
 
 if TYPE_CHECKING:
     from plan_cutters.cases.files import CaseFiles
@@ -38,19 +40,30 @@ def takes(record: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]
     return decorated
 
 
+def _with_options(*, of_a_point: bool) -> Callable[[type[R]], type[R]]:
+    """Give a record a field for each option of a plan that it does not name itself, for type checkers of what is made here."""
+
+    def widened(record: type[R]) -> type[R]:
+        for each in OPTIONS.values():
+            if each.of_a_point is of_a_point and each.word != "process":
+                kind = Range if each.kind == "range" else tuple[str, ...] if each.several else each.kind
+                record.__annotations__.setdefault(each.word, kind | None if each.default is None else kind)
+        return record
+
+    return widened
+
+
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@_with_options(of_a_point=True)
 class PostureRequest:
-    """The common fields of all commands that judge postures: the machine, the obstacles and the search."""
+    """The common fields of all commands that judge postures: the machine, the obstacles and the search.
+
+    What is not named here is in no command's own work: `posture_options` and `planning_options` hand it on.
+    """
 
     holder: str | None
     machine: str
-    fixture: tuple[str, ...]
-    ignore: tuple[str, ...]
-    flip: bool
-    unit: str | None
     tolerance: float
-    allowance: float
-    holder_clearance: float
     tilt: Range | None
     rotation: Range
     rotation_step: float
@@ -59,47 +72,17 @@ class PostureRequest:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class JudgingRequest(PostureRequest):
-    """The common fields of all commands that judge the samples of a part."""
+@_with_options(of_a_point=False)
+class PlanningRequest(PostureRequest):
+    """The common fields of all commands that plan parts."""
 
-    cutter: tuple[str, ...]
     cutters: tuple[str, ...]
+    libraries: tuple[str, ...]
     assume_stickout: float | None
     skip_bad: bool
     setup: tuple[Setup, ...]
-    faces: str
-    spacing: float | None
-    grid: int | None
     jobs: int | None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class PlanningRequest(JudgingRequest):
-    """The common fields of all commands that plan parts."""
-
-    sharp_edges: str
-    units: Literal["mm", "in"] | None
-    effort: str
-    area_budget: int | None
-    posture_maps: bool
-    map_budget: int | None
-    answers: str
-    length_over_radius: float
     operations: str | None
-    feed: float | None
-    scallop: float
-    stepover: float
-    index_step: float | None
-    axis_accuracy: float | None
-    index_time: float | None
-    change_time: float
-    setup_time: float
-    overlap: float
-    link_time: float
-    border_cost: float
-    most_operations: int | None
-    max_orientations: int
-    patterns: bool
     formats: str | None
     step_schema: str
     cache: bool
@@ -146,9 +129,9 @@ class MapRequest(PostureRequest):
     part: str
     at: str
     within: float
-    cutter: str | None
-    #: The library that the cutter is of.
+    #: One, of the one library where that is named.
     cutters: str | None
+    libraries: str | None
     setup: str
     out: tuple[str, ...]
     json_out: str | None
@@ -159,7 +142,7 @@ class ToolsRequest:
     """Tool libraries as they are understood: `plan-cutters tools`."""
 
     files: tuple[str, ...]
-    cutter: tuple[str, ...]
+    cutters: tuple[str, ...]
     holder: str | None
     assume_stickout: float | None
     skip_bad: bool
@@ -184,52 +167,14 @@ class MachinesRequest:
 
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
-    words: dict[str, Any] = {
-        **judging_options(request),
-        "process": request.process if isinstance(request, PlanRequest) else None,
-        "sharp_edges": request.sharp_edges,
-        "units": request.units,
-        "effort": request.effort,
-        "area_budget": request.area_budget,
-        "posture_maps": request.posture_maps,
-        "map_budget": request.map_budget,
-        "answers": request.answers,
-        "length_over_radius": request.length_over_radius,
-        "operations": request.operations,
-        "feed": request.feed,
-        "scallop": request.scallop,
-        "stepover": request.stepover,
-        "index_step": None if request.index_step is None else math.radians(request.index_step),
-        "axis_accuracy": None if request.axis_accuracy is None else math.radians(request.axis_accuracy),
-        "index_time": request.index_time,
-        "change_time": request.change_time,
-        "setup_time": request.setup_time,
-        "overlap": request.overlap,
-        "link_time": request.link_time,
-        "border_cost": request.border_cost,
-        "most_operations": request.most_operations,
-        "max_orientations": request.max_orientations,
-        "patterns": request.patterns,
-    }
+    tools = read_tools(request.cutters, request.libraries, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
     # The words of choices were looked at where the command line was read.
-    return cast("PlanOptions", words)
-
-
-def judging_options(request: JudgingRequest) -> "PlanOptions":
-    """The options among them that judge the samples of a part."""
-    options = posture_options(request)
-    tools = read_tools(request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
-    words: dict[str, Any] = {
-        **options,
-        "cutters": tools.cutters,
-        "libraries": tools.libraries,
-        "holder": tools.holder,
+    words: Any = {
+        **_handed_on(request, of_a_point=False),
+        **posture_options(request),
+        **tools._asdict(),
         "setup": request.setup[0],
         "other_setups": request.setup[1:],
-        "faces": request.faces,
-        "spacing": request.spacing,
-        "grid": request.grid,
-        "jobs": request.jobs,
     }
     return cast("PlanOptions", words)
 
@@ -239,19 +184,24 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
     from plan_cutters.domain.posture import PostureRange
 
     postures = PostureRange.degrees(request.tilt or (0.0, 90.0), request.rotation, request.rotation_step)
-    return {
-        "machine": request.machine,
-        "fixtures": request.fixture,
-        "ignore": request.ignore,
-        "flip": request.flip,
-        "unit": request.unit,
-        "tolerance": request.tolerance,
-        "allowance": request.allowance,
-        "holder_clearance": request.holder_clearance,
+    words = {
+        **_handed_on(request, of_a_point=True),
         "tilt": postures.tilt if request.tilt else None,
         "rotation": postures.rotation,
         "rotation_step": postures.step,
     }
+    del words["holder"]
+    return cast("PlanOptions", words)
+
+
+def _handed_on(request: PostureRequest, *, of_a_point: bool) -> dict[str, Any]:
+    """Values by their options, angles in radians."""
+    words = {}
+    for each in OPTIONS.values():
+        if each.of_a_point is of_a_point:
+            value = getattr(request, each.word, None)
+            words[each.word] = radians(value) if value is not None and each.unit == "deg" else value
+    return words
 
 
 class Tools(NamedTuple):
@@ -263,13 +213,9 @@ class Tools(NamedTuple):
 
 
 def read_tools(
-    cutters: Sequence[str],
-    libraries: Sequence[str],
-    holder: str | None,
-    assume_stickout: float | None = None,
-    *,
+    cutters: Sequence[str], libraries: Sequence[str], holder: str | None, assume_stickout: float | None = None, *,
     skip_bad: bool = False,
-) -> Tools:
+) -> Tools:  # fmt: skip
     """Read what the command line says of tools; a PlanError for what has no meaning."""
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.errors import OptionError

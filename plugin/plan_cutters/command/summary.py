@@ -55,8 +55,10 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()), apart=1)
     for c, name in zip(rows, short, strict=True):
         taken = c.id == story.taken
+        # In lines that its column has room for, all but the first indented.
+        lines_of_name = "\n".join(textwrap.wrap(name, _NAME, subsequent_indent="    ", break_on_hyphens=False)) or name
         table.add_row(
-            Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
+            Text(f"{'>' if taken else ' '} {lines_of_name}", "bold" if taken else ""),
             Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]),
             *(c.shares[word] for word in WORDS),
         )
@@ -110,11 +112,6 @@ def _table(words: Sequence[str], numbers: Sequence[str], *, apart: int = 2) -> T
     for name in (*words, *numbers):
         table.add_column(name, justify="right" if name in numbers else "left", no_wrap=True)
     return table
-
-
-def _in_lines(name: str) -> str:
-    """A name in lines that its column has room for, all but the first indented."""
-    return "\n".join(textwrap.wrap(name, _NAME, subsequent_indent="    ", break_on_hyphens=False)) or name
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:

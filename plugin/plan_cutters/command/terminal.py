@@ -220,15 +220,7 @@ def paper(width: int) -> Iterator["Console"]:
 
 
 def writing_out(work: Callable[[], T]) -> T:
-    """Do what writes on standard output.
-
-    Raises
-    ------
-    ReaderGone
-        It was closed by its reader.
-    PlanError
-        It cannot be written.
-    """
+    """Do what writes on standard output; ReaderGone where its reader closed it, PlanError where it cannot be written."""
     try:
         return work()
     except OSError as error:

@@ -21,7 +21,6 @@ from plan_cutters_base.whole import whole
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from plan_cutters.domain.cutter import Cutter
     from plan_cutters.library.raw_tool import Entry, Library
 
 _SELF = "plan-cutters tools"
@@ -70,12 +69,12 @@ def command(request: ToolsRequest) -> int:
 
     if request.list_holders:
         return _holders(request)
-    if not request.files and not request.cutter:
+    if not request.files and not request.cutters:
         raise click.UsageError("Missing argument 'FILE...'.")
     holder = None if request.holder is None else holder_of(request.holder)
     libraries: list[Library] = []
-    if request.cutter:
-        libraries.append(of_words(request.cutter, None if isinstance(holder, str) else holder))
+    if request.cutters:
+        libraries.append(of_words(request.cutters, None if isinstance(holder, str) else holder))
 
     def one(file: str) -> None:
         library = listing(file, assume_stickout=request.assume_stickout, holder=holder, skip_bad=request.skip_bad)
@@ -87,7 +86,11 @@ def command(request: ToolsRequest) -> int:
     if not lines:
         # Nothing is written if anything was wrong.
         if request.to_toml is not None:
-            _to_toml(libraries, Path(request.to_toml))
+            texts = [import_module("plan_cutters.library").to_toml(library) for library in libraries]
+            # Every part says the unit; the file says it once.
+            text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
+            with whole(request.to_toml, PlanError) as temporary:
+                temporary.write_text(text, encoding="utf-8")
         if request.draw is not None:
             _draw(libraries, Path(request.draw))
     if request.as_json:
@@ -106,8 +109,9 @@ def _holders(request: ToolsRequest) -> int:
     """The built-in holders: listed, and drawn where that is requested."""
     from plan_cutters.library.read import pinned, standard
 
-    words = ("cutter", "holder", "assume_stickout", "to_toml")
-    others = [*request.files, *(f"--{word.replace('_', '-')}" for word in words if getattr(request, word))]
+    named = {"cutter": request.cutters, "holder": request.holder, "assume-stickout": request.assume_stickout,
+             "to-toml": request.to_toml}  # fmt: skip
+    others = [*request.files, *(f"--{word}" for word, value in named.items() if value)]
     if others:
         raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {others[0]}")
     if request.draw is not None:
@@ -130,13 +134,17 @@ def _holders(request: ToolsRequest) -> int:
 
 def _plain(library: "Library") -> dict[str, Any]:
     """A library as JSON has it."""
+    from plan_cutters.domain.shapes import flute_length
+
     return {
         "file": library.file,
         "format": library.format,
         "notes": list(library.notes),
         "cutters": [
             {"id": cutter.id, "numbers": list(library.numbers(cutter)), "names": list(library.names(cutter)),
-             **_dimensions(cutter)}
+             "shape": cutter.shape, "radius": cutter.radius, "corner_radius": cutter.corner_radius, "length": cutter.length,
+             "flutes": flute_length(cutter),
+             "holder": None if cutter.holder is None else {"name": cutter.holder.name, "id": cutter.holder.id}}
             for cutter in library
         ],
         "entries": [
@@ -147,19 +155,6 @@ def _plain(library: "Library") -> dict[str, Any]:
         ],
         "holders": [{"name": holder.name, "id": holder.id} for holder in library.holders],
     }  # fmt: skip
-
-
-def _dimensions(cutter: "Cutter") -> dict[str, Any]:
-    from plan_cutters.domain.shapes import flute_length
-
-    return {
-        "shape": cutter.shape,
-        "radius": cutter.radius,
-        "corner_radius": cutter.corner_radius,
-        "length": cutter.length,
-        "flutes": flute_length(cutter),
-        "holder": None if cutter.holder is None else {"name": cutter.holder.name, "id": cutter.holder.id},
-    }
 
 
 def _table(library: "Library", console: "Console") -> None:
@@ -202,33 +197,20 @@ def _listed(console: "Console", row: list[str]) -> None:
 
 def _row(entry: "Entry") -> list[str]:
     """A tool as the table has it."""
-    return [clean(word) for word in _words(entry)]
-
-
-def _words(entry: "Entry") -> list[str]:
     codes, cutter = dict(entry.given), entry.cutter
     number = "" if entry.number is None else str(entry.number)
     words = [entry.place, number, entry.name, entry.kind, entry.unit]
     if cutter is None:
         broken = "broken: " if entry.broken else "not used: "
         sizes = [f"{codes[key]:.6g}" if key in codes else "" for key in ("DC", "RE", "LCF", "LPR", "DMM")]
-        return [*words, *sizes, "", "; ".join([f"{broken}{entry.unused}", *entry.notes])]
+        return [*map(clean, (*words, *sizes, "", "; ".join([f"{broken}{entry.unused}", *entry.notes])))]
     from plan_cutters.domain.shapes import flute_length
 
     shank = "" if cutter.shank_radius is None else f"{2 * cutter.shank_radius:.6g}"
     lengths = [2 * cutter.radius, cutter.corner_radius, flute_length(cutter), cutter.length]
     holder = "none" if cutter.holder is None else cutter.holder.name or cutter.holder.id
-    return [*words, *(f"{length:.6g}" for length in lengths), shank, holder, "; ".join([cutter.id, *entry.notes])]
-
-
-def _to_toml(libraries: "Sequence[Library]", path: Path) -> None:
-    from plan_cutters.library import to_toml
-
-    texts = [to_toml(library) for library in libraries]
-    # Every part says the unit; the file says it once.
-    text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
-    with whole(path, PlanError) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    sizes = [f"{length:.6g}" for length in lengths]
+    return [*map(clean, (*words, *sizes, shank, holder, "; ".join([cutter.id, *entry.notes])))]
 
 
 def _draw(libraries: "Sequence[Library]", folder: Path) -> None:

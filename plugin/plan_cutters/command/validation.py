@@ -4,16 +4,18 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
-from click.shell_completion import CompletionItem
+from click.shell_completion import CompletionItem, shell_complete
 
 from cad_io.errors import CadIoError, ReadError
-from plan_cutters.command.entry import commands, instead
+from plan_cutters.command.codes import ended
+from plan_cutters.command.entry import OURS, commands, instead, module_of
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.option_table import OF_OPERATIONS, OPTIONS
 from plan_cutters_base.whole import refusal
 
 if TYPE_CHECKING:
@@ -27,18 +29,9 @@ FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
 
 class Words(click.ParamType):
-    """A text for which a shell offers words, and files where none of them fits.
+    """A text that help calls by a name, or a list of them, parted by commas.
 
-    Parameters
-    ----------
-    name : str
-        What help calls it.
-    offered : callable
-        The words; asked only when a shell asks.
-    files : bool
-        Whether a file may be given, too.
-    listed : bool
-        Whether it is a list of words, parted by commas.
+    A shell offers the words, which are asked for only then, and `files` where none of them fits.
     """
 
     def __init__(
@@ -117,8 +110,8 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
 
     named = value[1:]
     ctx.meta[_NAMED] = named
-    if "fixture" in ctx.params:
-        ctx.params["fixture"] = fixtures_of_setups(ctx, _, ctx.params["fixture"])
+    if "fixtures" in ctx.params:
+        ctx.params["fixtures"] = fixtures_of_setups(ctx, _, ctx.params["fixtures"])
     # The command reads its words twice: the child that does the work need not say it again.
     if not (is_child() or ctx.resilient_parsing):
         click.echo(f"--setup auto: {len(named)} named behind it take its place; nothing is proposed", err=True)
@@ -134,7 +127,6 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
     if named is None or not value:
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
-    from plan_cutters.errors import PlanError
     from plan_cutters.setups.files import read_setup
     from plan_cutters_base.workers.assignment import is_child
 
@@ -175,6 +167,15 @@ class Setup(click.ParamType):
         return [each for each in items if each.value.startswith(incomplete)] or [FILE]
 
 
+def three(text: str, why: str) -> tuple[float, float, float]:
+    """The numbers of `x,y,z`; an OptionError that says why it is none."""
+    try:
+        x, y, z = (float(word) for word in text.split(","))
+    except ValueError:
+        raise OptionError(why) from None
+    return x, y, z
+
+
 def machine_names() -> Sequence[str]:
     from plan_cutters.domain.machine import builtin_machines
 
@@ -203,9 +204,38 @@ def face_words() -> Sequence[str]:
     return ("sculptured", "blends", "all", "component:", "name:", "color:#")
 
 
-#: Options that count in a plan of operations alone: without one they must not be ignored.
-OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
-                 "overlap", "link_time", "border_cost", "most_operations", "max_orientations")  # fmt: skip
+class Subcommands(click.Group):
+    """All subcommands as a shell sees them: words after none of them are those of the first."""
+
+    def __init__(self) -> None:
+        # An option may come first, and is one of the first subcommand.
+        super().__init__(context_settings={"ignore_unknown_options": True}, add_help_option=False)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(commands())
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+        command: click.Command = module_of(f"plan-cutters {cmd_name}").command
+        return command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
+        return super().resolve_command(ctx, args if args[0] in commands() else [next(iter(OURS)), *args])
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        if incomplete.startswith("-"):
+            first = module_of("plan-cutters").command
+            items: list[CompletionItem] = first.shell_complete(click.Context(first, resilient_parsing=True), incomplete)
+            return items
+        return [CompletionItem(name) for name in commands() if name.startswith(incomplete)] or [FILE]
+
+
+def complete(name: str) -> NoReturn:
+    """Answer the shell that asks about the program of this name, as the environment says."""
+    variable = f"_{name.replace('-', '_').upper()}_COMPLETE"
+    main_command = Subcommands() if name == "plan-cutters" else module_of(name).command
+    ended(name, [], lambda: shell_complete(main_command, {}, name, variable, os.environ[variable]))
+
+
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -213,16 +243,25 @@ LEAST_MEMORY = 2e9
 def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     """Options, and why some of several parts cannot be read.
 
-    Raises
-    ------
-    CadIoError
-        No part can be read, or a fixture cannot.
-    PlanError
-        An option has no meaning, or a library or machine file cannot be used.
+    CadIoError where no part can be read, or a fixture cannot; PlanError where an option has no meaning, or a library or machine
+    file cannot be used.
     """
-    _first_word(request.parts[0])
+    from cad_io.read.sniff import kind
+    from plan_cutters.domain.checks import did_you_mean
+    from plan_cutters_base.workers.assignment import job_input
+
+    # A first word that is no file and nearly a command: the other words would be planned in its place.
+    word = request.parts[0]
+    meant = "" if os.path.exists(word) else did_you_mean(word, commands())
+    _refuse((meant, f"{word} is neither a command nor a file{meant}"))
     _words(request)
-    faults = _faults(request.parts)
+    # As far as their first bytes tell.
+    faults: list[CadIoError] = []
+    for part in () if job_input().part else request.parts:
+        try:
+            kind(part)
+        except CadIoError as error:
+            faults.append(error)
     if len(faults) == len(request.parts):
         raise faults[0]
     for out in folders(request):
@@ -232,20 +271,8 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     return options, faults
 
 
-def _first_word(word: str) -> None:
-    """Refuse a first word that is no file and nearly a command: the other words would be planned in its place."""
-    from plan_cutters.domain.checks import did_you_mean
-    from plan_cutters.errors import OptionError
-
-    meant = "" if os.path.exists(word) else did_you_mean(word, commands())
-    if meant:
-        raise OptionError(f"{word} is neither a command nor a file{meant}")
-
-
 def folders(request: PlanRequest) -> list[Path]:
     """The output folder of each part; none where only standard output is written."""
-    from plan_cutters.errors import OptionError
-
     if request.json_out == "-" and request.out is None and request.formats is None:
         return []
     if request.out is not None and len(request.parts) > 1:
@@ -260,121 +287,70 @@ def folders(request: PlanRequest) -> list[Path]:
 
 def _words(request: PlanRequest) -> None:
     """Options that need no file and no number to be read."""
-    from plan_cutters.errors import OptionError
     from plan_cutters.report.folder import read_formats
 
     if request.formats is not None:
         read_formats(request.formats)
-    _json_out(request)
+    checks, several = request.check_operations is not None, len(request.parts) > 1
+    _refuse(
+        (request.process is not None and several, "--process names faces of one part: give one part"),
+        (
+            request.json_out not in (None, "-"),
+            "--json takes -, for standard output; --formats json writes plan.json into the folder",
+        ),
+        (request.json_out and several, "--json - writes one plan: give one part, or -o DIR --formats json for a file of each"),
+        (request.json_out and sys.stdout is None, "--json -: standard output is closed"),
+    )
     if (files := request.case_files) is not None:
         files.check()
-    if request.out == "":
-        raise OptionError("-o: the folder has no name")
-    if "" in request.parts:
-        raise OptionError("PART: a file has no name")
-    _plans_nothing(request)
+    report = "junit" if request.junit is not None else "sarif" if request.sarif is not None else None
+    setups = [str(each).lower() for each in request.setup]
+    plans_nothing = "--check-operations plans nothing"
+    _refuse(
+        (request.out == "", "-o: the folder has no name"),
+        ("" in request.parts, "PART: a file has no name"),
+        (checks and "auto" in setups, f"--setup auto plans what it proposes, and {plans_nothing}: name the setup"),
+        (checks and report, f"--{report} is about planning, and {plans_nothing}: leave one of them out"),
+        (checks and several, "--check-operations is about one part"),
+    )
     if request.check_operations is None:
         refuse_unplanned_operations(request)
-    if request.check_operations is not None and not os.path.isfile(request.check_operations):
+    elif not os.path.isfile(request.check_operations):
         raise OptionError("no such file: give the plan.json of a plan of operations", file=request.check_operations)
-    if not 0.0 < request.read_timeout < math.inf:
-        raise OptionError("--read-timeout must be a positive number of seconds")
-    if request.fail_under is not None and not 0.0 < request.fail_under <= 100.0:
-        raise OptionError("--fail-under must be a percentage above 0 and up to 100")
-    if request.timeout is not None and not 0.0 < request.timeout < math.inf:
-        raise OptionError("--timeout must be a positive number of seconds")
-    if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
-        raise OptionError("--memory must be at least 2 GB")
+    percent, timeout, memory = request.fail_under, request.timeout, request.memory
+    _refuse(
+        (not 0.0 < request.read_timeout < math.inf, "--read-timeout must be a positive number of seconds"),
+        (percent is not None and not 0.0 < percent <= 100.0, "--fail-under must be a percentage above 0 and up to 100"),
+        (timeout is not None and not 0.0 < timeout < math.inf, "--timeout must be a positive number of seconds"),
+        (memory is not None and not LEAST_MEMORY <= memory * 1e9 < 1e18, "--memory must be at least 2 GB"),
+    )
+
+
+def _refuse(*faults: tuple[object, str]) -> None:
+    """Raise the first of what is wrong."""
+    for wrong, why in faults:
+        if wrong:
+            raise OptionError(why)
 
 
 def scheduler(address: str) -> None:
-    """Refuse what is neither a file nor an address.
-
-    Raises
-    ------
-    OptionError
-    """
-    from plan_cutters.errors import OptionError
-
+    """OptionError for what is neither a file nor an address."""
     if not os.path.isfile(address) and "://" not in address:
         raise OptionError("no such file, and no address as tcp://HOST:8786", file=f"--cluster {address}")
 
 
-def _json_out(request: PlanRequest) -> None:
-    from plan_cutters.errors import OptionError
-
-    if request.process is not None and len(request.parts) > 1:
-        raise OptionError("--process names faces of one part: give one part")
-    if request.json_out not in (None, "-"):
-        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
-    if request.json_out and len(request.parts) > 1:
-        raise OptionError("--json - writes one plan: give one part, or -o DIR --formats json for a file of each")
-    if request.json_out and sys.stdout is None:
-        raise OptionError("--json -: standard output is closed")
-
-
-def _plans_nothing(request: PlanRequest) -> None:
-    """Refuse what is about planning, and several parts, where something that was planned is looked at."""
-    from plan_cutters.errors import OptionError
-
-    if request.check_operations is None:
-        return
-    word = "--check-operations"
-    if any(str(each).lower() == "auto" for each in request.setup):
-        raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
-    planning = [each for each in ("junit", "sarif") if getattr(request, each) is not None]
-    if planning:
-        raise OptionError(f"--{planning[0]} is about planning, and {word} plans nothing: leave one of them out")
-    if len(request.parts) > 1:
-        raise OptionError(f"{word} is about one part")
-
-
 def refuse_unplanned_operations(request: PlanningRequest) -> None:
-    """Refuse options of a plan of operations where none is requested.
-
-    Raises
-    ------
-    OptionError
-    """
-    from plan_cutters.errors import OptionError
-
+    """OptionError for options of a plan of operations where none is requested."""
     if request.operations is not None or getattr(request, "process", None) is not None:
         return
-    from plan_cutters.options import ANGLES, Options
-
-    defaults: dict[str, Any] = {each.name: each.default for each in fields(Options)}
     for name in OF_OPERATIONS:
-        default = defaults[name]
-        if name in ANGLES and default is not None:  # the command takes degrees
-            default = round(math.degrees(default), 9)
-        if getattr(request, name) != default:
+        if getattr(request, name) != OPTIONS[name].default:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
 
 
-def _faults(parts: Sequence[str]) -> list[CadIoError]:
-    """Why parts cannot be read, as far as their first bytes tell."""
-    from cad_io.read.sniff import kind
-    from plan_cutters_base.workers.assignment import job_input
-
-    errors: list[CadIoError] = []
-    for part in () if job_input().part else parts:
-        try:
-            kind(part)
-        except CadIoError as error:
-            errors.append(error)
-    return errors
-
-
 def writable(out: Path) -> None:
-    """An error where a folder can surely not be written.
-
-    Raises
-    ------
-    PlanError
-    """
-    from plan_cutters.errors import PlanError
-
+    """PlanError where a folder can surely not be written."""
     if out.exists() and not out.is_dir():
         raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
     # What grows stands beside the folder, and then in it; folders that are not there are made.
@@ -384,34 +360,27 @@ def writable(out: Path) -> None:
 
 
 def look_at(options: "Options") -> None:
-    """An error for words for faces that say nothing, and for fixtures whose file cannot be read."""
+    """An error for words for faces that say nothing, and for fixtures whose file is missing, empty or of no format for them."""
     from plan_cutters.scene.faces import grammar
 
     names = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
     for option, text in (("--faces", options.faces), *(("--ignore", each) for each in names)):
         if isinstance(text, str):
             grammar(text, option)
-    others = [each for place in options.other_placements if place is not None for each in place.fixtures]
-    for fixture in (*options.fixtures, *others):
-        if isinstance(fixture.source, str) and not fixture.kind:
-            _fixture(fixture.source)
-
-
-def _fixture(file: str) -> None:
-    """An error for the file of a fixture that is missing, empty or of no format that fixtures have."""
     from cad_io.read.sniff import kind
     from plan_cutters.domain.fixture import CAD, MESH, no_format
 
-    suffix = Path(file).suffix.lower()
-    if suffix in CAD:
-        kind(file)
-    elif suffix in MESH:
-        if not os.path.exists(file):
-            raise ReadError("no such file", file=file)
-        if not os.path.isfile(file):
-            raise ReadError("is not a file", file=file)
-    else:
-        raise ReadError(no_format(file), file=file)
+    others = [each for place in options.other_placements if place is not None for each in place.fixtures]
+    for fixture in (*options.fixtures, *others):
+        if not isinstance(file := fixture.source, str) or fixture.kind:
+            continue
+        suffix = Path(file).suffix.lower()
+        if suffix in CAD:
+            kind(file)
+        elif suffix not in MESH:
+            raise ReadError(no_format(file), file=file)
+        elif not os.path.isfile(file):
+            raise ReadError("is not a file" if os.path.exists(file) else "no such file", file=file)
 
 
 def options_of(request: PlanningRequest) -> "Options":

@@ -23,72 +23,70 @@ class Effective(Frozen):
 
     cutters: list[str]
     cutter_source: str
-    holder: str | None = Field(default=None, description="of the cutters that were given without one")
-    allowance_mm: float = Field(default=0.0, description="stock left on the surface, unless a cutter says otherwise")
-    holder_clearance_mm: float = Field(
-        default=0.0, description="clearance required of neck, shank and holder, where a cutter says none"
-    )
-    unit: str | None = Field(default=None, description="length unit taken instead of the file's")
-    fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
+    holder: str | None = Field(None, description="of the cutters that were given without one")
+    allowance_mm: float = Field(0.0, description="stock left on the surface, unless a cutter says otherwise")
+    holder_clearance_mm: float = Field(0.0, description="clearance required of neck, shank and holder, where a cutter says none")
+    unit: str | None = Field(None, description="length unit taken instead of the file's")
+    fixtures: list[str] = Field([], description="as on a command line: file or word, placement, unit")
     machine: str
     setup: Vector
-    placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
-    other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
-    propose: bool = Field(default=False, description="always false: what was proposed is in `setup_proposal`")
-    other_placements: list[PlacementEntry | None] = Field(default=[], description="of these; empty if only axes were given")
+    placement: PlacementEntry | None = Field(None, description="null where the axis alone was given")
+    other_setups: list[Vector] = Field([], description="in which every cutter was judged, too")
+    propose: bool = Field(False, description="always false: what was proposed is in `setup_proposal`")
+    other_placements: list[PlacementEntry | None] = Field([], description="of these; empty if only axes were given")
     faces: str
-    ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as requested")
+    ignore: list[str] = Field([], description="faces that are neither targets nor obstacles, as requested")
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
     spacing_mm: float | None = Field(description="largest spacing requested; null where sampled by grid")
-    sampled_by: Literal["default", "spacing", "grid"] = Field(default="default", description="the option that set the density")
+    sampled_by: Literal["default", "spacing", "grid"] = Field("default", description="the option that set the density")
     tilt_deg: tuple[float, float]
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
     tolerance_mm: float = Field(description="the gouge tolerance that was met, raised where a budget binds")
-    tolerance_requested_mm: float | None = Field(default=None, description="null in older files")
+    tolerance_requested_mm: float | None = Field(None, description="null in older files")
     local_tolerance: list[LocalTolerance] = Field(
-        default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
+        [], description="faces that obstacle triangles follow less closely than all others, the loosest first"
     )
     chord_error_mm: float = Field(
         description="bound of the distance between obstacle triangles and the surface, but on faces in `local_tolerance`"
     )
     chord_measured_share: float = Field(
-        default=0.0,
+        0.0,
         description="share of the triangles whose distance is measured at points, not proved: on faces whose surface or border "
         "only the CAD kernel can evaluate",
     )
     obstacle_triangles: int
     flip: bool
     sharp_edges: Literal["asked", "left"] = Field(
-        default="asked", description="left: strips at sharp inside edges that no cutter enters are not required"
+        "asked", description="left: strips at sharp inside edges that no cutter enters are not required"
     )
     effort: Literal["quick", "normal", "thorough"] = Field(
-        default="normal", description="how much work advice and proofs after the verdicts may take"
+        "normal", description="how much work advice and proofs after the verdicts may take"
     )
     units: Literal["mm", "in"] | None = Field(
-        default=None, description="of lengths in words: mm or in; null: mm, and tools as they were given; numbers here are mm"
+        None, description="of lengths in words: mm or in; null: mm, and tools as they were given; numbers here are mm"
     )
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
-    map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")
-    answers: list[str] = Field(default=[], description="what was requested after the plan")
-    length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is requested")
-    operations: str | None = Field(default=None, description="plan of operations requested: fewest, fastest or both")
-    feed_mm_min: float | None = Field(default=None, description="of all cutters; null: of the libraries' presets")
+    map_budget: int | None = Field(None, description="samples to map, at most; null: what some minutes allow")
+    answers: list[str] = Field([], description="what was requested after the plan")
+    length_over_radius: float = Field(10.0, description="of the ends whose largest radius is requested")
+    operations: str | None = Field(None, description="plan of operations requested: fewest, fastest or both")
+    feed_mm_min: float | None = Field(None, description="of all cutters; null: of the libraries' presets")
     scallop_mm: float = 0.01
-    stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")
-    index_step_deg: float | None = Field(default=None, description="rotary axes lock at whole multiples of it alone")
-    axis_accuracy_deg: float = Field(default=0.05, description="orientations of one setup that are nearer than this are one")
-    index_time_s: float = Field(default=5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
+    stepover: float = Field(0.75, description="widest distance of passes, in diameters")
+    index_step_deg: float | None = Field(None, description="rotary axes lock at whole multiples of it alone")
+    axis_accuracy_deg: float = Field(0.05, description="orientations of one setup that are nearer than this are one")
+    index_time_s: float = Field(5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
     change_time_s: float = 20.0
     setup_time_s: float = 300.0
-    overlap_mm: float = Field(default=2.0, description="of operations at a common border")
-    link_time_s: float = Field(default=1.0, description="from the end of a pass to the next one")
-    border_cost: float = Field(default=0.05, description="seconds that a mm of border on a free-form face counts in comparisons")
+    overlap_mm: float = Field(2.0, description="of operations at a common border")
+    link_time_s: float = Field(1.0, description="from the end of a pass to the next one")
+    border_cost: float = Field(0.05, description="seconds that a mm of border on a free-form face counts in comparisons")
     most_operations: int | None = None
     process: dict[str, Any] | None = Field(
-        default=None, description="the planner's own steps, as a file has them (`process.toml`); null: all steps were planned"
+        None, description="the planner's own steps, as a file has them (`process.toml`); null: all steps were planned"
     )
-    patterns: bool = Field(default=True, description="equal faces are judged and planned once")
-    max_orientations: int = Field(default=8, description="of the fastest plan: with more, simultaneous motion is recommended")
+    patterns: bool = Field(True, description="equal faces are judged and planned once")
+    max_orientations: int = Field(8, description="of the fastest plan: with more, simultaneous motion is recommended")

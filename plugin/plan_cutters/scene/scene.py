@@ -18,7 +18,8 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import plane_of, unit
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
-from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
+from plan_cutters.option_table import MOST_TOLERANCE
+from plan_cutters.options import Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
