@@ -9,20 +9,18 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
-from plan_cutters.domain.checks import choice, did_you_mean, flag, not_empty, number, shown, whole
+from plan_cutters.domain.checks import Angle, choice, degrees_too, did_you_mean, flag, not_empty, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.default_tools import builtin
-from plan_cutters.domain.degrees import Angle, degrees_too
+from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.host_axes import HostAxis, HostPlane
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, PostureRange, Range
+from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
-from plan_cutters.domain.spec import notation
+from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of

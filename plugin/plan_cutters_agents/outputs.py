@@ -30,7 +30,7 @@ def tools_in(output: bytes) -> tuple[list[Entry], list[str]]:
 
 def built_in_tools() -> list[Entry]:
     """The tools that are judged where none are named."""
-    from plan_cutters.domain.default_tools import builtin
+    from plan_cutters.domain.standard_tools import builtin
     from plan_cutters.plan_file.words.names import kind
 
     return [

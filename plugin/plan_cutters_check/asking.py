@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Part
-from cad_io.part.orient import orient
-from cad_io.part.repeats import repeated_faces
+from cad_io.part.bodies import orient
+from cad_io.part.patterns import repeated_faces
 from plan_cutters.document.plan import as_requested
 from plan_cutters.domain.clamping import Block, Chuck, Vise
 from plan_cutters.domain.cutter import Cutter
@@ -19,8 +19,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.tolerance import effective_tolerance
-from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.domain.verdicts import REASONS, effective_tolerance
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options
 from plan_cutters.plan_file.effective import Effective

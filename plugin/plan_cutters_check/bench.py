@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from cad_io.kernel.inside import within
+from cad_io.kernel.shapes import within
 from plan_cutters_check.fixtures import PlacedFixture, rotation_of
 from plan_cutters_check.question import Question, frame_of
 from plan_cutters_check.surface import FREE, MET, OPEN, SIDES, Cells, Clock, Face, lowest, met, nearest

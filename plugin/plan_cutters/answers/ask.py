@@ -20,8 +20,6 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import mm, reporting
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts, over_setups
-from plan_cutters.options import EFFORT
-from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.words.next_steps import samples

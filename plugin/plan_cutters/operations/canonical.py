@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.operations.orientations import face_directions
 from plan_cutters.operations.plans import clearance_of, costs_with
 from plan_cutters.operations.task import Task

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.columns import Columns, columns_of
-from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
-from plan_cutters.domain.own_results import Nearest, OwnResult
+from plan_cutters.domain.operations import Columns, columns_of
+from plan_cutters.domain.own_process import Nearest, OwnProcess, OwnResult, OwnStep, cutter_of
 from plan_cutters.domain.verdicts import UNJUDGED
 from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with

@@ -20,10 +20,6 @@ from plan_cutters.judging.between import Between, between
 from plan_cutters.judging.cells import tensors
 from plan_cutters.judging.face_cells import Fixed
 from plan_cutters.operations.moving_axes import fields
-from plan_cutters.options import EFFORT
-from plan_cutters.judging.margin import margin
-from plan_cutters.judging.nodes import tensors
-from plan_cutters.operations.moving_proof import counted_pieces, proved_moving, proved_share
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.operations import TurningEntry
