@@ -16,7 +16,7 @@ from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
-from plan_cutters.document.setups import OtherSetup, OverSetups, setup_table
+from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
@@ -34,10 +34,9 @@ from plan_cutters.judging.travel import travels
 from plan_cutters.judging.witness import witnesses
 from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry
-from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.notes import maps_partial
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
+from plan_cutters.plan_file.words.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context

@@ -3,8 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters.cases.case import Case
-from plan_cutters.cases.sarif import document
+from plan_cutters.cases.files import Case, document
 from tests.support.cases import OUTCOMES, TEXT
 from tests.support.sarif import findings
 

@@ -4,9 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.cases.case import Case
-from plan_cutters.cases.files import CaseFiles
-from plan_cutters.cases.junit import document
+from plan_cutters.cases.files import Case, CaseFiles, document
 from plan_cutters.cases.plan import PROCESS, plan_cases
 from plan_cutters.command.codes import code_of
 from plan_cutters.errors import OptionError, PlanError

@@ -18,7 +18,7 @@ from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.judging.setups import within_limits
 from plan_cutters.options import LEAST_TOLERANCE
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import conditions_of, with_setups

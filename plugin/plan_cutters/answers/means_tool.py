@@ -16,7 +16,7 @@ from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.domain.standard_holders import NOSES, chuck
 from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
 from plan_cutters.errors import CutterError
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.preparation import Prepared
 
 #: Samples on which the cutters that are sold are compared, at most about so many.

@@ -11,7 +11,7 @@ from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.change import Advice
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.plan_file.words.next_steps import samples
+from plan_cutters.plan_file.words.answers import samples
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 from plan_cutters.scene.work import Budget

@@ -20,7 +20,7 @@ from plan_cutters.domain.change import MEANS, Advice, Means, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 from plan_cutters.scene.work import Budget

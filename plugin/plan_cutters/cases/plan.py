@@ -6,12 +6,13 @@ The file agrees with the exit code of the command: a case fails only where that 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from plan_cutters.cases.case import Case, Outcome
+from plan_cutters.cases.files import Case, Outcome
 from plan_cutters.domain.figures import count, listed, mm, percent, place
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.operations import UNJUDGED_CAUSE
+from plan_cutters.plan_file.reasons import reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, unreached
-from plan_cutters.plan_file.words.cutters import called, main_reason, reason
+from plan_cutters.plan_file.words.cutters import called, main_reason
 from plan_cutters.plan_file.words.names import short_names
 
 #: Name of the case that is about all steps together.

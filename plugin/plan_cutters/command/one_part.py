@@ -16,7 +16,7 @@ from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
-from plan_cutters.plan_file.words.face import others
+from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 

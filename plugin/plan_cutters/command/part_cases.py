@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from plan_cutters_base.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
-    from plan_cutters.cases.case import Case
-    from plan_cutters.cases.files import CaseFiles
+    from plan_cutters.cases.files import Case, CaseFiles
     from plan_cutters.plan_file.model import Plan
 
 _SUITE = "plan-cutters"
@@ -43,7 +42,7 @@ class PartCases:
 
     def handed(self, text: str) -> None:
         """Take the cases of the part that began last."""
-        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.files import Case
 
         self.cases[self.part] = [Case(*each) for each in json.loads(text)]
 
@@ -61,7 +60,7 @@ class PartCases:
         PlanError
             One cannot be written.
         """
-        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.files import Case
         from plan_cutters.cases.plan import PROCESS
 
         cases: list[Case] = []

@@ -16,9 +16,9 @@ from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import unjudged
 from plan_cutters.options import Options
-from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.notes import Note
+from plan_cutters.plan_file.words import notes
+from plan_cutters.plan_file.words.notes import Note
 from plan_cutters.scene.faces import clamped_faces, repeated_groups
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene

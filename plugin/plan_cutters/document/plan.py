@@ -23,8 +23,7 @@ from plan_cutters.document.build import (
     void_faces,
 )
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.process import process_entry
-from plan_cutters.document.setups import OverSetups, linear_entries, placement_entry, travel_entry
+from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import Advice, Step
 from plan_cutters.domain.fillet import Fitting
@@ -55,6 +54,7 @@ from plan_cutters.plan_file.answers import (
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import (
+    ANOTHER_SETUP,
     AreaEntry,
     CutterEntry,
     LibraryEntry,
@@ -66,15 +66,15 @@ from plan_cutters.plan_file.model import (
     Selection,
     SourceEntry,
     UnusedEntry,
+    leaves,
+    nearest,
 )
-from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
-from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry
+from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SetupEntry, SetupReach, SharpEdgeEntry
 from plan_cutters.plan_file.reasons import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
-from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words import headline as words
-from plan_cutters.plan_file.words.next_steps import patch
+from plan_cutters.plan_file.words.answers import patch
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
 

@@ -1,7 +1,7 @@
-"""Make the process of a plan: its steps, and what they leave by cause."""
+"""Entries on setups and the process: verdicts over all setups, where the part stands, steps, and what they leave by cause."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -9,22 +9,24 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, SurfaceSamples
 from cad_io.part.motion import Motion
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
-from plan_cutters.document.setups import OverSetups
 from plan_cutters.domain.change import Step
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.fillet import Fit, Fitting
+from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import by_radius
-from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE
+from plan_cutters.domain.travel import Travel
+from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE, Verdicts
+from plan_cutters.judging.setups import AXES, within_limits
 from plan_cutters.outcome import Answers, OperationPlan, Operations
-from plan_cutters.plan_file.frozen import filled, vector
-from plan_cutters.plan_file.model import CutterEntry
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.frozen import Vector, filled, vector
+from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
@@ -41,9 +43,116 @@ from plan_cutters.plan_file.operations import (
     ProcessStep,
     RemainingEntry,
 )
+from plan_cutters.plan_file.part_info import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
+from plan_cutters.plan_file.words.answers import typed_size
 from plan_cutters.plan_file.words.names import kind
-from plan_cutters.plan_file.words.next_steps import typed_size
 from plan_cutters.scene.preparation import Prepared
+
+#: A setup axis, and what each cutter reaches there by its id.
+OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
+
+
+@dataclass(frozen=True, slots=True)
+class OverSetups:
+    """The verdicts of each cutter over all setups and in each of them, by its id."""
+
+    #: In one setup or another.
+    reaches: dict[str, Verdicts]
+    #: In the first one.
+    here: dict[str, Verdicts]
+    #: The setup that serves each sample, (n,) int32.
+    served_in: dict[str, Ints]
+    #: (float, float, float); its axis.
+    first: Vector
+    #: In each other setup.
+    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
+
+    def each(self) -> tuple[OtherSetup, ...]:
+        """Every setup with what is reached there, the first one first."""
+        return ((self.first, self.here), *self.elsewhere)
+
+
+def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
+    """Tell how much is within the axis limits and is reached in each setup asked for, `within` (n,) each, and how much would be
+    within them in each along the part's own axes.
+    """
+    if not ready.conditions.machine.limited:
+        return []
+    finished = ready.finished
+    whole = float(ready.samples.area[finished].sum())
+
+    def share(mine: NDArray[np.bool_]) -> float:
+        return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
+
+    entries: dict[Vector, SetupEntry] = {}
+    for k, (axis, each) in enumerate(over.each()):
+        mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
+        entries.setdefault(
+            axis,
+            SetupEntry(
+                axis=axis, within=int(within[k].sum()), share=share(within[k]), reached=int(mine.sum()), reached_share=share(mine)
+            ),
+        )
+    for axis in AXES:
+        if axis not in entries:
+            mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+            entries[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
+    return list(entries.values())
+
+
+def placement_entry(placement: Placement | None) -> PlacementEntry | None:
+    """How a part stands."""
+    if placement is None:
+        return None
+    file = None if placement.proposed else placement.file or None
+    return PlacementEntry(file=file, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
+
+
+def linear_entries(ready: Prepared) -> list[LinearEntry]:
+    """The linear axes of the machine in the part's frame of the first setup, and how far the target samples reach along each."""
+    entries = []
+    for axis in ready.options.machine.linear:
+        direction = np.array(axis.direction) @ ready.conditions.frame
+        along = ready.samples.point[ready.finished] @ direction
+        low, high = axis.limits or (-np.inf, np.inf)
+        entries.append(
+            LinearEntry(
+                name=axis.name,
+                carries=axis.carries,
+                direction=vector(direction),
+                limits_mm=(float(low) if np.isfinite(low) else None, float(high) if np.isfinite(high) else None),
+                extent_mm=float(np.ptp(along)) if len(along) else 0.0,
+            )
+        )
+    return entries
+
+
+def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
+    """Give the travel of the linear axes that a cutter needs."""
+    known = reach.reached & np.isfinite(travel.position).all(axis=1)
+    axes, worst = [], []
+    for k, axis in enumerate(machine.linear):
+        position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
+        low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+        least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
+        axes.append(
+            AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most, outside=int((beyond > 0.0).sum()))
+        )
+        if len(beyond) and beyond.max() > 0.0:
+            at = int(beyond.argmax())
+            worst.append(
+                BeyondTravel(
+                    point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name, beyond_mm=float(beyond[at])
+                )
+            )
+    return TravelEntry(
+        judged=int(known.sum()),
+        unknown=int((reach.reached & ~known).sum()),
+        outside=int((travel.outside & known).sum()),
+        axes=axes,
+        worst=sorted(worst, key=lambda each: -each.beyond_mm),
+    )
+
 
 #: Angles that are written to three digits are equal within this, deg.
 _WRITTEN = 0.0021

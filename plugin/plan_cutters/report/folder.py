@@ -42,8 +42,8 @@ WRITERS = {
     "operations_glb": ("operations.glb", "models", "write_operations_glb"),
     "fastest_step": ("operations_fastest.step", "models", "write_fastest_step"),
     "fastest_glb": ("operations_fastest.glb", "models", "write_fastest_glb"),
-    "csv": ("axes.csv", "axes", "write_csv"),
-    "vtk": ("axes.vtp", "axes", "write_vtk"),
+    "csv": ("axes.csv", "arrays", "write_csv"),
+    "vtk": ("axes.vtp", "arrays", "write_vtk"),
     "png": ("review.png", "drawing.part", "write_png"),
 }
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the

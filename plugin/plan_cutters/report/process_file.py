@@ -11,7 +11,7 @@ from plan_cutters.domain.spec import typed
 from plan_cutters.library.toml import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep
-from plan_cutters.plan_file.setups import ProposedSetup
+from plan_cutters.plan_file.part_info import ProposedSetup
 from plan_cutters.report.protocol import Judged
 
 

@@ -6,18 +6,14 @@ from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, sentence
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText, nearest
 from plan_cutters.plan_file.words import notes
-from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
-from plan_cutters.plan_file.words.headline import Headline, could_not, headline
-from plan_cutters.plan_file.words.names import Line, named, short_names
-from plan_cutters.plan_file.words.next_steps import together
-from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import in_short, one_more, operations
-from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
-from plan_cutters.plan_file.words.scope import (
+from plan_cutters.plan_file.words.headline import (
+    Headline,
+    could_not,
+    headline,
     in_summary,
     inside,
     inside_radii,
@@ -28,6 +24,18 @@ from plan_cutters.plan_file.words.scope import (
     sharp_edges,
     undecided,
     unseen,
+)
+from plan_cutters.plan_file.words.names import Line, named, short_names
+from plan_cutters.plan_file.words.notes import repeated_warnings
+from plan_cutters.plan_file.words.process import (
+    ProcessStory,
+    in_short,
+    one_more,
+    operations,
+    process_story,
+    shortened,
+    with_process_words,
+    wrapped,
 )
 
 

@@ -18,7 +18,7 @@ from plan_cutters.domain.figures import mm
 from plan_cutters.domain.posture import unit
 from plan_cutters.plan_file.reasons import LABELS, label, rgb
 from plan_cutters.plan_file.shares import VERDICTS, part_of
-from plan_cutters.plan_file.words.face import rendered
+from plan_cutters.plan_file.words.cutters import rendered
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.posture_map import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.models import shown_pieces

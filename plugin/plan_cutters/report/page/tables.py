@@ -22,11 +22,11 @@ from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, OPERATIONS, PALETTE, REASONS, label, operation_colour
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
+from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import Line, named, short_names
-from plan_cutters.plan_file.words.next_steps import step_text
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text
+from plan_cutters.plan_file.words.process import OperationText, of_the_whole, operation_text
 from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
 from plan_cutters.report.protocol import Judged
