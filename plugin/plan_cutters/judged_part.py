@@ -36,7 +36,7 @@ from plan_cutters.options import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
-from plan_cutters.plan_file.words.notes import maps_partial
+from plan_cutters.plan_file.words.notes import note
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
@@ -268,7 +268,7 @@ def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callabl
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:
-        document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
+        document = noted(document, note("maps_partial", unmapped=maps.unmapped, judged=int((maps.verdict != UNJUDGED).sum())))
     return replace(result, plan=document, maps=maps)
 
 

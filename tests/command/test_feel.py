@@ -59,7 +59,7 @@ def shown(capsys, document, *, verbose=False):
     """What the summary says."""
     capsys.readouterr()
     summaries.summary(document, verbose=verbose)
-    after = others(document, every=True) if verbose else []
+    after = others(document) if verbose else []
     show(*after, *summaries.written(document, Path("out"), ("json",), verbose=verbose))
     return capsys.readouterr().out
 

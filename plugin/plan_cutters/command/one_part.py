@@ -122,9 +122,7 @@ def one_part(
     if request.json_out == "-" and tells:
         terminal.hand_out(dumps(document))
     if not request.quiet and tells:
-        _tells(request)(
-            *(others(document, every=True) if request.verbose else []), *written(document, out, formats, verbose=request.verbose)
-        )
+        _tells(request)(*(others(document) if request.verbose else []), *written(document, out, formats, verbose=request.verbose))
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return _interrupted(out) if interrupts else (code_of(document, request.fail_under), "")

@@ -190,14 +190,6 @@ def first_step(entry: CutterEntry) -> StepEntry | None:
     return next((step for step in (entry.mend.steps if entry.mend else []) if not is_excluded(step)), None)
 
 
-def remaining(advice: MendEntry) -> str:
-    """Say in a clause which areas are still not reached after the best step; empty where there are none."""
-    best = next((step for step in advice.steps if not is_excluded(step)), None)
-    if best is None or not best.remains:
-        return ""
-    return "; ".join(each.why for each in best.remains)
-
-
 #: Faces that are named; shares of an area from which on points are named, and from which on they are most of it.
 _FEW, _NAMED, _POINTS, _MAINLY = 2, 3, 0.05, 0.5
 #: A step that does less of an area is no answer to it; what does so much leaves hardly any; a size that fits less does not fit.
@@ -249,16 +241,11 @@ def first_tries(cause: str, advice: MendEntry | None) -> str:
     """Say what to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
     if cause not in REASONS:
         return ""
-    return ", or ".join(words for words, means in REASONS[cause].tries if not (means and all(_refuted(advice, m) for m in means)))
-
-
-def _refuted(advice: MendEntry | None, means: str) -> bool:
-    """Whether steps were looked for, and none of them is such a change."""
-    return (
-        advice is not None
-        and bool(advice.steps)
-        and all(change.thing != means for step in advice.steps for change in step.changes)
-    )
+    # Where steps were looked for, a change that none of them makes is refuted.
+    compared = bool(advice and advice.steps)
+    made = {change.thing for step in advice.steps for change in step.changes} if advice else set()
+    tries = REASONS[cause].tries
+    return ", or ".join(words for words, means in tries if not (compared and means and made.isdisjoint(means)))
 
 
 def _sizes(fits: list[FitEntry]) -> str:
@@ -301,7 +288,7 @@ SAME = 0.02
 
 def answers(plan: Plan) -> list[Line]:
     """A line or two for each answer, cutters called as everywhere; what is to be typed is as it must be typed."""
-    lines = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
+    lines = (*_stick_outs(plan), *_radii(plan), *_next(plan))
     return [line._replace(text=capital(named(plan, line.text))) for line in lines]
 
 
@@ -365,37 +352,29 @@ def _radii(plan: Plan) -> Iterator[Line]:
         yield Line("Stick-outs and largest radii hold provided that no missing obstacle is in the way.")
 
 
-def _mends(plan: Plan) -> Iterator[Line]:
+def _next(plan: Plan) -> Iterator[Line]:
+    """Steps for each cutter, the best first, with the option that each takes."""
     for c in sorted((c for c in plan.cutters if c.mend), key=lambda c: c.mend.lost_share if c.mend else 0.0):
-        if c.mend is None:
+        advice = c.mend
+        if advice is None or not advice.steps:
+            yield Line(f"Nothing sure would make {c.id} finish: {advice.why if advice else ''}.")
             continue
-        yield from _next(c, c.mend)
-        if not c.mend.steps:
-            yield Line(f"Nothing sure would make {c.id} finish: {c.mend.why}.")
+        unsure = " (provided that no missing obstacle is in the way)" if advice.unsure else ""
+        yield Line(f"What next for {c.id}, which leaves {some(advice.lost_share)} of the area{unsure}:")
+        steps = [step for step in advice.steps if not is_excluded(step)]
+        for k, step in enumerate(steps[:_STEPS], 1):
+            typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
+            yield Line(f"  {k}. {step_text(step)}.", typed=typed)
+        if len(steps) > _STEPS:
+            yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
+        if not steps:
+            yield Line("  No step was found that frees any of it.")
+        if advice.uncompared:
+            of = len(steps) + advice.uncompared
+            yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
+        if steps and (rest := "; ".join(each.why for each in steps[0].remains)):
+            yield Line(f"  After step 1 stays: {rest}.")
+        yield from (Line(f"  Or {step.why}.") for step in advice.steps if is_excluded(step))
     if omitted := len(plan.not_mended):
         which = "cutter that leaves more was" if omitted == 1 else "cutters that leave more were"
         yield Line(f"{omitted} more {which} not asked about: plan with one of them alone.")
-
-
-def _next(c: CutterEntry, advice: MendEntry) -> Iterator[Line]:
-    """Steps for a cutter, the best first, with the option that each takes."""
-    if not advice.steps:
-        return
-    unsure = " (provided that no missing obstacle is in the way)" if advice.unsure else ""
-    yield Line(f"What next for {c.id}, which leaves {some(advice.lost_share)} of the area{unsure}:")
-    steps = [step for step in advice.steps if not is_excluded(step)]
-    for k, step in enumerate(steps[:_STEPS], 1):
-        typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
-        yield Line(f"  {k}. {step_text(step)}.", typed=typed)
-    if len(steps) > _STEPS:
-        yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
-    if not steps:
-        yield Line("  No step was found that frees any of it.")
-    if advice.uncompared:
-        of = len(steps) + advice.uncompared
-        yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
-    if rest := remaining(advice):
-        yield Line(f"  After step 1 stays: {rest}.")
-    for step in advice.steps:
-        if is_excluded(step):
-            yield Line(f"  Or {step.why}.")

@@ -112,11 +112,7 @@ def story_of(plan: Plan) -> Story:
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
         operations=tuple(operations(plan)),
         answers=tuple(answers(plan)),
-        doubts={
-            "warnings": tuple(notes.warnings(plan)),
-            "faces that are not judged": tuple(notes.unjudged(plan)),
-            "missing obstacles": tuple(notes.missing(plan)),
-        },
+        doubts=notes.unsure(plan),
         notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
     )
 
