@@ -5,13 +5,12 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import area as area_text
 from plan_cutters.domain.figures import area as mm2
 from plan_cutters.domain.figures import capital, count, duration, joined, listed, mm, percent, ranges, reported, size, some
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan, nearest
-from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
+from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
+from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, Scope
 from plan_cutters.plan_file.shares import part_of, reached_share
 from plan_cutters.plan_file.words.names import described
 
@@ -30,6 +29,13 @@ def judged(plan: Plan) -> str:
 def requested(plan: Plan) -> str:
     """Name what of the part was judged, below a line with its name: `the 6 fillets (23 % of the area)`."""
     return f"{_requested(plan, plan.scope)} ({_share(plan.scope)} of the area)" if plan.scope else "the part"
+
+
+def _requested(plan: Plan, scope: Scope) -> str:
+    words = {word.strip() for word in plan.effective.faces.split(",")}
+    if words <= _BY_KIND:
+        return f"the {_listed(scope.judged_by_kind).removeprefix('1 ')}"
+    return f"the {scope.judged} faces asked for" if scope.judged > 1 else "the face asked for"
 
 
 def sized(plan: Plan, part: str) -> str:
@@ -58,25 +64,13 @@ def not_judged(plan: Plan) -> list[str]:
     return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."]
 
 
-def _requested(plan: Plan, scope: Scope) -> str:
-    words = {word.strip() for word in plan.effective.faces.split(",")}
-    if words <= _BY_KIND:
-        return f"the {_listed(scope.judged_by_kind).removeprefix('1 ')}"
-    return f"the {scope.judged} faces asked for" if scope.judged > 1 else "the face asked for"
-
-
 def _listed(kinds: dict[str, int]) -> str:
     """Faces by their kinds: `6 free-form faces, 39 plane and round faces and 12 fillets`."""
-    free, blends = kinds.get("sculptured", 0), kinds.get("blend", 0)
-    plane = kinds.get("plane", 0)
+    free, blends, plane = (kinds.get(kind, 0) for kind in ("sculptured", "blend", "plane"))
     others = sum(kinds.values()) - free - blends
     simple = "plane and round" if 0 < plane < others else "plane" if plane else "round"
-    each = [_counted(free, "free-form face"), _counted(others, f"{simple} face"), _counted(blends, "fillet")]
-    return joined([text for text in each if text])
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number:,} {word}{'' if number == 1 else 's'}" if number else ""
+    each = (free, "free-form face"), (others, f"{simple} face"), (blends, "fillet")
+    return joined([count(number, word) for number, word in each if number])
 
 
 def _share(scope: Scope) -> str:
@@ -192,13 +186,23 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
         "part: it is no surface of the finished part, and what follows is about the rest."
     ]
     covering_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
-    lines += [_body_text(each) for each in covering_bodies[:most]]
-    lines += _more(covering_bodies[most:], "body covers", "bodies cover")
-    over = [each for each in entry.bodies if each.how == "overlaps"]
-    if over:
-        each = "; ".join(f"{_called(b)} covers {mm2(b.area_mm2)} of {listed(b.faces, 4)}" for b in over[: most - 2])
-        rest = len(over) - (most - 2)
-        lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
+    for body in covering_bodies[:most]:
+        name, on, area = f"Body {_called(body)}", listed(body.faces, 4), mm2(body.area_mm2)
+        verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
+        if body.largest:
+            lines.append(f"{name} covers {area} of {on}, which {'touches' if len(body.faces) == 1 else 'touch'} it.")
+        else:
+            lines.append(
+                f"{name} {verb} {on} and covers {area} there. It stays in the way, and what lies under it is not planned. To "
+                f"plan that, as for another clamping, leave the body out (nothing is then checked against it): {body.option}."
+            )
+    if rest := covering_bodies[most:]:
+        cover = "body covers" if len(rest) == 1 else "bodies cover"
+        lines.append(f"{len(rest)} more {cover} {mm2(sum(each.area_mm2 for each in rest))}: see plan.json.")
+    if over := [each for each in entry.bodies if each.how == "overlaps"]:
+        each = "; ".join(f"body {_called(b)} covers {mm2(b.area_mm2)} of {listed(b.faces, 4)}" for b in over[: most - 2])
+        unlisted = f"; {len(over) - (most - 2)} more in plan.json" if len(over) > most - 2 else ""
+        lines.append(f"Bodies overlap: {each}{unlisted}.")
     if entry.sheets is not None:
         sheets, area = entry.sheets, mm2(entry.sheets.area_mm2)
         what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
@@ -208,30 +212,10 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
     return lines
 
 
-def _body_text(body: CoveringBody) -> str:
-    on, area = listed(body.faces, 4), mm2(body.area_mm2)
-    verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
-    if body.largest:
-        touch = "touches" if len(body.faces) == 1 else "touch"
-        return f"{_called(body, first=True)} covers {area} of {on}, which {touch} it."
-    return (
-        f"{_called(body, first=True)} {verb} {on} and covers {area} there. It stays in the way, and what lies under "
-        f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
-        f"{body.option}."
-    )
-
-
-def _called(body: CoveringBody, *, first: bool = False) -> str:
-    """A body as it is told: its number, its name, its faces."""
+def _called(body: CoveringBody) -> str:
+    """The number of a body, its name, its faces."""
     name = f' "{body.name}"' if body.name else ""
-    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 2)})"
-
-
-def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:
-    if not bodies:
-        return []
-    area = mm2(sum(each.area_mm2 for each in bodies))
-    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area}: see plan.json."]
+    return f"{body.number}{name} ({listed(body.own_faces, 2)})"
 
 
 def inside_radii(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
@@ -310,13 +294,8 @@ def _sentence(each: PatternEntry) -> str:
         text = f"{listed}{more} are {each.order} {what}, {360.0 / each.order:.4g} deg apart"
     else:
         text = f"{listed}{more} are {each.order} {what}, shifted"
-    return f"{text}{_judged(each)}."
-
-
-def _judged(each: PatternEntry) -> str:
-    if each.moved or each.followed:
-        return ": judged once" + (f", verified at {count(each.verified, 'sample')}" if each.verified else "")
-    return ""
+    verified = f", verified at {count(each.verified, 'sample')}" if each.verified else ""
+    return f"{text}{f': judged once{verified}' if each.moved or each.followed else ''}."
 
 
 def proposal(plan: Plan) -> tuple[str, ...]:
@@ -325,7 +304,13 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     if entry is None:
         return ()
     one = len(entry.setups) == 1
-    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in entry.setups]
+    stands = [
+        f"in a {each.clamping} that grips {', '.join(each.grips)}"
+        if each.clamping != "table"
+        else f"on {', '.join(each.stands_on) or 'no plane (something must hold it)'}"
+        for each in entry.setups
+    ]
+    where = [f"{how}, with {axis_words(each.axis)}" for how, each in zip(stands, entry.setups, strict=True)]
     where[0] += " of the part along the spindle"
     text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
     share = percent(entry.found)
@@ -344,12 +329,6 @@ def proposal(plan: Plan) -> tuple[str, ...]:
             "proposal did better. Name a setup with its fixtures."
         )
     return tuple(lines)
-
-
-def _stands(each: ProposedSetup) -> str:
-    if each.clamping != "table":
-        return f"in a {each.clamping} that grips {', '.join(each.grips)}"
-    return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"
 
 
 _ONE = {"ball": "ball end", "bull": "bull nose", "flat": "flat end", "special": "tapered cutter, barrel, lens or lollipop",
@@ -397,7 +376,7 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
-def comes_last(plan: Plan) -> str:
+def _comes_last(plan: Plan) -> str:
     """The cutter that does alone, where the process has cutters of more wanted kinds before it; else empty."""
     entry = next((each for each in plan.cutters if each.id == plan.selected), None)
     steps = plan.process.steps if plan.process else []
@@ -476,7 +455,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
         return Headline(f"Take {names[name]}", True, about, why + could_not(plan))
 
-    late = comes_last(plan)
+    late = _comes_last(plan)
     if process is None or process.finished:
         if plan.selected and not late:
             # Of several setups one may do by itself.
@@ -492,7 +471,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     best = nearest(plan.cutters)
     finished = process.finished if process else not best.not_reached
     share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
-    title = f"{_placed(plan)}: {_much(plan, share, finished=finished)}"
+    title = _title(plan, share, finished=finished)
     about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {requested(plan)}."
     if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
         (only,) = used
@@ -507,27 +486,24 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
 
 
-def _placed(plan: Plan) -> str:
-    """The part, on which machine, and on what it stands where that was proposed."""
+def _title(plan: Plan, share: float, *, finished: bool) -> str:
+    """The part, on which machine, on what it stands where that was proposed; how much is finished, and in what time."""
     proposed = plan.setup_proposal.setups if plan.setup_proposal else []
     machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
-    part, setups = f"{sized(plan, plan.part.file or 'part')}{machine}", 1 + len(plan.effective.other_setups)
+    setups, where = 1 + len(plan.effective.other_setups), ""
     if len(proposed) == 1 and proposed[0].clamping != "table":
-        return f"{part}, in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
-    if len(proposed) == 1 and proposed[0].stands_on:
-        return f"{part}, stood on {listed(proposed[0].stands_on, 2)}"
-    return f"{part}{f', in {setups} setups' if setups > 1 else ''}"
-
-
-def _much(plan: Plan, share: float, *, finished: bool) -> str:
-    """How much of what is asked is finished, and in what time."""
-    whole = plan.process.asked_mm2 if plan.process else math.nan
-    of = f"the {area_text(whole)} to machine" if math.isfinite(whole) else "the area to machine"
-    seconds = plan.process.seconds if plan.process else None
-    took = f", {duration(seconds)}" if seconds is not None else ""
-    if plan.process and plan.process.setup_seconds:
-        took += f" and {duration(plan.process.setup_seconds)} to clamp it again"
-    return f"{percent(share, some=share > 0.0, whole=finished and share >= 1.0)} of {of}{took}"
+        where = f", in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
+    elif len(proposed) == 1 and proposed[0].stands_on:
+        where = f", stood on {listed(proposed[0].stands_on, 2)}"
+    elif setups > 1:
+        where = f", in {setups} setups"
+    process = plan.process
+    whole = process.asked_mm2 if process else math.nan
+    of = f"the {mm2(whole)} to machine" if math.isfinite(whole) else "the area to machine"
+    took = f", {duration(process.seconds)}" if process and process.seconds is not None else ""
+    again = f" and {duration(process.setup_seconds)} to clamp it again" if process and process.setup_seconds else ""
+    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
+    return f"{sized(plan, plan.part.file or 'part')}{machine}{where}: {much} of {of}{took}{again}"
 
 
 def every(plan: Plan) -> str:
@@ -562,20 +538,19 @@ def area(plan: Plan) -> str:
 
 def between(plan: Plan, c: CutterEntry) -> str:
     """Say how much is known of the area between the samples, and its meaning; empty where that was not requested."""
-    return "" if c.area is None else _between(c.area, area(plan))
-
-
-def _between(area: AreaEntry, of: str) -> str:
-    if area.feasible:
+    known, of = c.area, area(plan)
+    if known is None:
+        return ""
+    if known.feasible:
         return "Between the samples, too, all of the area is proved safe with the tool axes found."
-    if area.share == 1.0 and area.left_out:
+    if known.share == 1.0 and known.left_out:
         return (
             f"Between the samples, all area that is known is proved safe with the tool axes found; that of "
-            f"{listed(area.left_out)} is not known."
+            f"{listed(known.left_out)} is not known."
         )
-    nothing = area.share <= 0.0
-    share = "nothing" if nothing else f"{some(area.share)} of {of}"
-    rest = "area" if nothing else some(1.0 - area.share)
+    nothing = known.share <= 0.0
+    share = "nothing" if nothing else f"{some(known.share)} of {of}"
+    rest = "area" if nothing else some(1.0 - known.share)
     return (
         f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
         f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "

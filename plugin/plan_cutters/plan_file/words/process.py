@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, some
-from plan_cutters.domain.figures import area as size
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
@@ -17,8 +16,6 @@ from plan_cutters.plan_file.operations import (
     OTHER_ORIENTATION,
     SHORT_STEP,
     UNJUDGED_CAUSE,
-    CutterUse,
-    FewestEntry,
     NextEntry,
     OperationEntry,
     OperationPlanEntry,
@@ -27,7 +24,7 @@ from plan_cutters.plan_file.operations import (
     ProcessStep,
     RemainingEntry,
 )
-from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
+from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.names import Line, named
@@ -39,24 +36,17 @@ _LISTED, _OF_OPERATION = 12, 4
 _SMALL, _NO_GAP = 3, 1e-6
 #: How an operation cuts, where it does not cut in points alone.
 _CUTS_AS = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
-#: A share of the area for which an orientation is hardly worth its turn.
-_SMALL_SHARE = 0.005
 
 
 def operations(plan: Plan) -> list[Line]:
-    """Lines about the operations, cutters called as everywhere; none where they were not requested."""
+    """Lines about the operations, the worst first, cutters called as everywhere; none where they were not requested."""
     operations = plan.operations
     if operations is None:
         return []
     lines = [*_rest(operations), *_fewest(operations)]
     if any(each.operations for each in operations.plans):
-        lines += [
-            *(line for each in operations.plans for line in _plan(operations, each)),
-            *_fastest(operations),
-            *_assumed(operations),
-            *_by_cutter(operations),
-            *(line for use in operations.cutters for line in _worth(operations, use)),
-        ]
+        lines += [*(line for each in operations.plans for line in _plan(operations, each)), *_fastest(operations)]
+        lines += _by_cutter(operations)
     return [Line(named(plan, text)) for text in (*lines, *operations.notes)]
 
 
@@ -94,8 +84,15 @@ def _fewest(operations: OperationsEntry) -> Iterator[str]:
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
         return
+    near = f"{few.candidates} candidates ({few.spacing_deg:.2g} deg apart where it matters)"
+    proved = f"; among {near} at least {few.at_least} are needed."
+    if few.found == 1:
+        proved = "."
+    elif few.proof != "not closed":
+        by = f"weights on {len(few.weights)} samples prove" if few.proof == "weights" else "branch and bound proves"
+        proved = f"; no choice among {near} does with fewer, as {by}."
     verb = "finishes" if few.found == 1 else "finish"
-    yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{_proved(few)}"
+    yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{proved}"
     if saving := one_more(operations):
         yield saving
 
@@ -106,23 +103,9 @@ def one_more(operations: OperationsEntry | None) -> str:
     plan = None if operations is None else next((each for each in operations.plans if each.name == "fewest"), None)
     if operations is None or more is None or plan is None or plan.seconds is None:
         return ""
-    angles = " ".join(f"{name} {angle:g}" for name, angle in more.angles_deg.items())
     where = f" in setup {more.setup + 1}" if more.setup or _setups(operations) else ""
-    return (
-        f"One more orientation, {angles} with {more.cutter}{where}, would save {duration(more.saves_seconds)} of "
-        f"{duration(plan.seconds)} [--operations fastest]."
-    )
-
-
-def _proved(few: FewestEntry) -> str:
-    if few.found == 1:
-        return "."
-    near = f"{few.candidates} candidates ({few.spacing_deg:.2g} deg apart where it matters)"
-    if few.proof == "weights":
-        return f"; no choice among {near} does with fewer, as weights on {len(few.weights)} samples prove."
-    if few.proof == "branch and bound":
-        return f"; no choice among {near} does with fewer, as branch and bound proves."
-    return f"; among {near} at least {few.at_least} are needed."
+    what, saved = f"{angles_text(more.angles_deg)} with {more.cutter}{where}", duration(more.saves_seconds)
+    return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [--operations fastest]."
 
 
 def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
@@ -130,12 +113,20 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
     if plan is not first and _choice(plan) == _choice(first):
         yield f"The {plan.name} plan is the same."
         return
-    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {_work(plan)}."
-    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _SMALL_SHARE]
+    work = f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
+    if plan.cutting_seconds is not None:
+        links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
+        work = f"{duration(plan.cutting_seconds)} of cutting{links}"
+        cutters, setups = ({getattr(each, word) for each in plan.operations} for word in ("cutter", "setup"))
+        what = joined(["orientations", *["cutters"] * (len(cutters) > 1), *["setups"] * (len(setups) > 1)])
+        work += f" and {duration(plan.other_seconds)} for {what}" if plan.other_seconds > 0.0 else ""
+    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {work}."
+    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
     for each in small[:_SMALL]:
-        yield f"  {each.id} is there for {_little(each)}: {_faces(each)}."
+        took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
+        yield f"  {each.id} is there for {some(each.share)} of the area{took}: {_faces(each)}."
     if len(small) > _SMALL:
-        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_SMALL_SHARE)}."
+        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
     for each in plan.operations[:_LISTED]:
         yield f"  {_listed(each, _setups(operations))}"
     if len(plan.operations) > _LISTED:
@@ -150,38 +141,20 @@ def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
     return sorted((each.cutter, each.setup, *sorted((each.angles_deg or {}).items())) for each in plan.operations)
 
 
-def _work(plan: OperationPlanEntry) -> str:
-    if plan.cutting_seconds is None:
-        return f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
-    links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
-    if plan.other_seconds <= 0.0:
-        return f"{duration(plan.cutting_seconds)} of cutting{links}"
-    cutters = len({each.cutter for each in plan.operations})
-    setups = len({each.setup for each in plan.operations})
-    what = [word for word, there in (("orientations", True), ("cutters", cutters > 1), ("setups", setups > 1)) if there]
-    return f"{duration(plan.cutting_seconds)} of cutting{links} and {duration(plan.other_seconds)} for {joined(what)}"
-
-
 def share_text(share: float) -> str:
     """A share of the area: what falls short of all by rounding is all of it, for areas are sums of rounded numbers."""
     return percent(share, whole=share >= 1.0 - ROUNDING)
 
 
-def _little(each: OperationEntry) -> str:
-    took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
-    return f"{some(each.share)} of the area{took}"
-
-
 def _fastest(operations: OperationsEntry) -> Iterator[str]:
-    """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
-    timed = operations.fastest
+    """How the times of fixed orientations compare with simultaneous motion and with the best choice, and what was guessed."""
+    timed, first = operations.fastest, operations.plans[0]
     if timed is None:
         return
     for plan in operations.plans:
-        again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
-        if plan.ratio_at_most is not None and not again:
+        if plan.ratio_at_most is not None and (plan is first or _choice(plan) != _choice(first)):
             cutting = sum((each.seconds or 0.0) + each.link_seconds for each in plan.operations if each.mode == "fixed")
-            times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
+            times = f"at most {math.ceil(10.0 * plan.ratio_at_most - 1e-9) / 10.0:.1f} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
     few = operations.fewest
     some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
@@ -192,38 +165,30 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
         yield f"No choice takes less than the fastest plan: it is {near}."
     else:
         yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
-
-
-def _assumed(operations: OperationsEntry) -> Iterator[str]:
-    """That nobody knows how long an orientation takes, where it counts."""
-    if operations.fastest is not None and operations.assumed.index_from == "assumed" and operations.plans[0].orientations > 1:
+    if operations.assumed.index_from == "assumed" and first.orientations > 1:
         guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
         yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
 
 
 def _by_cutter(operations: OperationsEntry) -> Iterator[str]:
-    """What each cutter cuts by the fastest plan."""
+    """What each cutter cuts by the fastest plan, what it saves, and what its change costs."""
     taken = [(use.id, use.takes_mm2["fastest"]) for use in operations.cutters if use.takes_mm2.get("fastest", 0.0) > 0.0]
-    whole = sum(area for _, area in taken)
+    whole = sum(size for _, size in taken)
     if len(taken) > 1:
-        yield f"Of what is cut, the fastest plan cuts {joined([f'{share_text(area / whole)} with {id}' for id, area in taken])}."
-
-
-def _worth(operations: OperationsEntry, use: CutterUse) -> Iterator[str]:
-    """What a cutter saves, and what its change costs."""
-    if use.only_mm2 > 0.0:
-        yield f"Only {use.id} reaches {size(use.only_mm2)}."
-        return
-    used = any(use.id == each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations)
-    if use.saves_seconds is None:
-        yield f"{use.id} is needed: no plan was found without it."
-    elif use.saves_seconds < 1.0:
-        yield f"{use.id} would save nothing."
-    elif use.change_seconds <= 0.0:
-        yield f"{use.id} saves {duration(use.saves_seconds)} against the best without it."
-    else:
-        verb, cost = ("saves", "costs") if used else ("would save", "cost")
-        yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
+        yield f"Of what is cut, the fastest plan cuts {joined([f'{share_text(size / whole)} with {id}' for id, size in taken])}."
+    used = {each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations}
+    for use in operations.cutters:
+        if use.only_mm2 > 0.0:
+            yield f"Only {use.id} reaches {area(use.only_mm2)}."
+        elif use.saves_seconds is None:
+            yield f"{use.id} is needed: no plan was found without it."
+        elif use.saves_seconds < 1.0:
+            yield f"{use.id} would save nothing."
+        elif use.change_seconds <= 0.0:
+            yield f"{use.id} saves {duration(use.saves_seconds)} against the best without it."
+        else:
+            verb, cost = ("saves", "costs") if use.id in used else ("would save", "cost")
+            yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
 
 
 def _setups(operations: OperationsEntry) -> bool:
@@ -234,8 +199,9 @@ def _setups(operations: OperationsEntry) -> bool:
 def _listed(each: OperationEntry, setups: bool) -> str:
     took = "" if each.seconds is None else f", {duration(each.seconds)}"
     where = f" in setup {each.setup + 1}" if setups else ""
-    how = f"{each.cutter}{where}, {_turned(each)}{_strategy(each)}"
-    return f"{each.id}: {how}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+    how = "" if each.strategy == "point" else f", {_CUTS_AS[each.strategy]}"
+    what = f"{each.cutter}{where}, {_turned(each)}{how}"
+    return f"{each.id}: {what}: {share_text(each.share)} of the area{took}, {_faces(each)}."
 
 
 def turning(each: OperationEntry) -> str:
@@ -257,7 +223,7 @@ def turning(each: OperationEntry) -> str:
             f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
         )
     if turn.singular_mm2 > 0.0:
-        text += f"; {size(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
+        text += f"; {area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
     return f"{text}."
 
 
@@ -288,22 +254,11 @@ def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]
 
 
 def _turned(each: OperationEntry) -> str:
-    if each.angles_deg is None:
-        return "simultaneous"
-    return " ".join(f"{name} {angle:g}" for name, angle in each.angles_deg.items()) + " deg"
-
-
-def _strategy(each: OperationEntry) -> str:
-    """How it cuts, where it does not cut in points alone."""
-    return "" if each.strategy == "point" else f", {_CUTS_AS[each.strategy]}"
+    return "simultaneous" if each.angles_deg is None else f"{angles_text(each.angles_deg)} deg"
 
 
 def _faces(each: OperationEntry) -> str:
     return listed([face.face for face in each.faces], _OF_OPERATION)
-
-
-def _factor(ratio: float) -> str:
-    return f"{math.ceil(10.0 * ratio - 1e-9) / 10.0:.1f}"
 
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
@@ -312,7 +267,7 @@ WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
 _ROUNDING = 1e-6
 #: Changes that come beside what there is, and take nothing away.
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
-#: Up to this share what is left comes after the next step.
+#: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn.
 _LITTLE = 0.005
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
@@ -326,8 +281,7 @@ _OWN_STEPS = 3
 _MINOR = 0.001
 
 
-@dataclass(frozen=True, slots=True)
-class StepRow:
+class StepRow(NamedTuple):
     """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
 
     `alone` is what is gone if it is left out, empty where that is not known, and `operation` the id of its operation.
@@ -342,10 +296,6 @@ class StepRow:
     faces: list[str]
     alone: str
     operation: str
-
-    def cells(self) -> list[str]:
-        """All but the faces."""
-        return [self.number, self.setup, self.turned, self.cutter, self.share, self.took]
 
 
 @dataclass(frozen=True, slots=True)
@@ -364,12 +314,13 @@ class ProcessStory:
 
     def table(self) -> list[str]:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width."""
-        wide = [max((len(row.cells()[k]) for row in self.rows), default=0) for k in range(6)]
+        rows = [row[:6] for row in self.rows]
+        wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
         lines = []
-        for row in self.rows:
+        for row, texts in zip(self.rows, rows, strict=True):
             cells = [
                 f"{text:>{width}}" if k in (0, 4, 5) else f"{text:<{width}}"
-                for k, (text, width) in enumerate(zip(row.cells(), wide, strict=True))
+                for k, (text, width) in enumerate(zip(texts, wide, strict=True))
                 if width
             ]
             line = "  " + "  ".join(cells)
@@ -392,6 +343,9 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
+    known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
+    least, step = min(known, default=(0.0, 0))
+    clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
     return ProcessStory(
         rows=rows,
         more=more,
@@ -399,7 +353,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
         remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
-        clearance=_clearance(process),
+        clearance=clearance,
     )
 
 
@@ -416,11 +370,6 @@ def with_process_words(plan: Plan) -> Plan:
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
-def cause_text(cause: str) -> str:
-    """Give the name of a cause; the code itself where a newer plan has an unknown one."""
-    return REASONS[cause].name if cause in REASONS else _OTHER_CAUSES.get(cause, cause.replace("_", " "))
-
-
 def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
     turned = ""
     if fixed:
@@ -431,21 +380,18 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
             turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
     what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
+    room = 26 if fixed else 40
     return StepRow(
         number=str(number),
         setup=f"setup {step.setup + 1}" if setups else "",
         turned=times + turned,
-        cutter=what if len(what) <= _name_width(fixed) else f"{what[: _name_width(fixed) - 3]}...",
+        cutter=what if len(what) <= room else f"{what[: room - 3]}...",
         share=percent(step.share, some=step.area_mm2 > 0.0),
         took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
         faces=step.faces,
         alone="" if step.alone_mm2 is None else area(step.alone_mm2),
         operation=step.operation,
     )
-
-
-def _name_width(fixed: bool) -> int:
-    return 26 if fixed else 40
 
 
 def _fitting(faces: list[str], width: int) -> str:
@@ -470,7 +416,7 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
         needs = f": {named(plan, each.needs)}" if each.needs else ""
         some = percent(each.share, some=True, whole=False) if each.samples else percent(each.share)
-        yield f"Left, {some}, {area(each.area_mm2)}, {cause_text(each.cause)}: {faces}{near}{needs}."
+        yield f"Left, {some}, {area(each.area_mm2)}, {_OTHER_CAUSES.get(each.cause) or reason(each.cause)}: {faces}{near}{needs}."
     if len(process.left) > len(listed_causes):
         rest = process.left[len(listed_causes) :]
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
@@ -512,17 +458,6 @@ def _next(each: NextEntry) -> str:
     stays = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
     bracket = f" [{shlex.join(each.argv)}]" if each.argv else ""
     return f"Next: {each.words}{stays}{bracket}"
-
-
-def _clearance(process: ProcessEntry) -> str:
-    """The least clearance of all steps, and in which it is; empty where none is known."""
-    known = [(step.clearance_mm, k) for k, step in enumerate(process.steps, 1) if step.clearance_mm is not None]
-    if not known:
-        return ""
-    least, step = min(known)
-    if least >= _FAR:
-        return f"Least clearance: {mm(_FAR)} or more."
-    return f"Least clearance: {mm(least)} in step {step}."
 
 
 def wrapped(texts: list[str], most: int) -> list[str]:
@@ -580,7 +515,7 @@ def fault(number: int, step: ProcessStep) -> str:
     left = sum(each.area_mm2 for each in own.leaves)
     if left > _MINOR * own.asked_mm2:
         worst = own.leaves[0]
-        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
+        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else reason(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
     if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
         return f"Step {number} does nothing: steps that share its faces are quicker."
@@ -591,7 +526,3 @@ def fault(number: int, step: ProcessStep) -> str:
             else f"Step {number} reaches nothing that is left{near}."
         )
     return ""
-
-
-def _cause(code: str) -> str:
-    return REASONS[code].name if code in REASONS else code.replace("_", " ")
