@@ -26,21 +26,9 @@ Outcome = Literal["passed", "skipped", "failure", "error"]
 class Case(NamedTuple):
     """A test case says what was looked at, and what came of it.
 
-    Attributes
-    ----------
-    classname : str
-        The part's file, or the name of its plan.
-    name : str
-        What of it: a face and a cutter, say.
-    outcome : str
-        `failure`: it is not reached; `error`: that is not known; `skipped`: it does not count.
-    kind : str
-        A code: of a reason, or another word of the plan.
-    message : str
-        One line.
-    details : str
-        More lines; empty where there are none.
-    seconds : float
+    `classname` is the part's file, or the name of its plan; `name` what of it: a face and a cutter, say. `failure`: it is not
+    reached; `error`: that is not known; `skipped`: it does not count. `kind` is a code, of a reason or another word of the
+    plan; the message is one line, the details are more.
     """
 
     classname: str
@@ -69,8 +57,6 @@ def line(text: str) -> str:
 def junit(name: str, cases: Iterable[Case]) -> bytes:
     """The file: one suite with its cases in their order.
 
-    Examples
-    --------
     >>> print(junit("plan", [Case("a.step", "F1")]).decode())
     <?xml version='1.0' encoding='utf-8'?>
     <testsuite name="plan" tests="1" failures="0" errors="0" skipped="0" time="0.000">
@@ -112,8 +98,6 @@ _LEVELS = {"failure": "error", "error": "warning"}
 def sarif(name: str, cases: Iterable[Case]) -> bytes:
     """The file: one run with its findings, in the order of their cases; `name`: of the command, by which runs are told apart.
 
-    Examples
-    --------
     >>> file = sarif("plan-cutters", [Case("a b.step", "F1 R3", "failure", "rear_gouge", "12 % of F1 is not reached")])
     >>> run = json.loads(file)["runs"][0]
     >>> run["results"][0]["message"]["text"], run["results"][0]["level"], run["tool"]["driver"]["rules"][0]["id"]
@@ -175,12 +159,7 @@ def uri(file: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class CaseFiles:
-    """Names of files for test cases.
-
-    Parameters
-    ----------
-    junit, sarif : str, optional
-    """
+    """Names of files for test cases."""
 
     junit: str | None = None
     sarif: str | None = None
@@ -188,10 +167,7 @@ class CaseFiles:
     def check(self) -> None:
         """Look before the work begins whether the files can be written.
 
-        Raises
-        ------
-        OptionError
-            One is no name of a file, a folder, or cannot be written; or both are one file.
+        An OptionError where one is no name of a file, a folder, or cannot be written; or both are one file.
         """
         named = [(word, path) for word, path in (("--junit", self.junit), ("--sarif", self.sarif)) if path is not None]
         for word, path in named:
@@ -205,13 +181,7 @@ class CaseFiles:
             raise OptionError("--junit and --sarif name one file; give each its own", file=self.junit)
 
     def write(self, name: str, cases: Iterable[Case]) -> None:
-        """Write each file whole or not at all; its folder is made. `name`: of the command.
-
-        Raises
-        ------
-        PlanError
-            One cannot be written.
-        """
+        """Write each file whole or not at all, or a PlanError; its folder is made. `name`: of the command."""
         cases = list(cases)
         for path, document in ((self.junit, junit), (self.sarif, sarif)):
             if path is not None:

@@ -39,20 +39,9 @@ class _Reached:
 
 
 def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
-    """Make the cases of a plan.
+    """Make the cases of a plan: the process first, then faces in their order, each with the cutters in theirs.
 
-    Parameters
-    ----------
-    plan : Plan
-    code : int
-        The exit code that it asks for.
-    file : str
-        The part's, as it was given.
-
-    Returns
-    -------
-    list of Case
-        The process first, then faces in their order, each with the cutters in theirs.
+    `code` is the exit code that the plan asks for; `file` the part's, as it was given.
     """
     names = short_names(plan)
     left = [each for each in plan.process.left if each.cause != UNJUDGED_CAUSE] if plan.process else []

@@ -21,13 +21,7 @@ def sharp_edge_entries(
 ) -> list[SharpEdgeEntry]:
     """Sum up the strips beside sharp inside edges by pairs of faces, the largest area first.
 
-    Parameters
-    ----------
-    edges : sequence of InsideEdge
-    strips : (n,) int32
-        Place of the edge that loses each sample, -1 for none.
-    samples : SurfaceSamples
-    cutter : Cutter
+    `strips` (n,) int32: place of the edge that loses each sample, -1 for none.
     """
     radius = least_radius(cutter) or 0.0
     pairs: dict[tuple[int, int], list[int]] = {}
@@ -122,11 +116,8 @@ def ends_in_a_point(ready: Prepared, number: int, rows: NDArray[np.int64]) -> bo
 def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> list[PatternEntry]:
     """The entries of all patterns of a part.
 
-    Parameters
-    ----------
-    patterns : sequence of Pattern
-    counts : (m, 3) int64
-        Of each motion of the whole part, in their order: samples that were moved, that followed, and that were verified.
+    `counts` (m, 3) int64, of each motion of the whole part, in their order: samples that were moved, that followed, and that
+    were verified.
     """
     entries, motion = list[PatternEntry](), 0
     for each in patterns:

@@ -165,13 +165,7 @@ _SAME = 1e-6
 def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
     """How often a step is done, and by how much one rotary axis turns from one time to the next; None where several turn.
 
-    Parameters
-    ----------
-    ready : Prepared
-    same : sequence of OperationEntry
-        The operations of the step: images of each other, from the first angle up.
-    mine : (n,) bool
-        Samples of the step.
+    `same` are the operations of the step: images of each other, from the first angle up; `mine` (n,) its samples.
     """
     if same[0].mode == "simultaneous":
         return _moving(ready, same[0].setup, mine)
@@ -257,18 +251,8 @@ def remaining(
 ) -> list[RemainingEntry]:  # fmt: skip
     """List what is left by cause, the largest area first.
 
-    Parameters
-    ----------
-    ready : Prepared
-    done : (n,) bool
-        Samples that are finished.
-    why : Reasons
-    area : (n,) float
-        mm2, and `requested` that of all.
-    steps : sequence of Step
-        Next steps that are known, as they stand in the plan file.
-    fitting : callable, optional
-        Finds the usual sizes that fit.
+    `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand
+    in the plan file; `fitting` finds the usual sizes that fit.
     """
     samples, entries = ready.samples, list[RemainingEntry]()
     cutters = {cutter.id: cutter for cutter in ready.cutters}
@@ -365,18 +349,9 @@ def process_entry(
 ) -> ProcessEntry:  # fmt: skip
     """Put together what the given cutters, setups and operations finish.
 
-    Parameters
-    ----------
-    ready : Prepared
-    entries : sequence of CutterEntry
-        Of all cutters, from the most wanted down.
-    answers : Answers
-        The plan of operations is the process where there is one, else the fewest runs of cutters and setups.
-    over : OverSetups
-    shown : str
-        Id of the cutter that the plan shows: its next steps are told.
-    fitting : callable, optional
-        Finds the usual sizes that fit where cutters gouge.
+    The plan of operations among the `answers` is the process where there is one, else the fewest runs of cutters and setups.
+    `entries` are of all cutters, from the most wanted down; `shown` is the id of the cutter whose next steps are told;
+    `fitting` finds the usual sizes that fit where cutters gouge.
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)

@@ -18,22 +18,9 @@ PLAN = "plan.json"
 
 
 def load_plan(path: str | os.PathLike[str]) -> Plan:
-    """Read a plan.
+    """Read a plan.json: lengths in mm, angles in degrees, part coordinates.
 
-    Parameters
-    ----------
-    path : path
-        A plan.json.
-
-    Returns
-    -------
-    Plan
-        Lengths in mm, angles in degrees, part coordinates.
-
-    Raises
-    ------
-    PlanError
-        It is missing, half-written, no plan, or one of another version of the format.
+    A PlanError where it is missing, half-written, no plan, or one of another version of the format.
     """
     try:
         content = Path(path).read_bytes()

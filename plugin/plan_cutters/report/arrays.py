@@ -192,17 +192,9 @@ _MM, _DEG, _UNIT = 6, 6, 9
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column, or three of a vector.
+    """One column, or three of a vector: values (n,) or (n, 3), and digits behind the point and words of codes, for text.
 
-    Attributes
-    ----------
-    name : str
-        With its unit at the end where it has one: `tilt_deg`.
-    values : (n,) or (n, 3) array
-    digits : int
-        Behind the point, for text.
-    words : dict, optional
-        What codes mean, in text.
+    A name has its unit at the end where it has one: `tilt_deg`.
     """
 
     name: str
@@ -386,12 +378,7 @@ def _texts(name: str, lines: list[str]) -> str:
 def frame(result: Judged, of: str, cutter: str | None) -> "DataFrame":
     """A table of the rows asked for: `samples` or `faces`, both of one cutter, or `cutters`.
 
-    Raises
-    ------
-    OptionError
-        There is no such table, or no such cutter.
-    PlanError
-        Pandas is not installed.
+    An OptionError where there is no such table or cutter, a PlanError where pandas is not installed.
     """
     if of not in _TABLES:
         raise OptionError(f"there is no table of {of!r}; give one of {', '.join(_TABLES)}")

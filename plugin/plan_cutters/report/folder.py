@@ -60,24 +60,10 @@ _COPY = 300.0
 
 
 class Making:
-    """Files of a result, made in a folder.
+    """Files of a result, made in a folder; `begins` is told what is begun: `split`, or a format. `alone`: no file beside
+    another one.
 
-    Parameters
-    ----------
-    result : Result
-    folder : Path
-    schema : str
-        As in `write_all`.
-    clock : Clock
-    begins : callable
-        Told what is begun: `split`, or a format.
-    alone : bool
-        Make no file beside another one.
-
-    Attributes
-    ----------
-    splits : dict
-        The part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
+    `splits` has the part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
     """
 
     def __init__(
@@ -198,18 +184,9 @@ def read_formats(text: str) -> tuple[str, ...]:
 class Staging:
     """A folder beside the output in which files grow; each appears in the output whole, or not at all.
 
-    As long as it is there, no other run writes into the output.
-
-    Parameters
-    ----------
-    out : Path
-    named : callable, optional
-        Called with the folder and the lock before they exist, so that whoever ends this process at any moment can take them away.
-
-    Raises
-    ------
-    PlanError
-        At the start if the output can surely not be written, or another run writes there: before the work, not after it.
+    As long as it is there, no other run writes into the output. `named` is called with the folder and the lock before they
+    exist, so that whoever ends this process at any moment can take them away. A PlanError at the start if the output can surely
+    not be written, or another run writes there: before the work, not after it.
     """
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
@@ -272,38 +249,14 @@ def write_all(
     result: Judged, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242",
     listener: ProgressListener | None = None, clock: "Clock | None" = None, hurried: bool = False,
 ) -> "Plan":  # fmt: skip
-    """Write the formats asked for into the folder `out`, each file whole or not at all.
+    """Write the formats asked for (of FORMATS) into the folder `out`, each file whole or not at all; the plan as written.
 
-    The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in
-    one of these, as in the models, where the CAD kernel works, costs that file: the plan names it in `not_written`.
+    The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in one
+    of these, as in the models, where the CAD kernel works, costs that file: the plan names it in `not_written`.
 
-    Parameters
-    ----------
-    result : Result
-    out : Path
-    formats : sequence of str
-        Of FORMATS.
-    staging : Staging, optional
-        One made before the work began.
-    step_schema : str
-        `ap242`, `ap214` or `ap203`.
-    listener : Onlooker, optional
-    clock : Clock, optional
-        The one that ran while the plan was made; default one that goes on from there.
-    hurried : bool
-        One file after the other, for this may be ended at any moment.
-
-    Returns
-    -------
-    Plan
-        The plan as written.
-
-    Raises
-    ------
-    OptionError
-        An unknown format or schema.
-    PlanError
-        The folder cannot be written to.
+    `staging` is one made before the work began, `clock` the one that ran while the plan was made. `hurried`: one file after the
+    other, for this may be ended at any moment. An OptionError for an unknown format or schema, a PlanError where the folder
+    cannot be written to.
     """
     from plan_cutters.document.clock import Clock
 
@@ -365,12 +318,8 @@ def write_all(
 def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, clock: "Clock") -> bool:
     """Let the plan of a run that goes on appear in the output, whole, with its setups alone; whether it is written at all.
 
-    The plan says of the other formats that the run ended before they were written: that is true whenever it ends.
-
-    Raises
-    ------
-    PlanError
-        The folder cannot be written to.
+    The plan says of the other formats that the run ended before they were written: that is true whenever it ends. A PlanError
+    where the folder cannot be written to.
     """
     from plan_cutters.report.to_json import PENDING
 

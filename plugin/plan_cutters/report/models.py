@@ -34,12 +34,7 @@ from plan_cutters.scene.surroundings import PlacedFixture
 def clamping_shape(clamping: Clamping, chord: float) -> Any:
     """The bodies of a vise or chuck in its own frame, a solid each; of the table below them, what is drawn.
 
-    Parameters
-    ----------
-    clamping : Vise or Chuck
-        In its place: how far its jaws stand apart is known.
-    chord : float
-        How far the bore of a jaw may be from its planes, mm.
+    It is in its place: how far its jaws stand apart is known. `chord`: how far the bore of a jaw may be from its planes, mm.
     """
     return compound([_solid(each) for each in clamping.solids(chord, shown=True)])
 
@@ -101,16 +96,9 @@ def verdict_labels(result: Judged, cutter: str | None = None) -> NDArray[np.int3
 def face_labels(
     result: Judged, label: NDArray[np.int32], of_face: Callable[[NDArray[np.int64]], int], first: int
 ) -> list[FaceLabels]:
-    """Labels on the grids of all faces.
+    """Labels on the grids of all faces, of samples (n,) from 0; those of LABELS begin at `first`.
 
-    Parameters
-    ----------
-    result : Result
-    label : (n,) int32
-        Of the samples, from 0; those of LABELS begin at `first`.
-    of_face : callable
-        Gives the label of a face that was sampled without a grid, by the rows (k,) of its samples.
-    first : int
+    `of_face` gives the label of a face that was sampled without a grid, by the rows (k,) of its samples.
     """
     samples = result.samples
     grids = {g.face: g for g in samples.grids}

@@ -92,17 +92,8 @@ def card(result: Judged, *, height: int = HEIGHT, size: Size = "full") -> str:
 def show(result: Judged, height: int = HEIGHT, size: Size = "full") -> Path | None:
     """Show the review page: in a notebook below the cell, else in a browser, from a file in the folder for temporary files.
 
-    A small card is for notebooks alone: it stands below the cell without the page.
-
-    Returns
-    -------
-    Path or None
-        The file, which stays there; None in a notebook.
-
-    Raises
-    ------
-    PlanError
-        No browser is found; the message names the file.
+    A small card is for notebooks alone: it stands below the cell without the page. Returns the file, which stays there; None in
+    a notebook. A PlanError, which names the file, where no browser is found.
     """
     if size not in get_args(Size):
         raise OptionError(f"card: {shown(size)} is neither full nor small")

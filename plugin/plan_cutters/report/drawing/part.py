@@ -70,16 +70,9 @@ def fitted(frame: Floats, points: Floats, width: int, height: int) -> tuple[floa
 
 
 def view(frame: Floats, body: Body, scale: float, middle: Floats, width: int, height: int, finer: int = FINER) -> View:
-    """Draw a body from one side; the image has finer pixels, `finer` along each side of one.
+    """Draw a body from one side, in a `frame` (3, 3), with scale and middle as `fitted` gives them.
 
-    Parameters
-    ----------
-    frame : (3, 3) float
-    body : Body
-    scale, middle
-        As `fitted` gives them.
-    width, height : int
-        Of the finished image, pixels.
+    The image, `width` by `height` pixels when finished, has finer pixels, `finer` along each side of one.
     """
     from plan_cutters.kernels.linear.raster import draw
 

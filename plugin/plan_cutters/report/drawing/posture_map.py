@@ -157,13 +157,8 @@ _LOOKS = {
 def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Floats]]:
     """Find the tilts that each cause forbids in a posture map: intervals (k, 2) at each rotation, rad.
 
-    No tilt is counted twice: it belongs to the first cause that forbids it.
-
-    Parameters
-    ----------
-    posture_map : PostureMap
-    low, high : float
-        The tilts that were requested, rad.
+    `low` and `high` are the tilts that were requested, rad. No tilt is counted twice: it belongs to the first cause that
+    forbids it.
     """
     shares: dict[str, list[Floats]] = {code: [] for code in (*_CAUSES, "undecided", "other")}
     whole = np.array([[low, high]])
@@ -188,20 +183,10 @@ def _gouged(posture_map: Any, i: int, low: float, high: float) -> Floats:
 
 
 def draw_map(posture_map: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:
-    """Draw a posture map, once for each path: PNG or SVG by its ending.
+    """Draw a posture map, once for each path: PNG or SVG by its ending. The same map gives the same bytes.
 
-    Parameters
-    ----------
-    posture_map : PostureMap
-        At rotations that ascend evenly.
-    tilt : (float, float)
-        The tilts that were requested, rad.
-    title : str
-    notes : sequence of str
-        Lines beneath the picture.
-    paths : sequence of Path
-
-    The same map gives the same bytes. Each rotation that was searched is a column; nothing is known between.
+    Its rotations ascend evenly; each that was searched is a column, and nothing is known between. `tilt`: what was requested,
+    rad; `notes` are lines beneath the picture.
     """
     from matplotlib.collections import PolyCollection
 

@@ -76,10 +76,7 @@ def _mm(value: float) -> str:
 class Sheet:
     """A sheet collects a drawing in layers: fills and lines at the bottom, texts over them.
 
-    Parameters
-    ----------
-    title, description : str
-        For readers that see no picture, and of all there is.
+    Title and description are for readers that see no picture, and of all there is.
     """
 
     def __init__(self, title: str, description: str) -> None:
@@ -317,26 +314,13 @@ class _View(NamedTuple):
 
 
 def draw(cutter: Cutter, *, name: str = "") -> str:
-    """A tool assembly as an SVG drawing.
+    """A tool assembly as an SVG drawing, an `svg` element without an XML declaration.
 
     It is drawn upright, its tip at the bottom, 1:1 where that fits an A4 sheet, else in the largest standard reduction that
     does; the sheet states which, and is as large on paper as the SVG says. What is small of the cutting end is drawn again,
-    enlarged.
+    enlarged. `name` is the title; else the cutter's own name, or its id. `data-scale` is mm on paper a mm; paths of the class
+    `part` are the silhouettes of flutes, neck, shank and holder.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    name : str
-        The title; the cutter's own name, or its id, if it is left out.
-
-    Returns
-    -------
-    str
-        The `svg` element, without an XML declaration. `data-scale` is mm on paper a mm; paths of the class `part` are the
-        silhouettes of flutes, neck, shank and holder.
-
-    Examples
-    --------
     >>> "no holder" in draw(Cutter.parse("R6L80"))
     True
     """

@@ -25,14 +25,9 @@ from plan_cutters.scene.surroundings import PlacedFixture
 
 
 def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:
-    """Find the row of a witness's sample.
+    """Find the row of a witness's sample; a ValueError where the samples have none such: the witness is of another plan.
 
     The plan says it. Older plans do not: there it is the sample of the witness's own face that lies at its point.
-
-    Raises
-    ------
-    ValueError
-        The samples have none such: the witness is of another plan.
     """
     face, point = int(witness.face[1:]), np.array(witness.point)
     if witness.sample is not None:

@@ -30,34 +30,16 @@ _OTHERS = "Postures are stored for the cutter shown alone, to keep this page sma
 
 
 def write_html(result: Judged, _split: object, path: Path) -> None:
-    """Write `review.html`.
-
-    Raises
-    ------
-    CadIoError
-        The kernel cannot mesh the part.
-    OSError
-        The file cannot be written.
-    """
+    """Write `review.html`; a CadIoError where the kernel cannot mesh the part."""
     path.write_bytes(page(result))
 
 
 @reporting(lambda result: result.plan.effective.units)
 def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) -> bytes:
-    """The page of a plan.
+    """The page of a plan, UTF-8; the same for the same plan.
 
-    Parameters
-    ----------
-    result : Result
-    largest : int
-        Bytes that it may have: where it has more, postures of the cutters that are not shown are left out.
-    triangles : int
-        To draw, about.
-
-    Returns
-    -------
-    bytes
-        UTF-8; the same for the same plan.
+    `largest`: bytes that it may have; where it has more, postures of the cutters that are not shown are left out. `triangles`:
+    to draw, about.
     """
     chord = _chord(result.plan, triangles)
     # Of two faces in one place the one that was judged is shown.
