@@ -212,8 +212,7 @@ def advice_entry(advice: Advice) -> MendEntry:
         remains = [_area_entry(each) for each in step.remains]
         steps.append(
             filled(StepEntry, step, changes=changes, lost_before=step.before, lost_after=step.after, cutters=cutters,
-            setups=setups,
-                   why=why, remains=remains)
+                   setups=setups, why=why, remains=remains)
         )  # fmt: skip
     areas = [_area_entry(each) for each in advice.areas]
     return filled(MendEntry, advice, lost_share=advice.share, steps=steps, lost_areas=areas, more_lost_areas=advice.more_areas)

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from cad_io.part.motion import Motion
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.domain.change import Step
 from plan_cutters.domain.figures import exact
-from plan_cutters.domain.fillet import Fit, Fitting
+from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_results import OwnResult
@@ -54,17 +53,14 @@ OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
 
 @dataclass(frozen=True, slots=True)
 class OverSetups:
-    """The verdicts of each cutter over all setups and in each of them, by its id."""
+    """The verdicts of each cutter, by its id, over all setups and in each of them: in one or another, in the `first` (its axis),
+    and in each other setup; `served_in` has the setup that serves each sample, (n,) int32.
+    """
 
-    #: In one setup or another.
     reaches: dict[str, Verdicts]
-    #: In the first one.
     here: dict[str, Verdicts]
-    #: The setup that serves each sample, (n,) int32.
     served_in: dict[str, Ints]
-    #: (float, float, float); its axis.
     first: Vector
-    #: In each other setup.
     elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
 
     def each(self) -> tuple[OtherSetup, ...]:
@@ -85,14 +81,10 @@ def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: Over
         return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
 
     entries: dict[Vector, SetupEntry] = {}
-    for k, (axis, each) in enumerate(over.each()):
+    for (axis, each), inside in zip(over.each(), within, strict=False):
         mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
-        entries.setdefault(
-            axis,
-            SetupEntry(
-                axis=axis, within=int(within[k].sum()), share=share(within[k]), reached=int(mine.sum()), reached_share=share(mine)
-            ),
-        )
+        count, reached, part = int(inside.sum()), int(mine.sum()), share(mine)
+        entries.setdefault(axis, SetupEntry(axis=axis, within=count, share=share(inside), reached=reached, reached_share=part))
     for axis in AXES:
         if axis not in entries:
             mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
@@ -114,13 +106,13 @@ def linear_entries(ready: Prepared) -> list[LinearEntry]:
     for axis in ready.options.machine.linear:
         direction = np.array(axis.direction) @ ready.conditions.frame
         along = ready.samples.point[ready.finished] @ direction
-        low, high = axis.limits or (-np.inf, np.inf)
+        low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
         entries.append(
             LinearEntry(
                 name=axis.name,
                 carries=axis.carries,
                 direction=vector(direction),
-                limits_mm=(float(low) if np.isfinite(low) else None, float(high) if np.isfinite(high) else None),
+                limits_mm=(low, high),
                 extent_mm=float(np.ptp(along)) if len(along) else 0.0,
             )
         )
@@ -186,31 +178,30 @@ def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bo
 
 
 def _moving(ready: Prepared, setup: int, mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
-    """The same of simultaneous motion: a rotation of the whole part repeats it, where limits and fixtures are kept as well."""
-    conditions = ready.setups[setup]
+    """The same of simultaneous motion: a rotation of the whole part repeats it, where limits and fixtures are kept as well.
+
+    Nearly all of the area of the samples is carried onto others of them.
+    """
+    conditions, samples, rows = ready.setups[setup], ready.samples, np.flatnonzero(mine)
     kinematics = conditions.kinematics
-    if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not mine.any():
+    if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not len(rows):
         return 1, None
+    point, normal, area = samples.point[rows], samples.normal[rows], np.nan_to_num(samples.area[rows])
     keeps = dict(zip(map(id, ready.copies.motions), ready.copies.unchanged[setup], strict=True))
     for each in ready.patterns:
-        axis = each.motions[0].axis if each.whole and each.kind == "rotation" else None
+        motion = each.motions[0]
+        axis = motion.axis if each.whole and each.kind == "rotation" else None
         if axis is None or not all(keeps.get(id(motion), False) for motion in each.motions):
             continue
-        if abs(abs(axis[1] @ kinematics.direction[0]) - 1.0) > _SAME or not _has_images(ready, each.motions[0], mine):
+        if abs(abs(axis[1] @ kinematics.direction[0]) - 1.0) > _SAME:
             continue
-        return each.order, {conditions.machine.rotary[0].name: round(360.0 / each.order, 3)}
+        near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
+        distance, which = (found.reshape(len(rows), -1) for found in near)
+        is_near = np.isfinite(distance)
+        alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
+        if area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum():
+            return each.order, {conditions.machine.rotary[0].name: round(360.0 / each.order, 3)}
     return 1, None
-
-
-def _has_images(ready: Prepared, motion: Motion, mine: NDArray[np.bool_]) -> bool:
-    """Whether nearly all of the area of some samples (n,) is carried onto others of them."""
-    samples, rows = ready.samples, np.flatnonzero(mine)
-    point, normal, area = samples.point[rows], samples.normal[rows], np.nan_to_num(samples.area[rows])
-    near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
-    distance, which = (each.reshape(len(rows), -1) for each in near)
-    is_near = np.isfinite(distance)
-    alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
-    return bool(area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum())
 
 
 Rows = NDArray[np.int64]
@@ -262,11 +253,22 @@ def remaining(
         cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
-            rows = _speaking(samples.face, np.flatnonzero(mine), area)
+            rows = np.flatnonzero(mine)
+            # Without the samples of faces that have hardly any of their area, unless these have most of it.
+            large = np.bincount(samples.face[rows], area[rows])[samples.face[rows]] >= _SPEAKS
+            rows = rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
             fits = None if fitting is None else fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
-            by_size["fits"] = None if fits is None else [_fit_entry(fit) for fit in fits]
+            by_size["fits"] = (
+                None
+                if fits is None
+                else [
+                    FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=fit.share)
+                    for fit in fits
+                    for c in (fit.cutter,)
+                ]
+            )
         helped = _helped(steps, mine, area)
         entries.append(remaining_entry(ready, cause, mine, area, requested, helped=helped, **by_size))
     unjudged = samples.unjudged >= 0
@@ -274,18 +276,6 @@ def remaining(
         empty = [number for number, _ in samples.empty]
         entries.append(remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested, empty))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
-
-
-def _fit_entry(fit: Fit) -> FitEntry:
-    made = fit.cutter
-    across = 2.0 * made.radius
-    return FitEntry(cutter=made.id, kind=kind(made), size=typed_size(made), diameter_mm=across, share=fit.share)
-
-
-def _speaking(face: Ints, rows: Rows, area: Floats) -> Rows:
-    """Samples (m,) without those of faces that have hardly any of their area, unless these have most of it."""
-    large = np.bincount(face[rows], area[rows])[face[rows]] >= _SPEAKS
-    return rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
 
 
 def _points(ready: Prepared, rows: Rows, area: Floats) -> PointsEntry | None:
@@ -431,11 +421,12 @@ class _Parts:
             images.sort(key=lambda ranked: [angle % 360.0 for angle in (ranked[1].angles_deg or {}).values()])
             ranks, same = [k for k, _ in images], [each for _, each in images]
             mine, clearance = np.isin(plan.label, ranks), [each.clearance_mm for each in same]
+            seconds = [each.seconds for each in same]
             gone = mine & (alone if operations.own else ~np.delete(plan.serves, ranks, axis=1).any(axis=1))
             single = len(same) == 1 and not operations.own
             repeat, by = repeats(self.ready, same, mine)
             planned.append(self.step(
-                mine, same[0], seconds=_sum([each.seconds for each in same]),
+                mine, same[0], seconds=None if None in seconds else sum(s for s in seconds if s is not None),
                 link_seconds=sum(each.link_seconds for each in same), repeat=repeat, repeat_deg=by, take="share",
                 clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
                 alone_mm2=same[0].exclusive_mm2 if single else float(self.area[gone].sum()),
@@ -496,11 +487,6 @@ def _alone(operations: Operations, plan: OperationPlan) -> NDArray[np.bool_]:
     for outcome in operations.own:
         times[outcome.serves] += 1
     return np.asarray(times == 1)
-
-
-def _sum(seconds: Sequence[float | None]) -> float | None:
-    known = [each for each in seconds if each is not None]
-    return sum(known) if len(known) == len(seconds) else None
 
 
 def _runs(
