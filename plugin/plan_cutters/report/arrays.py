@@ -6,7 +6,7 @@ import io
 import json
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,8 +20,8 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.shares import AreaShare, VerdictCounts
+from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.conditions import rotations_of
 
@@ -242,27 +242,21 @@ def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
     if name in result.served_in:
         setups = range(len(result.elsewhere) + 1)
         table.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
-    return table + _machine(result, name)
-
-
-def _machine(result: Judged, name: str) -> list[Column]:
-    """Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged."""
+    # Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged.
     machine = result.conditions.machine
     if result.kinematics is None:
-        return []
+        return table
     angles, taken = result.rotary(name)
     moved = result.travels.get(name)
     first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
-    both = [np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan) for way in (first, 1 - first)]
-    table = [
-        Column(f"{axis.name}{word}_deg", np.ascontiguousarray(each[:, k]), _DEG)
-        for word, each in zip(("", "_other"), both, strict=True)
-        for k, axis in enumerate(machine.rotary)
-    ]
-    if moved is not None:
+    for word, way in (("", first), ("_other", 1 - first)):
+        each = np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan).T
         table += [
-            Column(f"{axis.name}_mm", np.ascontiguousarray(moved.position[:, k]), _MM) for k, axis in enumerate(machine.linear)
+            Column(f"{axis.name}{word}_deg", values.copy(), _DEG) for axis, values in zip(machine.rotary, each, strict=False)
         ]
+    if moved is not None:
+        position = moved.position.T
+        table += [Column(f"{axis.name}_mm", values.copy(), _MM) for axis, values in zip(machine.linear, position, strict=False)]
     return table
 
 
@@ -282,13 +276,19 @@ def write_csv(result: Judged, _split: object, path: Path) -> None:
         rows.writerows(zip(shown, *cells, strict=True))
 
 
+def _worded(column: Column, empty: Any = "") -> NDArray[Any]:
+    """The words of a column's codes (n,)."""
+    assert column.words is not None
+    codes, index = np.unique(column.values, return_inverse=True)
+    words: NDArray[Any] = np.array([column.words[code] or empty for code in codes.tolist()], object)[index]
+    return words
+
+
 def _cells(column: Column) -> list[list[Any]]:
     """Make the cells of a column, one list for each column of the file."""
     values = column.values
     if column.words is not None:
-        codes, index = np.unique(values, return_inverse=True)
-        words = np.array([column.words[code] for code in codes.tolist()], object)
-        return [words[index].tolist()]
+        return [_worded(column).tolist()]
     if values.dtype.kind != "f":
         return [values.tolist()]
     # Adding zero turns -0.0 into 0.0.
@@ -349,23 +349,14 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
 
 
 def _array(name: str, values: NDArray[Any]) -> str:
+    """An array in blocks that are deflated one by one, behind their sizes: both in base64, each by itself."""
     kind = _TYPE[values.dtype.name]
     parts = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
-    little = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
-    return f'<DataArray type="{kind}" Name={quoteattr(name)}{parts} format="binary">{_packed(little.tobytes())}</DataArray>'
-
-
-def _packed(data: bytes) -> str:
-    """Blocks that are deflated one by one, behind their sizes: both in base64, each by itself."""
-    blocks = [zlib.compress(block, 6) for block in _blocks(data)]
-    last = len(data) % _BLOCK
-    sizes = np.array([len(blocks), _BLOCK, last, *map(len, blocks)], "<u8")
-    return base64.b64encode(sizes.tobytes()).decode() + base64.b64encode(b"".join(blocks)).decode()
-
-
-def _blocks(data: bytes) -> Iterator[bytes]:
-    for start in range(0, len(data), _BLOCK):
-        yield data[start : start + _BLOCK]
+    data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
+    blocks = [zlib.compress(data[start : start + _BLOCK], 6) for start in range(0, len(data), _BLOCK)]
+    sizes = np.array([len(blocks), _BLOCK, len(data) % _BLOCK, *map(len, blocks)], "<u8")
+    packed = "".join(base64.b64encode(each).decode() for each in (sizes.tobytes(), b"".join(blocks)))
+    return f'<DataArray type="{kind}" Name={quoteattr(name)}{parts} format="binary">{packed}</DataArray>'
 
 
 def _texts(name: str, lines: list[str]) -> str:
@@ -390,7 +381,12 @@ def frame(result: Judged, of: str, cutter: str | None) -> "DataFrame":
         raise PlanError("tables need the package pandas: pip install pandas") from None
     table = pandas.DataFrame(_TABLES[of](result, result.judged(cutter).id))
     # A column of words knows them all, and keeps their order.
-    for name, words in _words(result).items():
+    plan = result.plan
+    in_order = {
+        "verdict": list(WORDS.values()), "reason": plan.reasons, "surface_class": list(CLASSES.values()),
+        "face": [face.id for face in plan.faces], "cutter": [each.id for each in plan.cutters],
+    }  # fmt: skip
+    for name, words in in_order.items():
         if name in table:
             others = [word for word in table[name].dropna().unique() if word not in words]
             table[name] = pandas.Categorical(table[name], categories=[*words, *others])
@@ -400,42 +396,33 @@ def frame(result: Judged, of: str, cutter: str | None) -> "DataFrame":
 
 
 def _samples(result: Judged, cutter: str) -> dict[str, Any]:
-    """The columns of `axes.csv`."""
+    """The columns of `axes.csv`; None where a word is empty."""
     table: dict[str, Any] = {"cutter": [cutter] * len(result.samples)}
     for column in columns(result, cutter):
-        table.update(_frame_cells(column))
+        if column.words is not None:
+            table[column.name] = _worded(column, None)
+            continue
+        values = column.values + 0.0 if column.values.dtype.kind == "f" else column.values  # -0.0 becomes 0.0
+        table |= dict(zip(column.names, np.atleast_2d(values.T), strict=True)) if values.ndim > 1 else {column.name: values}
     return table
-
-
-def _frame_cells(column: Column) -> dict[str, Any]:
-    """A column, or three of a vector; None where a word is empty."""
-    if column.words is not None:
-        codes, index = np.unique(column.values, return_inverse=True)
-        words = np.array([column.words[code] or None for code in codes.tolist()], object)
-        return {column.name: words[index]}
-    values = column.values + 0.0 if column.values.dtype.kind == "f" else column.values  # -0.0 becomes 0.0
-    if values.ndim == 1:
-        return {column.name: values}
-    return {name: values[:, k] for k, name in enumerate(column.names)}
 
 
 def _faces(result: Judged, cutter: str) -> list[dict[str, Any]]:
     """Give a row for each face of the part: shares are nan where it was not sampled."""
-    entry = next(each for each in result.cutters if each.id == cutter)
-    return [_face(face, entry) for face in result.plan.faces]
-
-
-def _face(face: FaceEntry, cutter: CutterEntry) -> dict[str, Any]:
-    about = {"face": face.id, "name": face.name, "component": face.component, "surface": face.surface, "shape": face.shape,
-             "target": face.target, "ignored": face.ignored, "area_mm2": face.area_mm2, "samples": face.samples,
-             "unjudged_why": face.unjudged, "cutter": cutter.id}  # fmt: skip
-    entry = cutter.faces.get(face.id)
-    if entry is None:
-        return {**about, **_verdicts(VerdictCounts(), None), "reason": None, "depth_mm": np.nan, "obstacle": None}
-    deep = [w for w in cutter.witnesses if w.face == face.id and not w.inside_bodies and w.depth_mm is not None]
-    worst = max(deep, key=lambda w: w.depth_mm or 0.0, default=None)
-    return {**about, **_verdicts(entry, entry.area_share), "reason": _main(entry.area_share),
-            "depth_mm": worst.depth_mm if worst else np.nan, "obstacle": worst.obstacle_face if worst else None}  # fmt: skip
+    entry, rows = next(each for each in result.cutters if each.id == cutter), []
+    for face in result.plan.faces:
+        about = {"face": face.id, "name": face.name, "component": face.component, "surface": face.surface, "shape": face.shape,
+                 "target": face.target, "ignored": face.ignored, "area_mm2": face.area_mm2, "samples": face.samples,
+                 "unjudged_why": face.unjudged, "cutter": entry.id}  # fmt: skip
+        known = entry.faces.get(face.id)
+        deep = [w for w in entry.witnesses if w.face == face.id and not w.inside_bodies and w.depth_mm is not None]
+        worst = max(deep, key=lambda w: w.depth_mm or 0.0, default=None) if known else None
+        rows.append({
+            **about, **_verdicts(known or VerdictCounts(), known.area_share if known else None),
+            "reason": (main_reason(known.area_share) or None) if known else None,
+            "depth_mm": worst.depth_mm if worst else np.nan, "obstacle": worst.obstacle_face if worst else None,
+        })  # fmt: skip
+    return rows
 
 
 def _cutters(result: Judged, _cutter: str) -> list[dict[str, Any]]:
@@ -443,7 +430,7 @@ def _cutters(result: Judged, _cutter: str) -> list[dict[str, Any]]:
     return [
         {"cutter": c.id, "name": c.name, "shape": c.shape, "radius_mm": c.radius, "corner_radius_mm": c.corner_radius,
          "length_mm": c.length, "holder": c.holder or None, "selected": c.id == result.selected, "feasible": c.feasible,
-         **_verdicts(c, c.area_share), "reason": _main(c.area_share)}
+         **_verdicts(c, c.area_share), "reason": main_reason(c.area_share) or None}
         for c in result.cutters
     ]  # fmt: skip
 
@@ -453,23 +440,6 @@ def _verdicts(counts: VerdictCounts, share: AreaShare | None) -> dict[str, Any]:
     words = WORDS.values()
     shares = {f"{word}_share": getattr(share, word) if share else np.nan for word in words}
     return {**{word: counts.of(word) for word in words}, "inside_bodies": counts.inside_bodies, **shares}
-
-
-def _main(share: AreaShare) -> str | None:
-    """The code of the reason for most of what is not reached."""
-    return max(share.lost_by, key=lambda name: share.lost_by[name], default=None)
-
-
-def _words(result: Judged) -> dict[str, Sequence[str]]:
-    """The words that columns can have, in their order."""
-    plan: Plan = result.plan
-    return {
-        "verdict": list(WORDS.values()),
-        "reason": plan.reasons,
-        "surface_class": ["convex", "concave", "saddle", "unjudged"],
-        "face": [face.id for face in plan.faces],
-        "cutter": [each.id for each in plan.cutters],
-    }
 
 
 _TABLES: dict[str, Callable[[Judged, str], Any]] = {"samples": _samples, "faces": _faces, "cutters": _cutters}
