@@ -216,7 +216,6 @@ def _cutter(
 
 
 def _formed(cutter: CutterEntry, name: str) -> Any:
-    """A field of a cutter's form, stages as texts."""
     stages = [
         f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}" for s in cutter.stages
     ]

@@ -109,7 +109,6 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
 
 
 def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:
-    """Cutters of both, then those of one alone."""
     then, now = short_names(old), short_names(new)
     pairs = match_cutters(old, new)
     yield from ({"name": now[b.id], "old": a.id, "new": b.id} for a, b, _ in pairs)

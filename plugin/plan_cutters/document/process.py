@@ -477,7 +477,6 @@ class _Parts:
 
 
 def _named(operations: Operations, angle: Floats | None) -> dict[str, float]:
-    """The angles of the rotary axes by their names."""
     return {} if angle is None else dict(zip(operations.entry.rotary, angle.tolist(), strict=True))
 
 

@@ -277,7 +277,6 @@ def write_csv(result: Judged, _split: object, path: Path) -> None:
 
 
 def _worded(column: Column, empty: Any = "") -> NDArray[Any]:
-    """The words of a column's codes (n,)."""
     assert column.words is not None
     codes, index = np.unique(column.values, return_inverse=True)
     words: NDArray[Any] = np.array([column.words[code] or empty for code in codes.tolist()], object)[index]
@@ -285,7 +284,6 @@ def _worded(column: Column, empty: Any = "") -> NDArray[Any]:
 
 
 def _cells(column: Column) -> list[list[Any]]:
-    """Make the cells of a column, one list for each column of the file."""
     values = column.values
     if column.words is not None:
         return [_worded(column).tolist()]

@@ -338,7 +338,6 @@ def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, c
 
 
 def _setup_files(result: Judged) -> list[str]:
-    """The formats of the setups that were proposed."""
     proposal = result.plan.setup_proposal
     return [f"setup_{number}" for number in range(1, 1 + len(proposal.setups))] if proposal else []
 

@@ -141,7 +141,6 @@ def _table(story: Story) -> list[str]:
 
 
 def _picture(result: Judged) -> str:
-    """The sheet of `review.png`, in base64."""
     from plan_cutters.report.drawing.part import write_png
     from plan_cutters.report.models import split_result
 

@@ -279,7 +279,6 @@ def _names(each: PatternEntry) -> list[str]:
 
 
 def _sentence(each: PatternEntry) -> str:
-    """One pattern, and what was done with it."""
     names = _names(each)
     few = names if len(names) <= _NAMED else names[:1]
     # A file may have any words there.

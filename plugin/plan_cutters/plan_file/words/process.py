@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, some
-from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
@@ -137,7 +136,6 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
 
 
 def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
-    """The operations of a plan, whatever they are called."""
     return sorted((each.cutter, each.setup, *sorted((each.angles_deg or {}).items())) for each in plan.operations)
 
 
@@ -409,7 +407,6 @@ def _fitting(faces: list[str], width: int) -> str:
 
 
 def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
-    """Sentences on what is left, the largest first."""
     listed_causes = process.left[:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
@@ -430,28 +427,26 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
     if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
-    if advice is not None:
-        reported = list[tuple[set[str], float]]()
+    if advice is None:
+        if "mend" not in plan.effective.answers:
+            yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
+        return
+    things = [{change.thing for change in step.changes} for step in advice.steps]
+    after = dict[int, float]()
+    for k, step in enumerate(advice.steps):
+        # The process keeps its own cutters and setups where a step takes none away.
+        if not is_excluded(step):
+            gained = sum(each.share * helped.share for each in process.left for helped in each.helped if helped.step == k)
+            after[k] = min(step.lost_after, max(0.0, left - gained)) if things[k] <= _ADDED else step.lost_after
+    reported = list[tuple[set[str], float]]()
+    for k in after:
         # What changes less comes first where it does as much.
-        after = {k: _after(process, k, step) for k, step in enumerate(advice.steps) if not is_excluded(step)}
-        for k in after:
-            things = {change.thing for change in advice.steps[k].changes}
-            fewer = [(each, after[j]) for j in after if (each := {c.thing for c in advice.steps[j].changes}) < things]
-            alike = any(each <= things and then - after[k] < WORTH for each, then in (*reported, *fewer))
-            if left - after[k] >= WORTH - _ROUNDING and not alike:
-                reported.append((things, after[k]))
-                option = advice.steps[k].option
-                yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
-    elif "mend" not in plan.effective.answers:
-        yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
-
-
-def _after(process: ProcessEntry, number: int, step: StepEntry) -> float:
-    """What the process leaves with a step: it keeps its own cutters and setups where the step takes none away."""
-    if not all(change.thing in _ADDED for change in step.changes):
-        return step.lost_after
-    gained = sum(each.share * helped.share for each in process.left for helped in each.helped if helped.step == number)
-    return min(step.lost_after, max(0.0, 1.0 - process.finished_share - gained))
+        fewer = [(things[j], after[j]) for j in after if things[j] < things[k]]
+        alike = any(each <= things[k] and then - after[k] < WORTH for each, then in (*reported, *fewer))
+        if left - after[k] >= WORTH - _ROUNDING and not alike:
+            reported.append((things[k], after[k]))
+            option = advice.steps[k].option
+            yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
 
 
 def _next(each: NextEntry) -> str:

@@ -145,12 +145,6 @@ def chip(plan: Plan, story: Story) -> Chip:
     return CHIPS[good]
 
 
-def cutter_chip(plan: Plan, cutter: CutterEntry) -> Chip:
-    """The verdict on a cutter. As of the part: feasible without more words only where all was judged and seen."""
-    unseen = plan.effective.sampled_by == "default" and not cutter.seen
-    return _WHERE_JUDGED if cutter.feasible and (unseen or could_not(plan)) else CHIPS[cutter.feasible]
-
-
 #: Most lines: with the headline and the path of the page they are 25 in a terminal.
 MOST = 22
 #: Doubts, and cutters, that are named.
@@ -172,7 +166,10 @@ def with_text(plan: Plan) -> Plan:
 def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines."""
     story = story_of(plan)
-    chips = {each.id: cutter_chip(plan, each) for each in plan.cutters}
+    # As of the part: feasible without more words only where all was judged and seen.
+    default, judged = plan.effective.sampled_by == "default", not could_not(plan)
+    unsure = {c.id: bool(c.feasible) and not (judged and (c.seen or not default)) for c in plan.cutters}
+    chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
         headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],

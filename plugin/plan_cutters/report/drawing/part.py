@@ -211,7 +211,6 @@ def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]
 
 
 def _put(axes: Any, views: list[View], pieces: _Pieces) -> None:
-    """The part, and over it patterns and fixtures."""
     part = views[0]
     hit, piece = part.seen >= 0, np.maximum(part.seen, 0)
     verdict = np.where(hit, pieces.verdict[piece], -1)
@@ -262,7 +261,6 @@ def _window(sheet: Any, place: tuple[float, float], frame: Floats, scale: float,
 
 
 def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
-    """Title and legend."""
     plan = result.plan
     entry = next(c for c in plan.cutters if c.id == result.shown)
     shares = entry.area_share.model_dump()

@@ -387,7 +387,6 @@ def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
 
 
 def _silhouette(segments: tuple[Segment, ...], view: _View) -> str:
-    """A closed path about the axis."""
     path = ["M" + at(view(segments[0].start))]
     path += [_side(segment, view, segment.end) for segment in segments]
     path.append("L" + at(view(segments[-1].end, -1.0)))

@@ -210,7 +210,6 @@ def _face(entry: Any, surface: Surface) -> dict[str, Any]:
 
 
 def _of(record: Any, *words: str) -> dict[str, Any]:
-    """Attributes of a record by their names."""
     return {word: getattr(record, word) for word in words}
 
 
@@ -315,7 +314,6 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
 
 
 def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
-    """The texts below the title."""
     p = story.process
     process = [p.more, *p.own, *p.remaining, *p.next, p.clearance] if p else []
     return [*process, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
@@ -335,7 +333,6 @@ def _apart(texts: list[str]) -> tuple[list[str], list[str]]:
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
-    """Write the sentences below the title."""
     _, _, about, why = story.headline
     taken = next((c for c in plan.cutters if c.id == story.taken), shown)
     least = taken.least_stick_out.least_mm if taken.least_stick_out else None
@@ -364,7 +361,6 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
 
 
 def _effective(plan: Plan) -> list[tuple[str, str]]:
-    """Options that have a value, as texts."""
     return [
         (name.replace("_", " "), _value(name, value))
         for name, value in plan.effective.model_dump(mode="json").items()
