@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, SurfaceSamples
+from cad_io.arrays import Ints, SurfaceSamples
 from cad_io.part.inside_edges import InsideEdge
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
@@ -125,7 +125,12 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
         if each.whole:
             own = counts[motion : motion + len(each.motions)].sum(axis=0)
             motion += len(each.motions)
-        place, direction = _frame(each)
+        # A point and the direction of the axis, or of the mirror's normal.
+        first = each.motions[0]
+        place, direction = (None, None) if each.kind == "shift" or first.axis is None else first.axis
+        if each.kind == "mirror":
+            values, vectors = np.linalg.eigh(0.5 * (first.linear + first.linear.T))
+            place, direction = 0.5 * first.shift, vectors[:, int(values.argmin())]
         entries.append(
             PatternEntry(
                 kind=each.kind, order=each.order, whole=each.whole, place_mm=None if place is None else vector(place),
@@ -136,13 +141,3 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
             )
         )  # fmt: skip
     return entries
-
-
-def _frame(pattern: Pattern) -> tuple[Floats | None, Floats | None]:
-    """A point and the direction of the axis, or of the mirror's normal."""
-    first = pattern.motions[0]
-    if pattern.kind == "mirror":
-        values, vectors = np.linalg.eigh(0.5 * (first.linear + first.linear.T))
-        return 0.5 * first.shift, vectors[:, int(values.argmin())]
-    axis = first.axis
-    return (None, None) if axis is None or pattern.kind == "shift" else axis
