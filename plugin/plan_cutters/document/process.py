@@ -196,7 +196,7 @@ def _moving(ready: Prepared, setup: int, mine: NDArray[np.bool_]) -> tuple[int, 
         if abs(abs(axis[1] @ kinematics.direction[0]) - 1.0) > _SAME:
             continue
         near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
-        distance, which = (found.reshape(len(rows), -1) for found in near)
+        distance, which = (part.reshape(len(rows), -1) for part in near)
         is_near = np.isfinite(distance)
         alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
         if area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum():

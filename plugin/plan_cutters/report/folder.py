@@ -27,36 +27,36 @@ if TYPE_CHECKING:
 class Writer(NamedTuple):
     """The file of a format, the function that writes it, in a module of this room, and what it is given besides.
 
-    `beside`: it is not requested by itself, but written where there are steps, setups were to be proposed, or posture maps or
+    `optional`: it is not requested by itself, but written where there are steps, setups were to be proposed, or posture maps or
     operations were requested.
     """
 
     file: str
     module: str
     function: str
-    beside: bool = True
-    given: dict[str, Any] | None = None
+    optional: bool = True
+    options: dict[str, Any] | None = None
 
 
 _FASTEST = {"name": "fastest"}
 WRITERS = {
-    "html": Writer("review.html", "page", "write_html", beside=False),
-    "step": Writer("annotated.step", "models", "write_step", beside=False),
-    "glb": Writer("annotated.glb", "models", "write_glb", beside=False),
-    "merged": Writer("merged.glb", "models", "write_glb", beside=False, given={"merged": True}),
-    "npz": Writer("samples.npz", "arrays", "write_npz", beside=False),
+    "html": Writer("review.html", "page", "write_html", optional=False),
+    "step": Writer("annotated.step", "models", "write_step", optional=False),
+    "glb": Writer("annotated.glb", "models", "write_glb", optional=False),
+    "merged": Writer("merged.glb", "models", "write_glb", optional=False, options={"merged": True}),
+    "npz": Writer("samples.npz", "arrays", "write_npz", optional=False),
     "process": Writer("process.toml", "process_file", "write_process"),
-    **{f"setup_{k}": Writer(f"setup-{k}.toml", "process_file", "write_setup", given={"number": k}) for k in (1, 2, 3)},
+    **{f"setup_{k}": Writer(f"setup-{k}.toml", "process_file", "write_setup", options={"number": k}) for k in (1, 2, 3)},
     "postures": Writer("postures.npz", "arrays", "write_postures"),
     "operations": Writer("operations.npz", "arrays", "write_operations"),
     "operations_csv": Writer("operations.csv", "arrays", "write_operations_csv"),
     "operations_step": Writer("operations.step", "models", "write_operations_step"),
     "operations_glb": Writer("operations.glb", "models", "write_operations_glb"),
-    "fastest_step": Writer("operations_fastest.step", "models", "write_operations_step", given=_FASTEST),
-    "fastest_glb": Writer("operations_fastest.glb", "models", "write_operations_glb", given=_FASTEST),
-    "csv": Writer("axes.csv", "arrays", "write_csv", beside=False),
-    "vtk": Writer("axes.vtp", "arrays", "write_vtk", beside=False),
-    "png": Writer("review.png", "drawing.part", "write_png", beside=False),
+    "fastest_step": Writer("operations_fastest.step", "models", "write_operations_step", options=_FASTEST),
+    "fastest_glb": Writer("operations_fastest.glb", "models", "write_operations_glb", options=_FASTEST),
+    "csv": Writer("axes.csv", "arrays", "write_csv", optional=False),
+    "vtk": Writer("axes.vtp", "arrays", "write_vtk", optional=False),
+    "png": Writer("review.png", "drawing.part", "write_png", optional=False),
 }
 _FILES = [writer.file for writer in WRITERS.values()]
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
@@ -94,7 +94,7 @@ class Making:
         writer, path = WRITERS[name], self._folder / WRITERS[name].file
         write = getattr(import_module(f"plan_cutters.report.{writer.module}"), writer.function)
         schema = {"schema": self._schema} if path.suffix == ".step" else {}
-        write(self._result, split, path, **schema, **(writer.given or {}))
+        write(self._result, split, path, **schema, **(writer.options or {}))
         return FileEntry(name=path.name, sha256=sha256(path))
 
     def files(self, formats: Sequence[str]) -> Generator[tuple[str, Callable[[], "FileEntry"]]]:
@@ -157,7 +157,7 @@ def sha256(file: Path) -> str:
 
 PLAN = "plan.json"
 _STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
-FORMATS = ("json", *(name for name, writer in WRITERS.items() if not writer.beside))
+FORMATS = ("json", *(name for name, writer in WRITERS.items() if not writer.optional))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
