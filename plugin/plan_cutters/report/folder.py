@@ -27,24 +27,24 @@ if TYPE_CHECKING:
 class Writer(NamedTuple):
     """The file of a format, the function that writes it, in a module of this room, and what it is given besides.
 
-    `optional`: it is not requested by itself, but written where there are steps, setups were to be proposed, or posture maps or
+    `by_name`: it can be requested; others are written where there are steps, setups were to be proposed, or posture maps or
     operations were requested.
     """
 
     file: str
     module: str
     function: str
-    optional: bool = True
+    by_name: bool = False
     options: dict[str, Any] | None = None
 
 
 _FASTEST = {"name": "fastest"}
 WRITERS = {
-    "html": Writer("review.html", "page", "write_html", optional=False),
-    "step": Writer("annotated.step", "models", "write_step", optional=False),
-    "glb": Writer("annotated.glb", "models", "write_glb", optional=False),
-    "merged": Writer("merged.glb", "models", "write_glb", optional=False, options={"merged": True}),
-    "npz": Writer("samples.npz", "arrays", "write_npz", optional=False),
+    "html": Writer("review.html", "page", "write_html", by_name=True),
+    "step": Writer("annotated.step", "models", "write_step", by_name=True),
+    "glb": Writer("annotated.glb", "models", "write_glb", by_name=True),
+    "merged": Writer("merged.glb", "models", "write_glb", by_name=True, options={"merged": True}),
+    "npz": Writer("samples.npz", "arrays", "write_npz", by_name=True),
     "process": Writer("process.toml", "process_file", "write_process"),
     **{f"setup_{k}": Writer(f"setup-{k}.toml", "process_file", "write_setup", options={"number": k}) for k in (1, 2, 3)},
     "postures": Writer("postures.npz", "arrays", "write_postures"),
@@ -54,9 +54,9 @@ WRITERS = {
     "operations_glb": Writer("operations.glb", "models", "write_operations_glb"),
     "fastest_step": Writer("operations_fastest.step", "models", "write_operations_step", options=_FASTEST),
     "fastest_glb": Writer("operations_fastest.glb", "models", "write_operations_glb", options=_FASTEST),
-    "csv": Writer("axes.csv", "arrays", "write_csv", optional=False),
-    "vtk": Writer("axes.vtp", "arrays", "write_vtk", optional=False),
-    "png": Writer("review.png", "drawing.part", "write_png", optional=False),
+    "csv": Writer("axes.csv", "arrays", "write_csv", by_name=True),
+    "vtk": Writer("axes.vtp", "arrays", "write_vtk", by_name=True),
+    "png": Writer("review.png", "drawing.part", "write_png", by_name=True),
 }
 _FILES = [writer.file for writer in WRITERS.values()]
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
@@ -157,7 +157,7 @@ def sha256(file: Path) -> str:
 
 PLAN = "plan.json"
 _STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
-FORMATS = ("json", *(name for name, writer in WRITERS.items() if not writer.optional))
+FORMATS = ("json", *(name for name, writer in WRITERS.items() if writer.by_name))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
