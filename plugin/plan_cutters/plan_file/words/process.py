@@ -378,12 +378,12 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
             turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
     what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
-    room = 26 if fixed else 40
+    longest = 26 if fixed else 40
     return StepRow(
         number=str(number),
         setup=f"setup {step.setup + 1}" if setups else "",
         turned=times + turned,
-        cutter=what if len(what) <= room else f"{what[: room - 3]}...",
+        cutter=what if len(what) <= longest else f"{what[: longest - 3]}...",
         share=percent(step.share, some=step.area_mm2 > 0.0),
         took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
         faces=step.faces,
