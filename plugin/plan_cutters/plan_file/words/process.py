@@ -334,7 +334,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     setups = len({step.setup for step in process.steps}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
-    # The largest ones where there is no room for all, in the order of the process.
+    # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: _STEPS if len(steps) > _STEPS + 1 else None]
     rows = tuple(_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest))
     more = ""
