@@ -9,9 +9,9 @@ from plan_cutters.judged_part import JudgedPart, assembled, worded
 from plan_cutters.judging.judge import first_look
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import AreaEntry, Plan
-from plan_cutters.plan_file.notes import later_stages, run_unfinished
 from plan_cutters.plan_file.words.headline import first_looked
 from plan_cutters.plan_file.words.names import called
+from plan_cutters.plan_file.words.notes import later_stages, run_unfinished
 from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
 

@@ -16,7 +16,7 @@ from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
-from plan_cutters.document.setups import OtherSetup, OverSetups, setup_table
+from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.standard_tools import Fit
@@ -31,10 +31,9 @@ from plan_cutters.judging.reasons import Explained, Reasons, exempt, may_be_at_e
 from plan_cutters.judging.witness import witnesses
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry
-from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.notes import maps_partial
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
+from plan_cutters.plan_file.words.notes import note
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
@@ -263,7 +262,7 @@ def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callabl
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:
-        document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
+        document = noted(document, note("maps_partial", unmapped=maps.unmapped, judged=int((maps.verdict != UNJUDGED).sum())))
     return replace(result, plan=document, maps=maps)
 
 

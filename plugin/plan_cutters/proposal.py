@@ -21,8 +21,8 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.notes import setup_proposed
-from plan_cutters.plan_file.setups import HiddenFaces, ProposedSetup, SetupProposal
+from plan_cutters.plan_file.part_info import HiddenFaces, ProposedSetup, SetupProposal
+from plan_cutters.plan_file.words.notes import setup_proposed
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.setups.requested import MOST_PROPOSED

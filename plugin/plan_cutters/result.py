@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io import Part
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import counts
-from plan_cutters.document.setups import OverSetups
+from plan_cutters.document.process import OverSetups
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics, positions
 from plan_cutters.domain.posture import PostureRange
@@ -22,8 +22,7 @@ from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Ve
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_maps import PostureMaps
 from plan_cutters.outcome import Answers, Operations
-from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry, nearest
 from plan_cutters.plan_file.shares import VerdictCounts
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.distances import Clearances, clearances_over
@@ -449,7 +448,7 @@ class Result:
         PlanError
             Pandas is not installed.
         """
-        from plan_cutters.report.axes import frame
+        from plan_cutters.report.arrays import frame
 
         return frame(self, of, cutter)
 

@@ -17,11 +17,13 @@ from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.operations import ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.model import CutterEntry, Plan, leaves
+from plan_cutters.plan_file.operations import OwnStepEntry
+from plan_cutters.plan_file.reasons import REASONS, reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
-from plan_cutters.plan_file.words.cutters import main_reason, reason
-from plan_cutters.plan_file.words.face import face_text, helping, in_the_way, posture_text, sample_text
+from plan_cutters.plan_file.words.answers import first_tries
+from plan_cutters.plan_file.words.cutters import face_text, helping, in_the_way, main_reason, posture_text, sample_text
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.next_steps import first_tries
 from plan_cutters.plan_file.words.text import shown, text_of
 from plan_cutters_agents.access import CallError
 from plan_cutters_ci.plans import compare

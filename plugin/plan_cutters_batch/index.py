@@ -18,7 +18,7 @@ from plan_cutters.document.build import versions
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.figures import percent
 from plan_cutters.files.markup import finite, plain, policy, template
-from plan_cutters.plan_file.words.cutters import reason
+from plan_cutters.plan_file.reasons import reason
 from plan_cutters_batch.row import PartRow, PartTools
 from plan_cutters_batch.summary import OUTCOMES, BatchRun, LeastTools, Summary, Table, cause, fault, outcome, summary_of
 

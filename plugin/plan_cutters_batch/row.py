@@ -107,9 +107,8 @@ def row_of(
     the clock; default what the plan says of its own run.
     """
     from plan_cutters.plan_file.words.cutters import main_reason
-    from plan_cutters.plan_file.words.headline import headline
+    from plan_cutters.plan_file.words.headline import headline, headline_cutter
     from plan_cutters.plan_file.words.names import short_names
-    from plan_cutters.plan_file.words.scope import headline_cutter
     from plan_cutters.report.folder import file_name
 
     names = short_names(plan)

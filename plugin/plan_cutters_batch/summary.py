@@ -8,8 +8,8 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from plan_cutters.cases import case
-from plan_cutters.cases.case import Case
+from plan_cutters.cases import files as case
+from plan_cutters.cases.files import Case
 from plan_cutters_base.workers.assignment import TIMED_OUT
 from plan_cutters_batch.row import PartRow, PartTools
 from plan_cutters_batch.shop import fewest

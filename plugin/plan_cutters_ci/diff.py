@@ -95,8 +95,7 @@ def command(request: DiffRequest) -> int:
         for path in (request.old, request.new):
             if not os.path.exists(path):
                 raise PlanError("no such file or folder", file=path)
-    from plan_cutters.cases.case import Case
-    from plan_cutters.cases.files import CaseFiles
+    from plan_cutters.cases.files import Case, CaseFiles
     from plan_cutters_ci.wording import COMPARABLE, apart, comparison_cases, markdown, verdict
 
     if request.as_json and request.as_markdown:

@@ -231,22 +231,21 @@ def _grouped(
 
 def _in_place(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> list[Pair]:
     """Pairs of one form whose area and place agree; several in one place are paired in the order of their numbers."""
+
+    def placed(faces: Sequence[FaceEntry]) -> NDArray[np.float64]:
+        """Rows (n, 4): places in sizes of the part, and logarithms of areas."""
+        at = np.array([face.centre_mm for face in faces]) / max(size, 1e-300)
+        return np.column_stack([at, np.log([face.area_mm2 for face in faces])])
+
     pairs: list[Pair] = []
     for mine, theirs in _grouped(old, new, _placed_form):
-        tree = cKDTree(_placed(theirs, size))
         taken = set[int]()
-        for face, rows in zip(mine, tree.query_ball_point(_placed(mine, size), SAME), strict=True):
+        for face, rows in zip(mine, cKDTree(placed(theirs)).query_ball_point(placed(mine), SAME), strict=True):
             row = next((j for j in sorted(rows) if j not in taken and not _opposed(face, theirs[j])), None)
             if row is not None:
                 taken.add(row)
                 pairs.append((face, theirs[row]))
     return pairs
-
-
-def _placed(faces: Sequence[FaceEntry], size: float) -> NDArray[np.float64]:
-    """Rows (n, 4): places in sizes of the part, and logarithms of areas."""
-    at = np.array([face.centre_mm for face in faces]) / max(size, 1e-300)
-    return np.column_stack([at, np.log([face.area_mm2 for face in faces])])
 
 
 def _placed_form(face: FaceEntry) -> str | None:
@@ -260,16 +259,26 @@ def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: fl
     A cone has an angle, which agrees in any case.
     """
     within = _SAME_CARRIER * size
+
+    def row(face: FaceEntry, sign: float = 1.0) -> tuple[float, ...]:
+        """Six lengths, mm, that say where a carrier is."""
+        assert face.carrier is not None
+        return *face.carrier.point_mm, *(sign * size * x for x in face.carrier.direction or (0.0, 0.0, 0.0))
+
     for mine, theirs in _grouped(old, new, lambda face: None if face.carrier is None else face.shape):
         # A direction and its opposite are the same.
-        tree = cKDTree(np.array([row for sign in (1.0, -1.0) for row in (_row(face, size, sign) for face in theirs)]))
-        near = tree.query_ball_point(np.array([_row(face, size, 1.0) for face in mine]), within, p=np.inf)
+        tree = cKDTree(np.array([row(face, sign) for sign in (1.0, -1.0) for face in theirs]))
+        near = tree.query_ball_point(np.array([row(face) for face in mine]), within, p=np.inf)
         for a, rows in zip(mine, near, strict=True):
-            for j in sorted({row % len(theirs) for row in rows}):
-                b = theirs[j]
-                angles = [(each.carrier and each.carrier.half_angle_deg) or 0.0 for each in (a, b)]
-                same = abs(angles[0] - angles[1]) <= math.degrees(_SAME_CARRIER) and not _opposed(a, b)
-                if same and (not radius or _same_radii(a, b, within)):
+            for b in (theirs[j] for j in sorted({row % len(theirs) for row in rows})):
+                one, other = a.carrier, b.carrier
+                if one is None or other is None or _opposed(a, b):
+                    continue
+                if abs((one.half_angle_deg or 0.0) - (other.half_angle_deg or 0.0)) > math.degrees(_SAME_CARRIER):
+                    continue
+                # A face without a radius has none to differ in.
+                radii = ((one.radius_mm, other.radius_mm), (one.minor_radius_mm, other.minor_radius_mm))
+                if not radius or all(r is None or s is None or abs(r - s) <= within for r, s in radii):
                     yield a, b
 
 
@@ -290,22 +299,7 @@ def _opposed(a: FaceEntry, b: FaceEntry) -> bool:
     return (known and not same) or abs(inner) < _AGREE
 
 
-def _same_radii(a: FaceEntry, b: FaceEntry, within: float) -> bool:
-    """Whether the radii of two faces agree, mm; a face without one has none to differ in."""
-    if a.carrier is None or b.carrier is None:
-        return True
-    pairs = ((a.carrier.radius_mm, b.carrier.radius_mm), (a.carrier.minor_radius_mm, b.carrier.minor_radius_mm))
-    return all(one is None or other is None or abs(one - other) <= within for one, other in pairs)
-
-
-def _row(face: FaceEntry, size: float, sign: float) -> tuple[float, ...]:
-    """Six lengths, mm, that say where a carrier is."""
-    assert face.carrier is not None
-    return *face.carrier.point_mm, *(sign * size * x for x in face.carrier.direction or (0.0, 0.0, 0.0))
-
-
 def _in_one_pair(pairs: Iterable[Pair]) -> list[Pair]:
-    """The pairs whose faces are in no other pair."""
     every = list(pairs)
     olds, news = Counter(a.id for a, _ in every), Counter(b.id for _, b in every)
     return [(a, b) for a, b in every if olds[a.id] == news[b.id] == 1]

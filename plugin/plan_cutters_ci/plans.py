@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 from plan_cutters.domain.figures import count
@@ -54,19 +54,23 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
             f"{moved} of {count(len(old.faces), 'face')} of the old plan stand at other places in the new one: it was moved, "
             "turned or mirrored as a whole; export both from one origin"
         )
-    elif not _related(old, new, pairs):
+    elif not (
+        (pairs and len(pairs) >= UNRELATED * min(len(old.faces), len(new.faces))) or _same_area(old, new, pairs) >= UNRELATED
+    ):
         why_not.append(
             f"of {count(len(old.faces), 'face')} of the old plan and {len(new.faces)} of the new one {len(pairs) or 'none'} "
             f"{'are' if len(pairs) > 1 else 'is'} known again: they seem to be of two parts"
         )
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
+    known = {a.id for a, _, _ in pairs}, {b.id for _, b, _ in pairs}
+    tool = {a.id for a, _, _ in tools}, {b.id for _, b, _ in tools}
     faces = [*(_face(old, a, new, b, how, slack) for a, b, how in pairs),
-             *(_one_face(old, face, None) for face in _rest(old.faces, [a.id for a, _, _ in pairs])),
-             *(_one_face(new, None, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs]))]  # fmt: skip
+             *(_face(old, face, new, None, None, slack) for face in old.faces if face.id not in known[0]),
+             *(_face(old, None, new, face, None, slack) for face in new.faces if face.id not in known[1])]  # fmt: skip
     cutters = [*(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
-               *(_one_cutter(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools])),
-               *(_one_cutter(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools]))]  # fmt: skip
+               *(_cutter(old, c, new, None, None, pairs, slack) for c in old.cutters if c.id not in tool[0]),
+               *(_cutter(old, None, new, c, None, pairs, slack) for c in new.cutters if c.id not in tool[1])]  # fmt: skip
     face_rows, cutter_rows = sorted(filter(None, faces), key=_worst_face), sorted(filter(None, cutters), key=_worst_cutter)
     differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
     return PlanDifference(
@@ -84,18 +88,13 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
     )
 
 
-def _related(old: Plan, new: Plan, pairs: Matched) -> bool:
-    """Whether two plans are of one part: enough of their faces are known again, or enough area is the same at the same place."""
-    if len(pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
-        return bool(pairs)
-    same = [(a.id, b.id) for a, b, how in pairs if how == "place"]
-
-    def share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
-        area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
-        return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
-
-    shares = (share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
-    return bool(same) and min(shares) >= UNRELATED
+def _same_area(old: Plan, new: Plan, pairs: Matched) -> float:
+    """The share of the area of either plan that is the same at the same place."""
+    same, shares = [(a.id, b.id) for a, b, how in pairs if how == "place"], []
+    for plan, names in zip((old, new), zip(*same, strict=True), strict=False):
+        area = {face.id: face.area_mm2 for face in plan.faces if math.isfinite(face.area_mm2)}
+        shares.append(sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300))
+    return min(shares, default=0.0)
 
 
 def taken(plan: Plan) -> str | None:
@@ -152,77 +151,75 @@ def _text(value: Any) -> str:
     return text if len(text) <= 120 else f"{text[:57]} ... {text[-57:]}"
 
 
-def _rest(entries: Iterable[Any], known: Collection[str]) -> list[Any]:
-    names = set(known)
-    return [each for each in entries if each.id not in names]
+def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: Any, slack: float) -> FaceDifference | None:
+    """A face as the last plan has it that has it; None where both have it and its answer is the same.
 
-
-def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: float) -> FaceDifference | None:
-    """A face that both have; None where its answer is the same."""
-    was, now = face_state(old, a), face_state(new, b)
-    loses, wins = falls(was, now, slack), falls(now, was, slack)
-    # Which cutters reach all of it is told with each cutter.
-    if not (loses or wins) and (was.reach, was.reason) == (now.reach, now.reason):
-        return None
-    return _face_difference(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
-
-
-def _one_face(plan: Plan, gone: FaceEntry | None, added: FaceEntry | None) -> FaceDifference:
-    """A face that one plan has: a new target that is not reached whole is lost, and one that is gone is not won."""
-    if gone is not None:
-        return _face_difference(gone, old=gone.id, was=face_state(plan, gone), lost=False, won=False)
-    assert added is not None
-    now = face_state(plan, added)
-    return _face_difference(added, new=added.id, now=now, lost=now.reach not in _CLOSED, won=False)
-
-
-def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
-    """A face as the last plan has it that has it."""
-    area = face.area_mm2 if math.isfinite(face.area_mm2) else None
-    return FaceDifference(name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **fields)
+    Of those that one plan has a new target that is not reached whole is lost, and one that is gone is not won.
+    """
+    was, now = None if a is None else face_state(old, a), None if b is None else face_state(new, b)
+    if was and now:
+        loses, wins = falls(was, now, slack), falls(now, was, slack)
+        # Which cutters reach all of it is told with each cutter.
+        if not (loses or wins) and (was.reach, was.reason) == (now.reach, now.reason):
+            return None
+    else:
+        loses, wins = now is not None and now.reach not in _CLOSED, False
+    face = b or a
+    assert face is not None
+    return FaceDifference(
+        old=a.id if a else None, new=b.id if b else None, matched_by=how, name=face.name, kind=face.kind or face.shape,
+        area_mm2=face.area_mm2 if math.isfinite(face.area_mm2) else None, centre_mm=face.centre_mm, was=was, now=now, lost=loses,
+        won=wins,
+    )  # fmt: skip
 
 
 def _cutter(
-    old: Plan, a: CutterEntry, new: Plan, b: CutterEntry, how: Any, pairs: Matched, slack: float
+    old: Plan, a: CutterEntry | None, new: Plan, b: CutterEntry | None, how: Any, pairs: Matched, slack: float
 ) -> CutterDifference | None:
-    """A cutter that both have; None where its form and its answer are the same."""
-    was, now = cutter_state(old, a), cutter_state(new, b)
-    gone, won = list[tuple[str, str]](), list[tuple[str, str]]()
-    for mine, theirs, _ in pairs:
-        if mine.target and theirs.target:
-            before, after = reached_whole(a.faces.get(mine.id)), reached_whole(b.faces.get(theirs.id))
-            if before != after:
-                (gone if before else won).append((mine.id, theirs.id))
-    forms = [(name, _form(a, name), _form(b, name)) for name in _FORM]
-    changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
-    # What a cutter leaves of the target faces, mm2; nan where areas are not known.
-    then, today = ((1.0 - state.share) * sum(face.area_mm2 for face in plan.faces if face.target)
-                   for plan, state in ((old, was), (new, now)))  # fmt: skip
-    # An area that is not known may have grown.
-    loses = cutter_falls(was, now, slack, leaves_more=not today - then <= slack * then) or bool(gone)
-    wins = cutter_falls(now, was, slack, leaves_more=not then - today <= slack * today) or bool(won)
-    if not (loses or wins or changes):
-        return None
+    """A cutter that one plan has, or both; None where its form and its answer are the same.
+
+    Of those that one plan has one that finished the part is lost with its going, and won with its coming.
+    """
+    was, now = None if a is None else cutter_state(old, a), None if b is None else cutter_state(new, b)
+    gone, won, changes = list[tuple[str, str]](), list[tuple[str, str]](), list[Change]()
+    if a and b and was and now:
+        for mine, theirs, _ in pairs:
+            if mine.target and theirs.target:
+                before, after = reached_whole(a.faces.get(mine.id)), reached_whole(b.faces.get(theirs.id))
+                if before != after:
+                    (gone if before else won).append((mine.id, theirs.id))
+        forms = zip(_FORM, *([_text(_formed(each, name)) for name in _FORM] for each in (a, b)), strict=True)
+        changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
+        # What a cutter leaves of the target faces, mm2; nan where areas are not known.
+        then, today = ((1.0 - state.share) * sum(face.area_mm2 for face in plan.faces if face.target)
+                       for plan, state in ((old, was), (new, now)))  # fmt: skip
+        # An area that is not known may have grown.
+        loses = cutter_falls(was, now, slack, leaves_more=not today - then <= slack * then) or bool(gone)
+        wins = cutter_falls(now, was, slack, leaves_more=not then - today <= slack * today) or bool(won)
+        if not (loses or wins or changes):
+            return None
+    else:
+        loses, wins = was is not None and bool(was.finishes), now is not None and bool(now.finishes)
+    either = b or a
+    assert either is not None
     return CutterDifference(
-        name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone, faces_won=won, lost=loses, won=wins
+        name=called(either),
+        matched_by=how,
+        was=was,
+        now=now,
+        changes=changes,
+        faces_lost=gone,
+        faces_won=won,
+        lost=loses,
+        won=wins,
     )
 
 
-def _form(cutter: CutterEntry, name: str) -> str:
+def _formed(cutter: CutterEntry, name: str) -> Any:
     stages = [
         f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}" for s in cutter.stages
     ]
-    return _text(stages if name == "stages" else getattr(cutter, name))
-
-
-def _one_cutter(plan: Plan, gone: CutterEntry | None, added: CutterEntry | None) -> CutterDifference:
-    """A cutter that one plan has: one that finished the part is lost with its going, and won with its coming."""
-    was = None if gone is None else cutter_state(plan, gone)
-    now = None if added is None else cutter_state(plan, added)
-    either = gone or added
-    assert either is not None
-    return CutterDifference(name=called(either), matched_by=None, was=was, now=now, changes=[], faces_lost=[], faces_won=[],
-                            lost=was is not None and bool(was.finishes), won=now is not None and bool(now.finishes))  # fmt: skip
+    return stages if name == "stages" else getattr(cutter, name)
 
 
 def _worst_face(face: FaceDifference) -> tuple[int, float, int, int]:

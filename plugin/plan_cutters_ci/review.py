@@ -5,7 +5,7 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -67,9 +67,22 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     sides = {"old": old, "new": new}
     # Of plans that are not comparable the pictures show what each one reaches, and nothing of what became of a face.
     shown, marks = (difference.faces, MARKS) if difference.comparable else ([], {**MARKS, **_ALONE})
+    # What became of each face, in words of `MARKS`.
+    alike = {"new": "alone", "gone": "alone", "lost and won": "lost"}
+    states = dict[str, dict[str, str]]()
+    for side_name, side in sides.items():
+        marked = {getattr(f, side_name): mark(f) for f in shown}
+        words = {face.id: marked.get(face.id) or face_state(side.plan, face).reach for face in side.plan.faces}
+        words = {name: alike.get(word, word) for name, word in words.items()}
+        states[side_name] = {name: word if word in MARKS else "not reached" for name, word in words.items()}
+    outcome = Chip("unsure", "?", "Not comparable")
+    if difference.comparable and difference.lost:
+        outcome = Chip("bad", "✕", "Lost and won" if difference.won else "Lost")
+    elif difference.comparable:
+        outcome = Chip("good", "✓", "Won" if difference.won else "Nothing lost")
     data = {
         "marks": {word: dict(zip(("label", "colour", "pattern"), row, strict=True)) for word, row in marks.items()},
-        "states": {word: _states(side.plan, {getattr(f, word): mark(f) for f in shown}) for word, side in sides.items()},
+        "states": states,
         "pairs": [(a.id, b.id) for a, b, _ in match_faces(old.plan, new.plan)],
         "cutters": list(_cutters(old.plan, new.plan)),
         **{word: side.picture.meta for word, side in sides.items()},
@@ -84,7 +97,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         data={word: Markup(side.picture.data) for word, side in sides.items()},
         sides=sides,
         found=difference,
-        outcome=_outcome(difference),
+        outcome=outcome,
         headline=headline(difference),
         remarks=[line for line in (choice(difference), known(difference)) if line and difference.comparable],
         changes=[change(each) for each in difference.changes if not each.hinders],
@@ -95,37 +108,14 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     ).encode()
 
 
-def _outcome(difference: PlanDifference) -> Chip:
-    """What became of the part."""
-    if not difference.comparable:
-        return Chip("unsure", "?", "Not comparable")
-    if difference.lost:
-        return Chip("bad", "✕", "Lost and won" if difference.won else "Lost")
-    return Chip("good", "✓", "Won" if difference.won else "Nothing lost")
-
-
-def _states(plan: Plan, marked: dict[str | None, str]) -> dict[str, str]:
-    """What became of each face, in words of `MARKS`."""
-    states = {}
-    for face in plan.faces:
-        word = marked.get(face.id) or face_state(plan, face).reach
-        word = {"new": "alone", "gone": "alone", "lost and won": "lost"}.get(word, word)
-        states[face.id] = word if word in MARKS else "not reached"
-    return states
-
-
-def _cutters(old: Plan, new: Plan) -> Iterator[dict[str, str | None]]:
-    """Cutters of both, then those of one alone."""
+def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:
     then, now = short_names(old), short_names(new)
     pairs = match_cutters(old, new)
-    for a, b, _ in pairs:
-        yield {"name": now[b.id], "old": a.id, "new": b.id}
-    for c in old.cutters:
-        if c.id not in {a.id for a, _, _ in pairs}:
-            yield {"name": f"{then[c.id]} (old plan alone)", "old": c.id, "new": None}
-    for c in new.cutters:
-        if c.id not in {b.id for _, b, _ in pairs}:
-            yield {"name": f"{now[c.id]} (new plan alone)", "old": None, "new": c.id}
+    yield from ({"name": now[b.id], "old": a.id, "new": b.id} for a, b, _ in pairs)
+    gone = [c.id for c in old.cutters if c.id not in {a.id for a, _, _ in pairs}]
+    added = [c.id for c in new.cutters if c.id not in {b.id for _, b, _ in pairs}]
+    yield from ({"name": f"{then[each]} (old plan alone)", "old": each, "new": None} for each in gone)
+    yield from ({"name": f"{now[each]} (new plan alone)", "old": None, "new": each} for each in added)
 
 
 def picture_of(path: Path, plan: Plan) -> Picture:

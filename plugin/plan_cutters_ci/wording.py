@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from urllib.parse import quote
 
-from plan_cutters.cases.case import Case
+from plan_cutters.cases.files import Case
 from plan_cutters.domain.figures import area, count, listed, percent
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters_ci.model import (

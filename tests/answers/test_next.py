@@ -18,7 +18,7 @@ from plan_cutters.answers.steps import NEEDS
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.answers import Patch
 from plan_cutters.pipeline import prepare, run
-from plan_cutters.plan_file.words.next_steps import is_excluded, patch, step_text, together
+from plan_cutters.plan_file.words.answers import is_excluded, patch, step_text, together
 from tests.support import shapes
 from tests.support.advice import answered, asked, followed, left, options, single, steps_of, strip, wall
 from tests.support.cad_parts import box, cut, real

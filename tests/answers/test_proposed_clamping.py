@@ -10,7 +10,7 @@ from plan_cutters.command.validation import fixtures_of_setups
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import OptionError
-from plan_cutters.plan_file.words.scope import proposal
+from plan_cutters.plan_file.words.headline import proposal
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.process_file import setup_toml
 from plan_cutters.setups.files import read_setup

@@ -4,11 +4,11 @@ import itertools
 
 import pytest
 
-from plan_cutters.cases.junit import document
+from plan_cutters.cases.files import junit
 from plan_cutters.report.to_json import dumps
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.summary import part_case
-from plan_cutters_ci.changed_report import RULES, Row, row_cases
+from plan_cutters_ci.changed import RULES, Row, row_cases
 from plan_cutters_ci.diff import compare_folders
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.repository import Changed
@@ -52,7 +52,7 @@ def test_folders_of_many_have_a_case_for_each_plan(tmp_path):
     for name, one in (("a", ONES[1]), ("added", ONES[0]), ("broken", ONES[0])):
         saved(tmp_path / "new" / name, one)
     (tmp_path / "new/broken/plan.json").write_text("{")
-    found = cases(document("diff", comparison_cases(compare_folders(tmp_path / "old", tmp_path / "new", slack=0.001))))
+    found = cases(junit("diff", comparison_cases(compare_folders(tmp_path / "old", tmp_path / "new", slack=0.001))))
     ends = {(each.part.split("/")[-2] if "/" in each.part else each.part, each.name.split()[0], each.outcome) for each in found}
     assert ends == {
         ("a", "comparable", "passed"), ("a", "face", "failure"), ("a", "cutter", "failure"), ("gone", "comparable", "failure"),
@@ -98,9 +98,9 @@ ROWS = [
 @pytest.mark.parametrize("rule", RULES)
 def test_a_changed_part_fails_as_its_rule_says_and_never_passes_what_the_rule_lets_pass(rule):
     for row in ROWS:
-        found = cases(document("changed", row_cases(row, rule)))
+        found = cases(junit("changed", row_cases(row, rule)))
         assert bool(outcomes(found) & {"failure", "error"}) == row.breaks(rule)
-        strictest = cases(document("changed", row_cases(row, RULES[-1])))
+        strictest = cases(junit("changed", row_cases(row, RULES[-1])))
         assert [each.outcome == "passed" for each in found] == [each.outcome == "passed" for each in strictest]
 
 
@@ -112,6 +112,6 @@ def test_a_changed_part_fails_as_its_rule_says_and_never_passes_what_the_rule_le
 def test_a_part_of_many_is_a_case(code, status, outcome):
     row = PartRow(name="n", file="in/n.step", status=status, code=code, verdict="Says", seconds=1.5, reason="holder",
                   error="why" if status == "failed" else None)  # fmt: skip
-    (found,) = cases(document("batch", [part_case(row)]))
+    (found,) = cases(junit("batch", [part_case(row)]))
     assert (found.part, found.name, found.outcome) == ("in/n.step", "n", outcome)
     assert found.message or outcome == "passed"

@@ -11,11 +11,10 @@ import cadquery as cq
 import pytest
 import yaml
 
-from plan_cutters.cases.case import Case
+from plan_cutters.cases.files import Case
 from plan_cutters.errors import PlanError
 from plan_cutters_batch import keys
-from plan_cutters_ci.changed import RULES, PartRequest, Row
-from plan_cutters_ci.changed_report import annotations, requested
+from plan_cutters_ci.changed import RULES, PartRequest, Row, annotations, requested
 from plan_cutters_ci.repository import Changed, changed, content
 from tests.support.forked import ENV
 from tests.support.junit import cases

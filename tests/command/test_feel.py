@@ -26,7 +26,7 @@ from plan_cutters.command.terminal import show
 from plan_cutters.domain.figures import percent
 from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.words.face import others
+from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.text import story_of, with_text
 from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.terminal_text import clean
@@ -59,7 +59,7 @@ def shown(capsys, document, *, verbose=False):
     """What the summary says."""
     capsys.readouterr()
     summaries.summary(document, verbose=verbose)
-    after = others(document, every=True) if verbose else []
+    after = others(document) if verbose else []
     show(*after, *summaries.written(document, Path("out"), ("json",), verbose=verbose))
     return capsys.readouterr().out
 
@@ -659,7 +659,7 @@ def test_an_interrupt_where_none_can_be_raised_is_taken_again():
     code = """
 import os, signal, sys, time
 from plan_cutters.command.codes import keep_interrupts
-from plan_cutters.plan_file.words.face import others
+from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.text import with_text
 keep_interrupts()
 class Deaf:

@@ -9,9 +9,9 @@ import pytest
 from plan_cutters.domain.answers import MEANS
 from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.domain.verdicts import WORDS
-from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.outputs import OUTPUTS
 from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.words.notes import NoteCode
 from plan_cutters.report.to_json import schemas
 from tests.support.forked import run
 from tests.support.places import ROOT, SAMPLES

@@ -11,7 +11,7 @@ from plan_cutters.answers.state import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.plan_file.operations import HelpEntry, PointsEntry
-from plan_cutters.plan_file.words.next_steps import first_tries
+from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.process import process_story, with_process_words
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, cone, cut, rod

@@ -15,7 +15,7 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.standard_tools import USUAL, smaller
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.plan_file.words.names import called, described, short_names
 from tests.support.plan_files import cutter, face, made, verdicts
 

@@ -9,7 +9,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
-from plan_cutters.plan_file.words.face import others
+from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.text import text_of
 from plan_cutters.report.notebook import card
 from plan_cutters.report.notebook import text_of as notebook_text

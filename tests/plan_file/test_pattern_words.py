@@ -2,7 +2,7 @@
 
 from plan_cutters import plan
 from plan_cutters.plan_file.part_info import PatternEntry
-from plan_cutters.plan_file.words.scope import patterns
+from plan_cutters.plan_file.words.headline import patterns
 from tests.support.cad_parts import box
 
 

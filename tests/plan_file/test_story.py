@@ -17,17 +17,16 @@ from plan_cutters.errors import OptionError
 from plan_cutters.hosts.viewer import _posture
 from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StepEntry
 from plan_cutters.plan_file.model import WitnessEntry
-from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.part_info import Scope
 from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, PALETTE, REASONS, label
 from plan_cutters.plan_file.words import notes
-from plan_cutters.plan_file.words.answers import answers
-from plan_cutters.plan_file.words.next_steps import effect
-from plan_cutters.plan_file.words.scope import not_judged
+from plan_cutters.plan_file.words.answers import answers, effect
+from plan_cutters.plan_file.words.headline import not_judged
+from plan_cutters.plan_file.words.notes import NoteCode
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of as notebook_text
+from plan_cutters.report.page.arrays import row_of
 from plan_cutters.report.page.write import page
-from plan_cutters.report.witness import row_of
 from tests.support.cad_parts import box, compound
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts

@@ -14,8 +14,8 @@ from plan_cutters.domain.figures import percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank
 from plan_cutters.plan_file.effective import LocalTolerance
 from plan_cutters.plan_file.model import MissingEntry
+from plan_cutters.plan_file.words.headline import undecided
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters.plan_file.words.scope import undecided
 from plan_cutters.plan_file.words.text import story_of
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts

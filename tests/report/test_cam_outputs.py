@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
-import plan_cutters.report.axes as to_csv
+import plan_cutters.report.arrays as to_csv
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.assembly import MOST, grown, working_height
 from plan_cutters.domain.fixture import Fixture
@@ -21,7 +21,7 @@ from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
-from plan_cutters.report.axes import write_csv, write_vtk
+from plan_cutters.report.arrays import write_csv, write_vtk
 from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import ROOT
@@ -205,7 +205,7 @@ def test_large_arrays_go_into_several_blocks(tmp_path):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-    from plan_cutters.report.axes import _BLOCK, _array
+    from plan_cutters.report.arrays import _BLOCK, _array
 
     for n in (_BLOCK // 8 - 1, _BLOCK // 8, 3 * _BLOCK // 8 + 5, 0):
         values, point = np.arange(float(n)), np.zeros((n, 3), np.float32)

@@ -8,7 +8,7 @@ import pytest
 
 from plan_cutters import OptionError, PlanError, plan
 from plan_cutters.domain.verdicts import WORDS
-from plan_cutters.report.axes import write_csv
+from plan_cutters.report.arrays import write_csv
 from tests.support.places import SAMPLES
 
 pandas = pytest.importorskip("pandas", reason="pandas is not installed: setup.sh dev")

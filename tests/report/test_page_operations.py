@@ -10,7 +10,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.domain.figures import area
 from plan_cutters.plan_file.reasons import operation_colour
-from plan_cutters.plan_file.words.operations import in_short, of_the_whole
+from plan_cutters.plan_file.words.process import in_short, of_the_whole
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of
 from plan_cutters.report.page import tables, write

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
+from plan_cutters.plan_file.part_info import ProposedSetup, SetupProposal
 from plan_cutters.report.folder import stale_files
 from plan_cutters.report.process_file import setup_toml
 from plan_cutters.setups.files import read_setup

@@ -4,9 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.cases.case import Case
-from plan_cutters.cases.files import CaseFiles
-from plan_cutters.cases.junit import document
+from plan_cutters.cases.files import Case, CaseFiles, junit
 from plan_cutters.cases.plan import PROCESS, plan_cases
 from plan_cutters.command.codes import code_of
 from plan_cutters.errors import OptionError, PlanError
@@ -57,7 +55,7 @@ def process(plan, draw):
 @given(plans(), st.sampled_from([None, None, 50.0]))
 def test_the_file_agrees_with_the_exit_code(plan, fail_under):
     code = code_of(plan, fail_under)
-    ends = outcomes(cases(document("plan", plan_cases(plan, code, "a.step"))))
+    ends = outcomes(cases(junit("plan", plan_cases(plan, code, "a.step"))))
     assert ("failure" in ends) == (code == 1)
     assert code != 0 or "error" not in ends
     assert code != 4 or "error" in ends
@@ -66,7 +64,7 @@ def test_the_file_agrees_with_the_exit_code(plan, fail_under):
 @settings(deadline=None, max_examples=200)
 @given(plans())
 def test_a_case_passes_only_where_each_sample_is_judged_and_reached(plan):
-    found = cases(document("plan", plan_cases(plan, code_of(plan), "a.step")))
+    found = cases(junit("plan", plan_cases(plan, code_of(plan), "a.step")))
     targets = [f for f in plan.faces if f.target]
     assert [each.name for each in found[:1]] == [PROCESS]
     assert len(found) == 1 + len(targets) * len(plan.cutters)
@@ -95,7 +93,7 @@ def test_a_face_that_another_cutter_reaches_is_skipped_with_its_reason():
     ball = cutter("R3L40", {"F1": verdicts(), "F2": verdicts(undecided=3)}, radius=3.0, length=40.0)
     flat = cutter("R6L80", {"F1": verdicts(400, reason="holder"), "F2": verdicts(7, reason="neck")})
     plan = made([face(1), face(2)], [ball, flat])
-    found = cases(document("plan", plan_cases(plan, code_of(plan), "a.step")))
+    found = cases(junit("plan", plan_cases(plan, code_of(plan), "a.step")))
     assert [each.outcome for each in found] == ["failure", "passed", "skipped", "error", "failure"]
     assert found[2].message == "40 % of F1 is not reached: holder collision 40 %; reached by flat end D6 x 40"
     assert (found[3].kind, found[4].kind) == ("holder", "neck")
@@ -105,12 +103,12 @@ def test_a_face_that_another_cutter_reaches_is_skipped_with_its_reason():
                 unique_by=lambda each: len(each[1])))  # fmt: skip
 def test_any_text_makes_a_valid_file(rows):
     rows = [Case(a, f"{i}{b}", *more) for i, (a, b, *more) in enumerate(rows)]
-    found = cases(document("su\x00ite", rows))
+    found = cases(junit("su\x00ite", rows))
     assert [each.outcome for each in found] == [row.outcome for row in rows]
 
 
 def test_markup_is_escaped_and_what_xml_cannot_hold_is_replaced():
-    (found,) = cases(document("s", [Case("a<b>&\"'.step", "F1", "failure", "k", "x\x1b[2J\ny \ud800", "<![CDATA[\x07]]>")]))
+    (found,) = cases(junit("s", [Case("a<b>&\"'.step", "F1", "failure", "k", "x\x1b[2J\ny \ud800", "<![CDATA[\x07]]>")]))
     assert found.part == "a<b>&\"'.step"
     assert found.message == "x\ufffd[2J y \ufffd"
     assert found.details == "<![CDATA[\ufffd]]>"

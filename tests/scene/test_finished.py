@@ -13,7 +13,7 @@ from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.reasons import LABELS
-from plan_cutters.plan_file.words.scope import inside
+from plan_cutters.plan_file.words.headline import inside
 from plan_cutters.report.models import split_result
 from plan_cutters.report.page.write import page
 from tests.support import shapes

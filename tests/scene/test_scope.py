@@ -15,8 +15,8 @@ from cad_io.kernel import shape_map
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import FEASIBLE, NOT_ALL_JUDGED, code_of
 from plan_cutters.domain.figures import size
+from plan_cutters.plan_file.words.headline import judged, not_judged, not_seen
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters.plan_file.words.scope import judged, not_judged, not_seen
 from plan_cutters.plan_file.words.text import story_of
 from tests.support.cad_parts import as_nurbs, box, compound, cone, cut, loose, moved, patch, pocketed, real, ring, rod
 from tests.support.commands import in_lines

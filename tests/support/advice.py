@@ -8,8 +8,7 @@ from plan_cutters.command.request import PlanRequest
 from plan_cutters.command.validation import options_of
 from plan_cutters.document.clock import Clock
 from plan_cutters.pipeline import run
-from plan_cutters.plan_file.words.answers import answers
-from plan_cutters.plan_file.words.next_steps import is_excluded
+from plan_cutters.plan_file.words.answers import answers, is_excluded
 from tests.support import shapes
 
 LONG = (-60, 60)

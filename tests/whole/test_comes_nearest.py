@@ -8,7 +8,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
-from plan_cutters.plan_file.nearest import leaves, nearest
+from plan_cutters.plan_file.model import leaves, nearest
 from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.text import shown as shown_of
 from plan_cutters.plan_file.words.text import story_of

@@ -3,15 +3,13 @@
 The file agrees with the exit code of the command: a case fails only where that is 1, and is an error only where it is 1 or 4.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-
-from plan_cutters.cases.case import Case, Outcome
+from plan_cutters.cases.files import Case, Outcome
 from plan_cutters.domain.figures import count, listed, mm, percent, place
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.operations import UNJUDGED_CAUSE
+from plan_cutters.plan_file.reasons import reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, unreached
-from plan_cutters.plan_file.words.cutters import called, main_reason, reason
+from plan_cutters.plan_file.words.cutters import called, main_reason
 from plan_cutters.plan_file.words.names import short_names
 
 #: Name of the case that is about all steps together.
@@ -23,35 +21,10 @@ _NAMED = 3
 _OUTCOMES: dict[int, Outcome] = {0: "passed", 1: "failure", 4: "error"}
 
 
-@dataclass(frozen=True, slots=True)
-class _Reached:
-    """Cutters that reach all of a face, and whether the process finishes it by several."""
-
-    cutters: Sequence[str]
-    together: bool
-
-    def text(self, names: dict[str, str]) -> str:
-        """Who finishes the face; empty where nobody does."""
-        if self.cutters:
-            return f"reached by {listed([names[each] for each in self.cutters], _NAMED)}"
-        return "finished by several steps together" if self.together else ""
-
-
 def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
-    """Make the cases of a plan.
+    """Make the cases of a plan: the process first, then faces in their order, each with the cutters in theirs.
 
-    Parameters
-    ----------
-    plan : Plan
-    code : int
-        The exit code that it asks for.
-    file : str
-        The part's, as it was given.
-
-    Returns
-    -------
-    list of Case
-        The process first, then faces in their order, each with the cutters in theirs.
+    `code` is the exit code that the plan asks for; `file` the part's, as it was given.
     """
     names = short_names(plan)
     left = [each for each in plan.process.left if each.cause != UNJUDGED_CAUSE] if plan.process else []
@@ -62,27 +35,31 @@ def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
         for each in cutter.witnesses:
             if not each.inside_bodies:
                 places.setdefault((cutter.id, each.face), []).append(each)
-    cases = [_process(plan, code, file)]
+    # All steps together: what the exit code is about.
+    outcome = _OUTCOMES.get(code, "error")
+    title, lines = (plan.text.headline, plan.text.lines) if plan.text is not None else (f"exit code {code}", [])
+    kind = {"failure": "not_finished", "error": "not_sure"}.get(outcome, "")
+    cases = [Case(file, PROCESS, outcome, kind, title, "\n".join(lines), plan.run.total)]
     for face in plan.faces:
         if not face.target:
             continue
-        cutters = [c.id for c in plan.cutters if _whole(face, c.faces.get(face.id))]
-        reached = _Reached(cutters, plan.process is not None and face.id not in open_faces)
+        whole = [names[c.id] for c in plan.cutters if _whole(face, c.faces.get(face.id))]
+        finished = f"reached by {listed(whole, _NAMED)}" if whole else ""
+        if not whole and plan.process is not None and face.id not in open_faces:
+            finished = "finished by several steps together"
         for cutter in plan.cutters:
-            case = _case(plan, face, cutter, Case(file, f"{face.id} {names[cutter.id]}"), reached.text(names))
-            if case.outcome != "passed":
-                case = case._replace(details="\n".join(_witnesses(places.get((cutter.id, face.id), []))))
-            cases.append(case)
-    return [_as_counted(case, code) for case in cases]
+            case = _case(plan, face, cutter, Case(file, f"{face.id} {names[cutter.id]}"), finished)
+            worst = sorted(places.get((cutter.id, face.id), []), key=lambda w: -(w.depth_mm or 0.0))[:_NAMED]
+            cases.append(case if case.outcome == "passed" else case._replace(details="\n".join(map(_witness, worst))))
+    # What `--fail-under` lets pass neither fails nor is an error: as the exit code has it.
+    passes = {"failure": code != _NOT_FINISHED, "error": code == _FINISHED}
+    return [case._replace(outcome="skipped") if passes.get(case.outcome) else case for case in cases]
 
 
-def _process(plan: Plan, code: int, file: str) -> Case:
-    """All steps together: what the exit code is about."""
-    outcome = _OUTCOMES.get(code, "error")
-    title = plan.text.headline if plan.text is not None else f"exit code {code}"
-    lines = "\n".join(plan.text.lines) if plan.text is not None else ""
-    kind = {"failure": "not_finished", "error": "not_sure"}.get(outcome, "")
-    return Case(file, PROCESS, outcome, kind, title, lines, plan.run.total)
+def _witness(w: WitnessEntry) -> str:
+    way = f", {called(w.obstacle_face)} in the way" if w.obstacle_face else ""
+    deep = f", {mm(w.depth_mm)} deep in the tool" if w.depth_mm is not None else ""
+    return f"at {place(w.point)}: {reason(w.reason)}{way}{deep}"
 
 
 def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished: str) -> Case:
@@ -92,7 +69,11 @@ def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished
     if not required and (verdicts.inside_bodies or verdicts.exempt):
         where = "lies inside other bodies of the part" if verdicts.inside_bodies else "is at sharp inside edges, and not required"
         return case._replace(outcome="skipped", message=f"all of {face.id} {where}")
-    doubt = _doubt(plan, cutter)
+    doubt = ""
+    if plan.missing:
+        doubt = f"{count(len(plan.missing), 'obstacle')} {'is' if len(plan.missing) == 1 else 'are'} missing or guessed"
+    elif not cutter.seen and plan.effective.sampled_by == "default":
+        doubt = "the samples are farther apart than the cutter's radius"
     if _whole(face, verdicts):
         doubtful = case._replace(outcome="error", kind="not_sure", message=f"{face.id} is reached, but {doubt}")
         return doubtful if doubt else case
@@ -113,15 +94,6 @@ def _whole(face: FaceEntry, verdicts: FaceVerdicts | None) -> bool:
     return verdicts.reached > 0 and not verdicts.not_reached and not verdicts.unjudged
 
 
-def _doubt(plan: Plan, cutter: CutterEntry) -> str:
-    """Why what a cutter reaches is not certain; empty where it is."""
-    if plan.missing:
-        return f"{count(len(plan.missing), 'obstacle')} {'is' if len(plan.missing) == 1 else 'are'} missing or guessed"
-    if not cutter.seen and plan.effective.sampled_by == "default":
-        return "the samples are farther apart than the cutter's radius"
-    return ""
-
-
 def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts, required: int) -> str:
     """One line on a face that a cutter does not reach whole, or not for sure."""
     share = verdicts.area_share
@@ -135,18 +107,3 @@ def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts, required
     what = "is not reached" if verdicts.blocked else "is undecided"
     text = f"{unreached(verdicts, share)} of {face.id} {what}: {why or 'no reason is known'}"
     return f"{text}; {unjudged}" if unjudged else text
-
-
-def _witnesses(places: Sequence[WitnessEntry]) -> Iterator[str]:
-    """The worst places: a line each."""
-    for w in sorted(places, key=lambda w: -(w.depth_mm or 0.0))[:_NAMED]:
-        way = f", {called(w.obstacle_face)} in the way" if w.obstacle_face else ""
-        deep = f", {mm(w.depth_mm)} deep in the tool" if w.depth_mm is not None else ""
-        yield f"at {place(w.point)}: {reason(w.reason)}{way}{deep}"
-
-
-def _as_counted(case: Case, code: int) -> Case:
-    """The case as the exit code has it: what `--fail-under` lets pass neither fails nor is an error."""
-    if (case.outcome == "failure" and code != _NOT_FINISHED) or (case.outcome == "error" and code == _FINISHED):
-        return case._replace(outcome="skipped")
-    return case

@@ -43,7 +43,7 @@ READER_GONE = 141
 def code_of(plan: "Plan", fail_under: float | None = None) -> int:
     """The exit code that a plan asks for; `fail_under`: the percent of what is asked that is enough."""
     # Not before anything is planned: help is shown without what this loads.
-    from plan_cutters.plan_file.words.scope import unseen
+    from plan_cutters.plan_file.words.headline import unseen
 
     process = plan.process
     # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.

@@ -17,7 +17,7 @@ from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
-from plan_cutters.plan_file.words.face import others
+from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
@@ -125,9 +125,7 @@ def one_part(
     if request.json_out == "-" and tells:
         terminal.hand_out(dumps(document))
     if not request.quiet and tells:
-        _tells(request)(
-            *(others(document, every=True) if request.verbose else []), *written(document, out, formats, verbose=request.verbose)
-        )
+        _tells(request)(*(others(document) if request.verbose else []), *written(document, out, formats, verbose=request.verbose))
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return _interrupted(out) if interrupts else (code_of(document, request.fail_under), "")

@@ -3,6 +3,7 @@
 import math
 import platform
 import shlex
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -128,13 +129,6 @@ def face_verdicts(
     return entries
 
 
-def covered(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[float, float]:
-    """Area of the target faces that lies inside other bodies of the part, mm2, and its share of all of it."""
-    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], part)
-    area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
-    return area, min(1.0, area / max(1e-300, sum(areas.values())))
-
-
 def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> AreaShare:
     """Give the shares of the verdicts in the finished part's surface of all target faces.
 
@@ -189,38 +183,40 @@ def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[
 
 def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
     """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
-    inside, samples = ready.inside_bodies, ready.samples
+    inside, samples, scene = ready.inside_bodies, ready.samples, ready.scene
     if not inside.any():
         return InsideEntry()
-    area, share = covered(faces, samples, ready.scene.part)
+    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], scene.part)
+    area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
     within, lying = float(samples.area[inside].sum()), sheets(ready)
+    certain = ready.conditions.surroundings.certain.triangles
+    # All that bodies over samples follow from.
+    follows_from = (
+        scene.part.key, scene.ignored, certain.vertex, certain.chord_error, ready.conditions.tolerance,
+        (ready.inside, inside, samples.point, samples.face, samples.area),
+    )  # fmt: skip
 
-    def of(rows: NDArray[np.int64]) -> float:
-        """Area that some samples stand for, so that all of it comes to that of the faces."""
-        return area * float(samples.area[rows].sum()) / within if within > 0.0 else 0.0
-
-    def on(rows: NDArray[np.int64]) -> list[str]:
-        return [f"F{n}" for n in np.unique(samples.face[rows]).tolist()]
+    def some(rows: NDArray[np.int64]) -> dict[str, Any]:
+        """Faces of some samples, and the area that they stand for, so that all of it comes to that of the faces."""
+        mine = area * float(samples.area[rows].sum()) / within if within > 0.0 else 0.0
+        return {"faces": [f"F{n}" for n in np.unique(samples.face[rows]).tolist()], "samples": len(rows), "area_mm2": mine}
 
     bodies = [
-        CoveringBody(
+        filled(
+            CoveringBody,
+            each,
             number=1 + each.index,
-            name=each.name,
             own_faces=numbers(each.faces).split(","),
-            faces=on(each.rows),
-            samples=len(each.rows),
-            area_mm2=of(each.rows),
-            how=each.how,
-            largest=each.largest,
             option=f"--ignore {shlex.quote(each.selection)}",
+            **some(each.rows),
         )
-        for each in ready.cache.cached("coverings", _follows_from(ready), lambda: coverings(ready))
+        for each in ready.cache.cached("coverings", follows_from, lambda: coverings(ready))
     ]
-    names = ready.conditions.surroundings.on_bodies
-    on_bodies = None
-    if len(lying):
-        on_bodies = SheetsEntry(faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}")
-    return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)
+    option = f"--ignore {numbers(ready.conditions.surroundings.on_bodies)}"
+    return InsideEntry(
+        samples=int(inside.sum()), area_mm2=area, share=min(1.0, area / max(1e-300, sum(areas.values()))), bodies=bodies,
+        sheets=SheetsEntry(**some(lying), option=option) if len(lying) else None,
+    )  # fmt: skip
 
 
 def void_faces(ready: Prepared) -> list[str]:
@@ -232,35 +228,18 @@ def void_faces(ready: Prepared) -> list[str]:
     return [f"F{number}" for number in np.setdiff1d(shut, others).tolist()]
 
 
-def _follows_from(ready: Prepared) -> tuple[object, ...]:
-    """All that bodies over samples follow from."""
-    scene, samples, certain = ready.scene, ready.samples, ready.conditions.surroundings.certain.triangles
-    inside = ready.inside, ready.inside_bodies, samples.point, samples.face, samples.area
-    return scene.part.key, scene.ignored, certain.vertex, certain.chord_error, ready.conditions.tolerance, inside
-
-
 #: Decimals of carriers: behind them there is noise alone.
 _DIGITS = 9
 
 
 def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry]:
     """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
-    entries = [
-        MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
-        for number, why, how in surroundings.missing
+    rows: list[tuple[Any, ...]] = [
+        *((f"F{number}", None, part.faces[number - 1].name, why, how) for number, why, how in surroundings.missing),
+        *((None, e.entity or None, e.name, e.why, "none" if e.box is None else "box") for e in surroundings.lost),
+        *((None, None, f"{e.name} {face}".strip(), why, how) for e in surroundings.fixtures for face, why, how in e.missing),
     ]
-    entries += [
-        MissingEntry(
-            face=None, entity=each.entity or None, name=each.name, why=each.why, stand_in="none" if each.box is None else "box"
-        )
-        for each in surroundings.lost
-    ]
-    entries += [
-        MissingEntry(face=None, entity=None, name=f"{each.name} {face}".strip(), why=why, stand_in=how)
-        for each in surroundings.fixtures
-        for face, why, how in each.missing
-    ]
-    return entries
+    return [MissingEntry(**dict(zip(("face", "entity", "name", "why", "stand_in"), row, strict=True))) for row in rows]
 
 
 def degrees(pair: tuple[float, float]) -> tuple[float, float]:
@@ -341,7 +320,7 @@ def _witness_entry(
 
 def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> PartInfo:
     """The part, and what is odd about it."""
-    part, orientation = scene.part, scene.orientation
+    part, orientation, sewn = scene.part, scene.orientation, scene.part.sewn
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
     for body in () if set(scene.ignored) - scene.repeated.keys() else (body for body in surroundings.bodies if not body.closed):
@@ -357,42 +336,28 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
             "all others: --ignore leaves them out"
         )
         warnings.append(on_shell)
-    opened = _open_faces(scene, surroundings)
-    # Faces of a broken solid are none: they are its skin.
-    loose = [name for name in opened if int(name[1:]) in part.sewn.faces] if part.solids else []
+    # Faces of no closed body that are neither ignored nor set aside. Those of a broken solid are not loose: they are its skin.
+    closed = {number for body in surroundings.bodies if body.closed for number in body.faces}
     excluded = {face.number for face in part.faces if face.unjudged} | set(scene.ignored)
+    opened = [f.id for f in part.faces if f.number not in closed | excluded]
     of_solids = [name for n in orientation.guessed if n not in excluded and (name := f"F{n}") not in opened]
-    return PartInfo(
+    return filled(
+        PartInfo,
+        part,
         file=Path(part.file).name if part.file else None,
-        sha256=part.sha256,
         references=references(part),
         size_mm=part.size,
-        solids=part.solids,
         faces=len(part.faces),
-        orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
-        sewing=_sewing(part),
+        orientation=filled(OrientationInfo, orientation),
+        sewing=None
+        if not sewn.faces
+        else filled(SewingInfo, sewn, tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_length_mm=sewn.open_length),
         warnings=warnings,
-        loose_faces=loose,
+        loose_faces=[name for name in opened if int(name[1:]) in sewn.faces] if part.solids else [],
         guessed_faces=[] if orientation.confident else [*opened, *of_solids],
         sheets_doubt=on_shell,
-        unit_doubt=part.unit_doubt,
         void_faces=void_faces,
         unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],
-    )
-
-
-def _open_faces(scene: Scene, surroundings: Surroundings) -> list[str]:
-    """Faces of no closed body that are neither ignored nor set aside."""
-    closed = {number for body in surroundings.bodies if body.closed for number in body.faces}
-    return [f.id for f in scene.part.faces if not (f.number in closed or f.number in scene.ignored or f.unjudged)]
-
-
-def _sewing(part: Part) -> SewingInfo | None:
-    sewn = part.sewn
-    if not sewn.faces:
-        return None
-    return SewingInfo(
-        tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_edges=sewn.open_edges, open_length_mm=sewn.open_length
     )
 
 
@@ -439,50 +404,39 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
     if carrier is None:
         return None
     side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
+    angle = None if carrier.half_angle is None else math.degrees(carrier.half_angle)
+    lengths = {"radius_mm": carrier.radius, "minor_radius_mm": carrier.minor_radius, "half_angle_deg": angle}
     return CarrierEntry(
         point_mm=vector(np.round(carrier.point, _DIGITS) + 0.0),
         direction=None if carrier.direction is None else vector(np.round(carrier.direction, _DIGITS) + 0.0),
-        radius_mm=None if carrier.radius is None else round(carrier.radius, _DIGITS),
-        minor_radius_mm=None if carrier.minor_radius is None else round(carrier.minor_radius, _DIGITS),
-        half_angle_deg=None if carrier.half_angle is None else round(math.degrees(carrier.half_angle), _DIGITS),
         outward=bool(side > 0) if side else None,
+        **{name: None if value is None else round(value, _DIGITS) for name, value in lengths.items()},
     )
 
 
 @cache
-def _version(name: str) -> str:
+def _versions() -> dict[str, str]:
     from importlib.metadata import version
 
-    return version(name)
+    names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
+    made = {label: version(name) for name, label in names.items()}
+    return {"plan_cutters": __version__, **made, "python": platform.python_version()}
 
 
 def versions() -> dict[str, str]:
     """Versions of what the plan was made with."""
-    names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
-    result = {label: _version(name) for name, label in names.items()}
-    return {"plan_cutters": __version__, **result, "python": platform.python_version()}
+    return dict(_versions())
 
 
 def scope_of(faces: Sequence[FaceEntry]) -> Scope:
     """Say which of all faces were judged and which were not, with their areas, mm2."""
     targets = [f for f in faces if f.target]
     others = [f for f in faces if not f.target and not f.ignored]
+    areas = (math.fsum(f.area_mm2 for f in each if math.isfinite(f.area_mm2)) for each in (targets, others))
+    kinds = (dict(sorted(Counter(f.kind for f in each).items())) for each in (targets, others))
+    judged_mm2, not_judged_mm2 = areas
+    judged_by_kind, not_judged_by_kind = kinds
     return Scope(
-        judged=len(targets),
-        judged_mm2=_area(targets),
-        not_judged=len(others),
-        not_judged_mm2=_area(others),
-        judged_by_kind=_kinds(targets),
-        not_judged_by_kind=_kinds(others),
-    )
-
-
-def _area(faces: Sequence[FaceEntry]) -> float:
-    return math.fsum(f.area_mm2 for f in faces if math.isfinite(f.area_mm2))
-
-
-def _kinds(faces: Sequence[FaceEntry]) -> dict[str, int]:
-    counts: dict[str, int] = {}
-    for face in faces:
-        counts[face.kind] = counts.get(face.kind, 0) + 1
-    return dict(sorted(counts.items()))
+        judged=len(targets), judged_mm2=judged_mm2, not_judged=len(others), not_judged_mm2=not_judged_mm2,
+        judged_by_kind=judged_by_kind, not_judged_by_kind=not_judged_by_kind,
+    )  # fmt: skip

@@ -15,17 +15,8 @@ Progress = Callable[[str, int, int], None]
 class Clock:
     """Measure the seconds of each stage, one after the other; a stage that comes again is added to.
 
-    Parameters
-    ----------
-    progress : callable, optional
-        Called for the stages that are shown.
-    began : float, optional
-        `time.monotonic()` when the command began: what has passed since then is the stage `start`.
-
-    Attributes
-    ----------
-    seconds, boxes : dict
-        Stage -> seconds, and boxes of the trees that were looked at.
+    `progress` is called for the stages that are shown; `began` is `time.monotonic()` when the command began: what has passed
+    since then is the stage `start`. `seconds` and `boxes`, of the trees that were looked at, are by stage.
     """
 
     def __init__(self, progress: Progress | None = None, *, began: float | None = None) -> None:

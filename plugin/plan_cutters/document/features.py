@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, SurfaceSamples
-from cad_io.part.edges import InsideEdge
+from cad_io.arrays import Ints, SurfaceSamples
+from cad_io.part.inside_edges import InsideEdge
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.standard_tools import largest_fitting, least_radius
+from plan_cutters.domain.fillet import largest_fitting, least_radius
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, REAR_GOUGE, Verdicts
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry
@@ -21,13 +21,7 @@ def sharp_edge_entries(
 ) -> list[SharpEdgeEntry]:
     """Sum up the strips beside sharp inside edges by pairs of faces, the largest area first.
 
-    Parameters
-    ----------
-    edges : sequence of InsideEdge
-    strips : (n,) int32
-        Place of the edge that loses each sample, -1 for none.
-    samples : SurfaceSamples
-    cutter : Cutter
+    `strips` (n,) int32: place of the edge that loses each sample, -1 for none.
     """
     radius = least_radius(cutter) or 0.0
     pairs: dict[tuple[int, int], list[int]] = {}
@@ -122,11 +116,8 @@ def ends_in_a_point(ready: Prepared, number: int, rows: NDArray[np.int64]) -> bo
 def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> list[PatternEntry]:
     """The entries of all patterns of a part.
 
-    Parameters
-    ----------
-    patterns : sequence of Pattern
-    counts : (m, 3) int64
-        Of each motion of the whole part, in their order: samples that were moved, that followed, and that were verified.
+    `counts` (m, 3) int64, of each motion of the whole part, in their order: samples that were moved, that followed, and that
+    were verified.
     """
     entries, motion = list[PatternEntry](), 0
     for each in patterns:
@@ -134,7 +125,12 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
         if each.whole:
             own = counts[motion : motion + len(each.motions)].sum(axis=0)
             motion += len(each.motions)
-        place, direction = _frame(each)
+        # A point and the direction of the axis, or of the mirror's normal.
+        first = each.motions[0]
+        place, direction = (None, None) if each.kind == "shift" or first.axis is None else first.axis
+        if each.kind == "mirror":
+            values, vectors = np.linalg.eigh(0.5 * (first.linear + first.linear.T))
+            place, direction = 0.5 * first.shift, vectors[:, int(values.argmin())]
         entries.append(
             PatternEntry(
                 kind=each.kind, order=each.order, whole=each.whole, place_mm=None if place is None else vector(place),
@@ -145,13 +141,3 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
             )
         )  # fmt: skip
     return entries
-
-
-def _frame(pattern: Pattern) -> tuple[Floats | None, Floats | None]:
-    """A point and the direction of the axis, or of the mirror's normal."""
-    first = pattern.motions[0]
-    if pattern.kind == "mirror":
-        values, vectors = np.linalg.eigh(0.5 * (first.linear + first.linear.T))
-        return 0.5 * first.shift, vectors[:, int(values.argmin())]
-    axis = first.axis
-    return (None, None) if axis is None or pattern.kind == "shift" else axis

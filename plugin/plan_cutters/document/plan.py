@@ -23,18 +23,20 @@ from plan_cutters.document.build import (
     void_faces,
 )
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.process import process_entry
-from plan_cutters.document.setups import OverSetups, linear_entries, placement_entry, travel_entry
-from plan_cutters.domain.answers import Advice, LeastSet, Patch, RadiusMap, Step
-from plan_cutters.domain.figures import reporting
-from plan_cutters.domain.kinematics import positions
+from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.change import Advice
+from plan_cutters.domain.fillet import Fitting
+from plan_cutters.domain.least_set import LeastSet
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.own_process import cutter_of
-from plan_cutters.domain.standard_tools import Fitting
+from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
+from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED, effective_tolerance
-from plan_cutters.library.raw_tool import Entry, Library
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.answers import (
@@ -51,6 +53,7 @@ from plan_cutters.plan_file.answers import (
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import (
+    ANOTHER_SETUP,
     AreaEntry,
     CutterEntry,
     LibraryEntry,
@@ -62,44 +65,27 @@ from plan_cutters.plan_file.model import (
     Selection,
     SourceEntry,
     UnusedEntry,
+    leaves,
+    nearest,
 )
-from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
-from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry
+from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SetupEntry, SetupReach, SharpEdgeEntry
 from plan_cutters.plan_file.reasons import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
-from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words import headline as words
-from plan_cutters.plan_file.words.next_steps import patch
+from plan_cutters.plan_file.words.answers import patch
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
-
-
-def library_entry(library: Library) -> LibraryEntry:
-    """A library, and what of it was not used."""
-    return filled(
-        LibraryEntry,
-        library,
-        tools=len(library.entries),
-        cutters=len(library),
-        notes=list(library.notes),
-        holders=[holder.name or holder.id for holder in library.holders],
-        unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
-    )
-
-
-def source_entry(library: Library, entry: Entry) -> SourceEntry:
-    """One place where a cutter is listed."""
-    return filled(SourceEntry, entry, file=library.file, notes=list(entry.notes))
 
 
 def effective(ready: Prepared) -> Effective:
     """Every option after defaults: as `Options` keeps it where nothing more is said here, angles in degrees."""
     scene, options, choice, surroundings = ready.scene, ready.options, ready.chosen, ready.conditions.surroundings
+    sources = [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
     made: dict[str, Any] = {
         "cutters": [c.id for c in ready.cutters],
         "units": options.reported_unit,
-        "cutter_source": " and ".join(_sources(options)) or "built-in",
+        "cutter_source": " and ".join(sources) or "built-in",
         "holder": None if options.holder is None else options.holder.id,
         "fixtures": [each.text for each in scene.fixtures],
         "machine": options.machine.name,
@@ -164,18 +150,13 @@ def as_requested(options: Options, name: str) -> Any:
     return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
 
 
-def _sources(options: Options) -> list[str]:
-    """Where the cutters are from; nothing for the built-in ones."""
-    return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
-
-
 #: Of a verdict on what lies just beyond an answer.
 _WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
 
 
 def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: Surroundings) -> StickOutEntry:
     """A least stick-out."""
-    limited, none = stick_out.sample >= 0, np.isnan(stick_out.least)
+    limited, none, at = stick_out.sample >= 0, np.isnan(stick_out.least), stick_out.sample
     return StickOutEntry(
         least_mm=None if none else stick_out.least,
         floor_mm=None if none else stick_out.floor,
@@ -184,8 +165,8 @@ def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: 
         served=stick_out.served,
         beyond_mm=stick_out.beyond if limited else None,
         beyond=_WORDS.get(stick_out.verdict),
-        face=f"F{samples.face[stick_out.sample]}" if limited else None,
-        point=vector(samples.point[stick_out.sample]) if limited else None,
+        face=f"F{samples.face[at]}" if limited else None,
+        point=vector(samples.point[at]) if limited else None,
         posture=None if stick_out.axis is None else posture(stick_out.tilt, stick_out.rotation, stick_out.axis),
         obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
         obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
@@ -194,37 +175,47 @@ def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: 
 
 
 def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
-    """A map of largest radii."""
-    row = radius_map.bottleneck
-    reason = None if row is None or radius_map.reason[row] == NO_REASON else REASONS[radius_map.reason[row]]
-    return RadiusEntry(
-        shape=radius_map.shape,
+    """A map of largest radii, and where these are the least."""
+    row, bottleneck = radius_map.bottleneck, dict[str, Any]()
+    if row is not None:
+        bottleneck = {
+            "bottleneck_mm": float(radius_map.radius[row]),
+            "bottleneck_face": f"F{samples.face[row]}",
+            "bottleneck_point": vector(samples.point[row]),
+            "beyond": _WORDS.get(int(radius_map.beyond[row])),
+            "reason": None if radius_map.reason[row] == NO_REASON else REASONS[radius_map.reason[row]],
+        }
+    none = dict.fromkeys(("bottleneck_mm", "bottleneck_face", "bottleneck_point", "beyond", "reason"))
+    return filled(
+        RadiusEntry,
+        radius_map,
         length_over_radius=radius_map.ratio,
-        step=radius_map.step,
         least_mm=radius_map.least,
         most_mm=radius_map.most,
         percentiles_mm={str(q): radius for q, radius in radius_map.percentiles(samples.area).items()},
         below=int(radius_map.less.sum()),
         no_less=int(radius_map.no_less.sum()),
         doubtful=doubtful,
-        bottleneck_mm=None if row is None else float(radius_map.radius[row]),
-        bottleneck_face=None if row is None else f"F{samples.face[row]}",
-        bottleneck_point=None if row is None else vector(samples.point[row]),
-        beyond=None if row is None else _WORDS.get(int(radius_map.beyond[row])),
-        reason=reason,
+        **(none | bottleneck),
     )
 
 
 def advice_entry(advice: Advice) -> MendEntry:
     """Make the entry of what to do next with a cutter."""
-    return filled(
-        MendEntry,
-        advice,
-        lost_share=advice.share,
-        steps=[_step_entry(each) for each in advice.steps],
-        lost_areas=[_area_entry(each) for each in advice.areas],
-        more_lost_areas=advice.more_areas,
-    )
+    rest, steps = " for the rest", []
+    for step in advice.steps:
+        words = [each.words for each in step.moves]
+        alike = len(words) > 1 and all(each.endswith(rest) for each in words)
+        why = " and ".join(each.removesuffix(rest) for each in words) + rest if alike else ", and ".join(words)
+        changes = [filled(MoveEntry, each, thing=each.means, why=each.words) for each in step.moves]
+        cutters, setups = [each.id for each in step.cutters], [vector(each) for each in step.setups]
+        remains = [_area_entry(each) for each in step.remains]
+        steps.append(
+            filled(StepEntry, step, changes=changes, lost_before=step.before, lost_after=step.after, cutters=cutters,
+                   setups=setups, why=why, remains=remains)
+        )  # fmt: skip
+    areas = [_area_entry(each) for each in advice.areas]
+    return filled(MendEntry, advice, lost_share=advice.share, steps=steps, lost_areas=areas, more_lost_areas=advice.more_areas)
 
 
 def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
@@ -236,27 +227,6 @@ def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry
 def _area_entry(area: Patch) -> LostAreaEntry:
     return filled(
         LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across, why=patch(area)
-    )
-
-
-def _joined(words: list[str]) -> str:
-    rest = " for the rest"
-    if len(words) > 1 and all(each.endswith(rest) for each in words):
-        return " and ".join(each.removesuffix(rest) for each in words) + rest
-    return ", and ".join(words)
-
-
-def _step_entry(step: Step) -> StepEntry:
-    return filled(
-        StepEntry,
-        step,
-        changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in step.moves],
-        lost_before=step.before,
-        lost_after=step.after,
-        cutters=[each.id for each in step.cutters],
-        setups=[vector(each) for each in step.setups],
-        why=_joined([each.words for each in step.moves]),
-        remains=[_area_entry(each) for each in step.remains],
     )
 
 
@@ -280,7 +250,9 @@ def plan_of(
     part, surroundings = scene.part, ready.conditions.surroundings
     faces = face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
     remarks = notes_of(ready, entries)
-    absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
+    # Whether a fixture stands, or a target face is clamped, in any setup.
+    held = any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
+    absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     shown = selected or nearest(entries).id
     return Plan(
         process=process_entry(ready, entries, answers, over, shown, fitting),
@@ -306,7 +278,18 @@ def plan_of(
         reason_words={code: WORDS[code].name for code in REASONS},
         machine=machine_entry(ready),
         fixtures=fixture_entries([each.surroundings for each in ready.setups]),
-        libraries=[library_entry(library) for library in options.libraries],
+        libraries=[
+            filled(
+                LibraryEntry,
+                library,
+                tools=len(library.entries),
+                cutters=len(library),
+                notes=list(library.notes),
+                holders=[holder.name or holder.id for holder in library.holders],
+                unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
+            )
+            for library in options.libraries
+        ],
         cutters=list(entries),
         selected=selected,
         shown=shown,
@@ -329,11 +312,6 @@ def plan_of(
     )
 
 
-def _anything_held(ready: Prepared) -> bool:
-    """Whether a fixture stands, or a target face is clamped, in any setup."""
-    return any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
-
-
 def machine_entry(ready: Prepared) -> MachineEntry:
     """The machine, its axes in the part's frame."""
     machine, kinematics = ready.options.machine, ready.conditions.kinematics
@@ -354,27 +332,6 @@ def machine_entry(ready: Prepared) -> MachineEntry:
     )
 
 
-def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
-    """Count the samples that a cutter reaches in each of several setups, and those that it reaches in none."""
-    if not over.elsewhere:
-        return {}
-    inside, serves = ready.inside_bodies, over.served_in[name]
-    entries = [
-        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
-        for k, (axis, verdicts) in enumerate(over.each())
-    ]
-    return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}
-
-
-def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
-    """How many of the postures found lie near the rotary axis next to the part."""
-    kinematics = ready.conditions.kinematics
-    if kinematics is None or len(kinematics.turning()[1]) < 2:
-        return None
-    _, _, singular = positions([each.kinematics for each in ready.setups], over.reaches[name].axis, over.served_in[name])
-    return int(singular[over.reaches[name].reached].sum())
-
-
 def completed(
     entries: Sequence[CutterEntry],
     ready: Prepared,
@@ -385,24 +342,34 @@ def completed(
     between: Mapping[str, AreaEntry],
 ) -> list[CutterEntry]:
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was found after them."""
-    completed_entries, sources, samples = [], ready.options.sources, ready.samples
-    reached_by_none = int(beyond.sum())
+    completed_entries, sources, samples, inside = [], ready.options.sources, ready.samples, ready.inside_bodies
+    kinematics, frames = ready.conditions.kinematics, [each.kinematics for each in ready.setups]
     for entry in entries:
-        moved, area = travels.get(entry.id), between.get(entry.id)
-        stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
-        here = over.here[entry.id]
+        name, reach, serves = entry.id, over.reaches[entry.id], over.served_in[entry.id]
+        moved, area = travels.get(name), between.get(name)
+        stick_out, mend = answers.stick_outs.get(name), answers.mends.get(name)
         surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
-        more = {
-            **_of_setups(ready, entry.id, over),
-            "beyond_setup": reached_by_none,
-            "singular": _singular(ready, entry.id, over),
-            "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
-            "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
+        more: dict[str, Any] = {
+            "beyond_setup": int(beyond.sum()),
+            "travel": None if moved is None else travel_entry(ready.options.machine, moved, over.here[name], samples),
+            "sources": [
+                filled(SourceEntry, each, file=file.file, notes=list(each.notes)) for file, each in sources.get(name, ())
+            ],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
             "mend": None if mend is None else advice_entry(mend),
             "area": area,
             "seen": entry.seen or (area is not None and area.feasible),
         }
+        # How many of the postures found lie near the rotary axis next to the part.
+        if kinematics is not None and len(kinematics.turning()[1]) > 1:
+            _, _, singular = positions(frames, reach.axis, serves)
+            more["singular"] = int(singular[reach.reached].sum())
+        if over.elsewhere:
+            more["setups"] = [
+                SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
+                for k, (axis, verdicts) in enumerate(over.each())
+            ]
+            more["lost_in_all"] = int((reach.not_reached & ready.finished).sum())
         completed_entries.append(entry.model_copy(update=more))
     return completed_entries
 

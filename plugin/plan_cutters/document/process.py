@@ -1,7 +1,7 @@
-"""Make the process of a plan: its steps, and what they leave by cause."""
+"""Entries on setups and the process: verdicts over all setups, where the part stands, steps, and what they leave by cause."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -9,22 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats, Ints
-from cad_io.part.equal_faces import Motion
+from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
-from plan_cutters.document.setups import OverSetups
-from plan_cutters.domain.answers import Step
+from plan_cutters.domain.change import Step
 from plan_cutters.domain.figures import exact
+from plan_cutters.domain.fillet import Fitting
+from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import Strategy
-from plan_cutters.domain.own_process import OwnResult
+from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import by_radius
-from plan_cutters.domain.standard_tools import Fit, Fitting
-from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE
+from plan_cutters.domain.travel import Travel
+from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE, Verdicts
+from plan_cutters.judging.setups import AXES, within_limits
 from plan_cutters.outcome import Answers, OperationPlan, Operations
-from plan_cutters.plan_file.frozen import filled, vector
-from plan_cutters.plan_file.model import CutterEntry
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.frozen import Vector, filled, vector
+from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
@@ -41,9 +42,109 @@ from plan_cutters.plan_file.operations import (
     ProcessStep,
     RemainingEntry,
 )
+from plan_cutters.plan_file.part_info import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
+from plan_cutters.plan_file.words.answers import typed_size
 from plan_cutters.plan_file.words.names import kind
-from plan_cutters.plan_file.words.next_steps import typed_size
 from plan_cutters.scene.preparation import Prepared
+
+#: A setup axis, and what each cutter reaches there by its id.
+OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
+
+
+@dataclass(frozen=True, slots=True)
+class OverSetups:
+    """The verdicts of each cutter, by its id, over all setups and in each of them: in one or another, in the `first` (its axis),
+    and in each other setup; `served_in` has the setup that serves each sample, (n,) int32.
+    """
+
+    reaches: dict[str, Verdicts]
+    here: dict[str, Verdicts]
+    served_in: dict[str, Ints]
+    first: Vector
+    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
+
+    def each(self) -> tuple[OtherSetup, ...]:
+        """Every setup with what is reached there, the first one first."""
+        return ((self.first, self.here), *self.elsewhere)
+
+
+def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
+    """Tell how much is within the axis limits and is reached in each setup asked for, `within` (n,) each, and how much would be
+    within them in each along the part's own axes.
+    """
+    if not ready.conditions.machine.limited:
+        return []
+    finished = ready.finished
+    whole = float(ready.samples.area[finished].sum())
+
+    def share(mine: NDArray[np.bool_]) -> float:
+        return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
+
+    entries: dict[Vector, SetupEntry] = {}
+    for (axis, each), inside in zip(over.each(), within, strict=False):
+        mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
+        count, reached, part = int(inside.sum()), int(mine.sum()), share(mine)
+        entries.setdefault(axis, SetupEntry(axis=axis, within=count, share=share(inside), reached=reached, reached_share=part))
+    for axis in AXES:
+        if axis not in entries:
+            mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+            entries[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
+    return list(entries.values())
+
+
+def placement_entry(placement: Placement | None) -> PlacementEntry | None:
+    """How a part stands."""
+    if placement is None:
+        return None
+    file = None if placement.proposed else placement.file or None
+    return PlacementEntry(file=file, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
+
+
+def linear_entries(ready: Prepared) -> list[LinearEntry]:
+    """The linear axes of the machine in the part's frame of the first setup, and how far the target samples reach along each."""
+    entries = []
+    for axis in ready.options.machine.linear:
+        direction = np.array(axis.direction) @ ready.conditions.frame
+        along = ready.samples.point[ready.finished] @ direction
+        low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+        entries.append(
+            LinearEntry(
+                name=axis.name,
+                carries=axis.carries,
+                direction=vector(direction),
+                limits_mm=(low, high),
+                extent_mm=float(np.ptp(along)) if len(along) else 0.0,
+            )
+        )
+    return entries
+
+
+def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
+    """Give the travel of the linear axes that a cutter needs."""
+    known = reach.reached & np.isfinite(travel.position).all(axis=1)
+    axes, worst = [], []
+    for k, axis in enumerate(machine.linear):
+        position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
+        low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+        least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
+        axes.append(
+            AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most, outside=int((beyond > 0.0).sum()))
+        )
+        if len(beyond) and beyond.max() > 0.0:
+            at = int(beyond.argmax())
+            worst.append(
+                BeyondTravel(
+                    point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name, beyond_mm=float(beyond[at])
+                )
+            )
+    return TravelEntry(
+        judged=int(known.sum()),
+        unknown=int((reach.reached & ~known).sum()),
+        outside=int((travel.outside & known).sum()),
+        axes=axes,
+        worst=sorted(worst, key=lambda each: -each.beyond_mm),
+    )
+
 
 #: Angles that are written to three digits are equal within this, deg.
 _WRITTEN = 0.0021
@@ -56,13 +157,7 @@ _SAME = 1e-6
 def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
     """How often a step is done, and by how much one rotary axis turns from one time to the next; None where several turn.
 
-    Parameters
-    ----------
-    ready : Prepared
-    same : sequence of OperationEntry
-        The operations of the step: images of each other, from the first angle up.
-    mine : (n,) bool
-        Samples of the step.
+    `same` are the operations of the step: images of each other, from the first angle up; `mine` (n,) its samples.
     """
     if same[0].mode == "simultaneous":
         return _moving(ready, same[0].setup, mine)
@@ -83,31 +178,30 @@ def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bo
 
 
 def _moving(ready: Prepared, setup: int, mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
-    """The same of simultaneous motion: a rotation of the whole part repeats it, where limits and fixtures are kept as well."""
-    conditions = ready.setups[setup]
+    """The same of simultaneous motion: a rotation of the whole part repeats it, where limits and fixtures are kept as well.
+
+    Nearly all of the area of the samples is carried onto others of them.
+    """
+    conditions, samples, rows = ready.setups[setup], ready.samples, np.flatnonzero(mine)
     kinematics = conditions.kinematics
-    if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not mine.any():
+    if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not len(rows):
         return 1, None
+    point, normal, area = samples.point[rows], samples.normal[rows], np.nan_to_num(samples.area[rows])
     keeps = dict(zip(map(id, ready.copies.motions), ready.copies.unchanged[setup], strict=True))
     for each in ready.patterns:
-        axis = each.motions[0].axis if each.whole and each.kind == "rotation" else None
+        motion = each.motions[0]
+        axis = motion.axis if each.whole and each.kind == "rotation" else None
         if axis is None or not all(keeps.get(id(motion), False) for motion in each.motions):
             continue
-        if abs(abs(axis[1] @ kinematics.direction[0]) - 1.0) > _SAME or not _has_images(ready, each.motions[0], mine):
+        if abs(abs(axis[1] @ kinematics.direction[0]) - 1.0) > _SAME:
             continue
-        return each.order, {conditions.machine.rotary[0].name: round(360.0 / each.order, 3)}
+        near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
+        distance, which = (part.reshape(len(rows), -1) for part in near)
+        is_near = np.isfinite(distance)
+        alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
+        if area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum():
+            return each.order, {conditions.machine.rotary[0].name: round(360.0 / each.order, 3)}
     return 1, None
-
-
-def _has_images(ready: Prepared, motion: Motion, mine: NDArray[np.bool_]) -> bool:
-    """Whether nearly all of the area of some samples (n,) is carried onto others of them."""
-    samples, rows = ready.samples, np.flatnonzero(mine)
-    point, normal, area = samples.point[rows], samples.normal[rows], np.nan_to_num(samples.area[rows])
-    near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
-    distance, which = (each.reshape(len(rows), -1) for each in near)
-    is_near = np.isfinite(distance)
-    alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
-    return bool(area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum())
 
 
 Rows = NDArray[np.int64]
@@ -148,18 +242,8 @@ def remaining(
 ) -> list[RemainingEntry]:  # fmt: skip
     """List what is left by cause, the largest area first.
 
-    Parameters
-    ----------
-    ready : Prepared
-    done : (n,) bool
-        Samples that are finished.
-    why : Reasons
-    area : (n,) float
-        mm2, and `requested` that of all.
-    steps : sequence of Step
-        Next steps that are known, as they stand in the plan file.
-    fitting : callable, optional
-        Finds the usual sizes that fit.
+    `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand
+    in the plan file; `fitting` finds the usual sizes that fit.
     """
     samples, entries = ready.samples, list[RemainingEntry]()
     cutters = {cutter.id: cutter for cutter in ready.cutters}
@@ -169,11 +253,22 @@ def remaining(
         cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
-            rows = _speaking(samples.face, np.flatnonzero(mine), area)
+            rows = np.flatnonzero(mine)
+            # Without the samples of faces that have hardly any of their area, unless these have most of it.
+            large = np.bincount(samples.face[rows], area[rows])[samples.face[rows]] >= _SPEAKS
+            rows = rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
             fits = None if fitting is None else fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
-            by_size["fits"] = None if fits is None else [_fit_entry(fit) for fit in fits]
+            by_size["fits"] = (
+                None
+                if fits is None
+                else [
+                    FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=fit.share)
+                    for fit in fits
+                    for c in (fit.cutter,)
+                ]
+            )
         helped = _helped(steps, mine, area)
         entries.append(remaining_entry(ready, cause, mine, area, requested, helped=helped, **by_size))
     unjudged = samples.unjudged >= 0
@@ -181,18 +276,6 @@ def remaining(
         empty = [number for number, _ in samples.empty]
         entries.append(remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested, empty))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
-
-
-def _fit_entry(fit: Fit) -> FitEntry:
-    made = fit.cutter
-    across = 2.0 * made.radius
-    return FitEntry(cutter=made.id, kind=kind(made), size=typed_size(made), diameter_mm=across, share=fit.share)
-
-
-def _speaking(face: Ints, rows: Rows, area: Floats) -> Rows:
-    """Samples (m,) without those of faces that have hardly any of their area, unless these have most of it."""
-    large = np.bincount(face[rows], area[rows])[face[rows]] >= _SPEAKS
-    return rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
 
 
 def _points(ready: Prepared, rows: Rows, area: Floats) -> PointsEntry | None:
@@ -256,18 +339,9 @@ def process_entry(
 ) -> ProcessEntry:  # fmt: skip
     """Put together what the given cutters, setups and operations finish.
 
-    Parameters
-    ----------
-    ready : Prepared
-    entries : sequence of CutterEntry
-        Of all cutters, from the most wanted down.
-    answers : Answers
-        The plan of operations is the process where there is one, else the fewest runs of cutters and setups.
-    over : OverSetups
-    shown : str
-        Id of the cutter that the plan shows: its next steps are told.
-    fitting : callable, optional
-        Finds the usual sizes that fit where cutters gouge.
+    The plan of operations among the `answers` is the process where there is one, else the fewest runs of cutters and setups.
+    `entries` are of all cutters, from the most wanted down; `shown` is the id of the cutter whose next steps are told;
+    `fitting` finds the usual sizes that fit where cutters gouge.
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
@@ -347,11 +421,12 @@ class _Parts:
             images.sort(key=lambda ranked: [angle % 360.0 for angle in (ranked[1].angles_deg or {}).values()])
             ranks, same = [k for k, _ in images], [each for _, each in images]
             mine, clearance = np.isin(plan.label, ranks), [each.clearance_mm for each in same]
+            seconds = [each.seconds for each in same]
             gone = mine & (alone if operations.own else ~np.delete(plan.serves, ranks, axis=1).any(axis=1))
             single = len(same) == 1 and not operations.own
             repeat, by = repeats(self.ready, same, mine)
             planned.append(self.step(
-                mine, same[0], seconds=_sum([each.seconds for each in same]),
+                mine, same[0], seconds=None if None in seconds else sum(s for s in seconds if s is not None),
                 link_seconds=sum(each.link_seconds for each in same), repeat=repeat, repeat_deg=by, take="share",
                 clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
                 alone_mm2=same[0].exclusive_mm2 if single else float(self.area[gone].sum()),
@@ -402,7 +477,6 @@ class _Parts:
 
 
 def _named(operations: Operations, angle: Floats | None) -> dict[str, float]:
-    """The angles of the rotary axes by their names."""
     return {} if angle is None else dict(zip(operations.entry.rotary, angle.tolist(), strict=True))
 
 
@@ -412,11 +486,6 @@ def _alone(operations: Operations, plan: OperationPlan) -> NDArray[np.bool_]:
     for outcome in operations.own:
         times[outcome.serves] += 1
     return np.asarray(times == 1)
-
-
-def _sum(seconds: Sequence[float | None]) -> float | None:
-    known = [each for each in seconds if each is not None]
-    return sum(known) if len(known) == len(seconds) else None
 
 
 def _runs(

@@ -18,7 +18,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.reasons import rgb
 from plan_cutters.report.models import product, split_result, styles, verdict_of
-from plan_cutters.report.witness import row_of
+from plan_cutters.report.page.arrays import row_of
 from plan_cutters.result import Result
 
 Colour = tuple[float, float, float]

@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
-from plan_cutters.plan_file.setups import PlacementEntry
+from plan_cutters.plan_file.part_info import PlacementEntry
 
 
 class LocalTolerance(Frozen):

@@ -5,7 +5,6 @@ import math
 import os
 from json import JSONDecodeError
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 
@@ -18,22 +17,9 @@ PLAN = "plan.json"
 
 
 def load_plan(path: str | os.PathLike[str]) -> Plan:
-    """Read a plan.
+    """Read a plan.json: lengths in mm, angles in degrees, part coordinates.
 
-    Parameters
-    ----------
-    path : path
-        A plan.json.
-
-    Returns
-    -------
-    Plan
-        Lengths in mm, angles in degrees, part coordinates.
-
-    Raises
-    ------
-    PlanError
-        It is missing, half-written, no plan, or one of another version of the format.
+    A PlanError where it is missing, half-written, no plan, or one of another version of the format.
     """
     try:
         content = Path(path).read_bytes()
@@ -58,7 +44,10 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
         raise error(
             f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it", file=file
         )
-    _mark_unknown_areas(data)
+    for face in data["faces"] if isinstance(data.get("faces"), list) else ():
+        # JSON has no number for an area that is not known.
+        if isinstance(face, dict) and face.get("area_mm2", 0.0) is None:
+            face["area_mm2"] = math.nan
     try:
         plan = Plan.model_validate(data)
     except ValidationError as fault:
@@ -73,10 +62,3 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
         return plan if plan.text else with_text(plan)
     except (LookupError, ArithmeticError, ValueError):
         raise error("contradicts itself: it was damaged; plan the part again", file=file) from None
-
-
-def _mark_unknown_areas(data: dict[str, Any]) -> None:
-    """JSON has no number for an area that is not known."""
-    for face in data["faces"] if isinstance(data.get("faces"), list) else ():
-        if isinstance(face, dict) and face.get("area_mm2", 0.0) is None:
-            face["area_mm2"] = math.nan

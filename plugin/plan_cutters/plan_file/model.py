@@ -3,6 +3,8 @@
 Lengths in mm, angles in degrees, part coordinates.
 """
 
+import math
+from collections.abc import Iterable
 from typing import Literal
 
 from pydantic import Field
@@ -19,9 +21,12 @@ from plan_cutters.plan_file.part_info import (
     PartInfo,
     PatternEntry,
     Scope,
+    SetupEntry,
+    SetupProposal,
+    SetupReach,
     SharpEdgeEntry,
+    TravelEntry,
 )
-from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach, TravelEntry
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
 
 FORMAT_VERSION = 1
@@ -399,3 +404,24 @@ class Plan(Frozen):
     files: dict[str, FileEntry] = Field(default={}, description="what was written into the folder of this file, by format")
     not_written: dict[str, str] = Field(default={}, description="requested formats whose file is missing, and why")
     run: Run
+
+
+#: The reason of what is left for another setup.
+ANOTHER_SETUP = "another_setup"
+#: Shares that differ by less are equal.
+_DIGITS = 9
+
+
+def leaves(cutter: CutterEntry) -> tuple[float, int]:
+    """Sort cutters by this: the share of the area that is left, then the number of samples, which may stand for no area.
+
+    What stands on the table of a proposed setup does not count: that table is not there yet, and chooses no cutter.
+    """
+    share = cutter.area_share.not_reached - cutter.area_share.lost_by.get(ANOTHER_SETUP, 0.0)
+    samples = cutter.not_reached - cutter.by_reason.get(ANOTHER_SETUP, 0)
+    return round(share, _DIGITS) + 0.0 if math.isfinite(share) else math.inf, samples
+
+
+def nearest(cutters: Iterable[CutterEntry]) -> CutterEntry:
+    """Of some cutters the one that leaves least; of equals the first, which is the most wanted."""
+    return min(cutters, key=leaves)

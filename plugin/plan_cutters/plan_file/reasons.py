@@ -129,6 +129,13 @@ _ROWS = (
            (("a clamping that leaves the face free", _ANOTHER_SETUP[1]),), "#88CCEE", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
+
+
+def reason(code: str) -> str:
+    """Give the name of a reason: it is empty where there is none, and the code where a newer plan has an unknown reason."""
+    return REASONS[code].name if code in REASONS else code.replace("_", " ")
+
+
 #: What is said instead of the hint where what is around a surface is the body itself.
 CLOSED_VOID = "closed void: no cutter gets in"
 #: What a cutter gouges or meets, from its lower end up, and all that forbids tilts in the map of a point: where several forbid

@@ -122,5 +122,4 @@ def reached_share(counts: VerdictCounts, share: AreaShare) -> float | None:
 
 
 def _there(counts: VerdictCounts, share: AreaShare) -> set[str]:
-    """Verdicts that there are."""
     return {word for word in WORDS.values() if counts.of(word) or getattr(share, word) > 0.0}

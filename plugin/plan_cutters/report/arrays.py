@@ -1,16 +1,29 @@
-"""Samples, verdicts and operations as arrays and a table, for anyone who wants to check a posture."""
+"""Samples, verdicts, postures and operations as arrays and tables: npz, CSV, VTK and pandas, which is loaded here alone."""
 
+import base64
 import csv
 import io
 import json
 import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
+from numpy.typing import NDArray
 
+from plan_cutters.domain.clearance import part_words
+from plan_cutters.domain.travel import tips
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
+from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
+from plan_cutters.plan_file.shares import AreaShare, VerdictCounts
+from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
+from plan_cutters.scene.conditions import rotations_of
 
 
 def write_npz(result: Judged, _split: object, path: Path) -> None:
@@ -166,3 +179,265 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
 def _rounded(value: float | None, digits: int = 3) -> float | str:
     """A number as people read it in a table: plan.json has all digits. Nothing is empty."""
     return "" if value is None else round(value, digits) + 0.0
+
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
+#: Digits behind the point of lengths, mm, angles, deg, and parts of unit vectors.
+_MM, _DEG, _UNIT = 6, 6, 9
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column, or three of a vector: values (n,) or (n, 3), and digits behind the point and words of codes, for text.
+
+    A name has its unit at the end where it has one: `tilt_deg`.
+    """
+
+    name: str
+    values: NDArray[Any]
+    digits: int = 0
+    words: dict[int, str] | None = None
+
+    @property
+    def names(self) -> list[str]:
+        """One name for each column of text: a vector's parts stand before its unit, as in `point_x_mm`."""
+        if self.values.ndim == 1:
+            return [self.name]
+        stem, dash, unit = self.name.rpartition("_") if self.name.endswith("_mm") else (self.name, "", "")
+        return [f"{stem}_{axis}{dash}{unit}" for axis in "xyz"]
+
+
+def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
+    """The columns, in their order, a row for each sample in the order of `samples.npz`; default of the cutter shown."""
+    samples, name = result.samples, cutter_id or result.shown
+    verdicts, cutter = result.reaches[name], result.judged(name)
+    near = result.clearances if name == result.shown else result.clearances_of(name)
+    surroundings = result.conditions.surroundings
+    n = len(samples)
+    rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, verdicts.tilt_direction))
+    rotation[~verdicts.reached] = np.nan
+    faces = {number: surroundings.called(number) for number in np.unique(near.face).tolist() if number}
+    table = [
+        Column("sample", np.arange(n, dtype=np.int32)),
+        Column("face", samples.face, words={f: f"F{f}" for f in np.unique(samples.face).tolist()}),
+        Column("point_mm", samples.point, _MM),
+        Column("normal", samples.normal, _UNIT),
+        Column("area_mm2", samples.area, _MM),
+        Column("surface_class", result.surface_class, words=CLASSES),
+        Column("verdict", verdicts.verdict, words=WORDS),
+        Column("reason", verdicts.reason, words=dict(enumerate(REASONS)) | {NO_REASON: ""}),
+        Column("axis", verdicts.axis, _UNIT),
+        Column("lean", verdicts.tilt_direction, _UNIT),
+        Column("tilt_deg", np.degrees(verdicts.tilt), _DEG),
+        Column("rotation_deg", rotation, _DEG),
+        Column("tip_mm", tips(cutter, samples.point, samples.normal, verdicts), _MM),
+        Column("clearance_mm", near.distance, _MM),
+        Column("nearest_part", near.part, words={-1: "", **part_words()}),
+        Column("nearest_face", near.face, words={0: "", **faces}),
+    ]
+    if name in result.served_in:
+        setups = range(len(result.elsewhere) + 1)
+        table.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
+    # Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged.
+    machine = result.conditions.machine
+    if result.kinematics is None:
+        return table
+    angles, taken = result.rotary(name)
+    moved = result.travels.get(name)
+    first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
+    for word, way in (("", first), ("_other", 1 - first)):
+        each = np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan).T
+        table += [
+            Column(f"{axis.name}{word}_deg", values.copy(), _DEG) for axis, values in zip(machine.rotary, each, strict=False)
+        ]
+    if moved is not None:
+        position = moved.position.T
+        table += [Column(f"{axis.name}_mm", values.copy(), _MM) for axis, values in zip(machine.linear, position, strict=False)]
+    return table
+
+
+def write_csv(result: Judged, _split: object, path: Path) -> None:
+    """Write `axes.csv`: a header line, then a line for each sample, for the cutter shown; what is not known is empty.
+
+    Lines end as RFC 4180 has it, numbers have a point, units stand at the end of the names. `docs/cam_outputs.md` has the
+    columns.
+    """
+    table = columns(result)
+    cells = [text for column in table for text in _cells(column)]
+    names = ["cutter", *(name for column in table for name in column.names)]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\r\n")
+        rows.writerow(names)
+        shown = [result.shown] * len(result.samples)
+        rows.writerows(zip(shown, *cells, strict=True))
+
+
+def _worded(column: Column, empty: Any = "") -> NDArray[Any]:
+    assert column.words is not None
+    codes, index = np.unique(column.values, return_inverse=True)
+    words: NDArray[Any] = np.array([column.words[code] or empty for code in codes.tolist()], object)[index]
+    return words
+
+
+def _cells(column: Column) -> list[list[Any]]:
+    values = column.values
+    if column.words is not None:
+        return [_worded(column).tolist()]
+    if values.dtype.kind != "f":
+        return [values.tolist()]
+    # Adding zero turns -0.0 into 0.0.
+    rounded = np.round(values, column.digits) + 0.0
+    cells = rounded.astype(object)
+    cells[~np.isfinite(rounded)] = ""
+    return [each.tolist() for each in np.atleast_2d(cells.T)]
+
+
+_TYPE = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "int8": "Int8", "uint8": "UInt8"}
+#: Bytes of a block that is deflated by itself.
+_BLOCK = 1 << 20
+
+
+def write_vtk(result: Judged, _split: object, path: Path) -> None:
+    """Write `axes.vtp`: a vertex for each sample, with the columns of `axes.csv` as point data; codes stay numbers.
+
+    What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`,
+    `cutter`, `part`.
+    """
+    arrays = {column.name: column.values for column in columns(result)}
+    point = arrays.pop("point_mm")
+    n = len(point)
+    about = {
+        "cutter": [result.shown],
+        "part": [Path(result.part.file).name if result.part.file else ""],
+        "verdicts": [f"{code} {word}" for code, word in sorted(WORDS.items())],
+        "reasons": [f"{code} {word}" for code, word in enumerate(REASONS)],
+        "classes": [f"{code} {word}" for code, word in sorted(CLASSES.items())],
+        "parts": [f"{code} {word}" for code, word in sorted(part_words().items())],
+        "fixtures": [f"{each.number} {each.name}" for each in result.conditions.surroundings.fixtures],
+    }
+    text = [
+        '<?xml version="1.0"?>',
+        '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
+        'compressor="vtkZLibDataCompressor">',
+        "<PolyData>",
+        "<FieldData>",
+        *(_texts(name, lines) for name, lines in about.items()),
+        "</FieldData>",
+        f'<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">',
+        '<PointData Scalars="verdict" Vectors="axis" Normals="normal">',
+        *(_array(name, values) for name, values in arrays.items()),
+        "</PointData>",
+        "<CellData></CellData>",
+        "<Points>",
+        _array("Points", point),
+        "</Points>",
+        "<Verts>",
+        _array("connectivity", np.arange(n, dtype=np.int64)),
+        _array("offsets", np.arange(1, n + 1, dtype=np.int64)),
+        "</Verts>",
+        "</Piece>",
+        "</PolyData>",
+        "</VTKFile>",
+    ]
+    path.write_text("\n".join(text) + "\n", encoding="ascii", errors="xmlcharrefreplace")
+
+
+def _array(name: str, values: NDArray[Any]) -> str:
+    """An array in blocks that are deflated one by one, behind their sizes: both in base64, each by itself."""
+    kind = _TYPE[values.dtype.name]
+    parts = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
+    blocks = [zlib.compress(data[start : start + _BLOCK], 6) for start in range(0, len(data), _BLOCK)]
+    sizes = np.array([len(blocks), _BLOCK, len(data) % _BLOCK, *map(len, blocks)], "<u8")
+    packed = "".join(base64.b64encode(each).decode() for each in (sizes.tobytes(), b"".join(blocks)))
+    return f'<DataArray type="{kind}" Name={quoteattr(name)}{parts} format="binary">{packed}</DataArray>'
+
+
+def _texts(name: str, lines: list[str]) -> str:
+    """An array of texts: the codes of their bytes, a zero behind each."""
+    codes = b"".join(line.encode() + b"\0" for line in lines)
+    numbers = " ".join(map(str, codes))
+    return f'<Array type="String" Name={quoteattr(name)} NumberOfTuples="{len(lines)}" format="ascii">{numbers}</Array>'
+
+
+def frame(result: Judged, of: str, cutter: str | None) -> "DataFrame":
+    """A table of the rows asked for: `samples` or `faces`, both of one cutter, or `cutters`.
+
+    An OptionError where there is no such table or cutter, a PlanError where pandas is not installed.
+    """
+    if of not in _TABLES:
+        raise OptionError(f"there is no table of {of!r}; give one of {', '.join(_TABLES)}")
+    if of == "cutters" and cutter is not None:
+        raise OptionError("the table of cutters has all of them: leave out cutter=")
+    try:
+        import pandas
+    except ImportError:
+        raise PlanError("tables need the package pandas: pip install pandas") from None
+    table = pandas.DataFrame(_TABLES[of](result, result.judged(cutter).id))
+    # A column of words knows them all, and keeps their order.
+    plan = result.plan
+    in_order = {
+        "verdict": list(WORDS.values()), "reason": plan.reasons, "surface_class": list(CLASSES.values()),
+        "face": [face.id for face in plan.faces], "cutter": [each.id for each in plan.cutters],
+    }  # fmt: skip
+    for name, words in in_order.items():
+        if name in table:
+            others = [word for word in table[name].dropna().unique() if word not in words]
+            table[name] = pandas.Categorical(table[name], categories=[*words, *others])
+    if "feasible" in table:
+        table["feasible"] = table["feasible"].astype("boolean")  # which knows "not decided"
+    return table
+
+
+def _samples(result: Judged, cutter: str) -> dict[str, Any]:
+    """The columns of `axes.csv`; None where a word is empty."""
+    table: dict[str, Any] = {"cutter": [cutter] * len(result.samples)}
+    for column in columns(result, cutter):
+        if column.words is not None:
+            table[column.name] = _worded(column, None)
+            continue
+        values = column.values + 0.0 if column.values.dtype.kind == "f" else column.values  # -0.0 becomes 0.0
+        table |= dict(zip(column.names, np.atleast_2d(values.T), strict=True)) if values.ndim > 1 else {column.name: values}
+    return table
+
+
+def _faces(result: Judged, cutter: str) -> list[dict[str, Any]]:
+    """Give a row for each face of the part: shares are nan where it was not sampled."""
+    entry, rows = next(each for each in result.cutters if each.id == cutter), []
+    for face in result.plan.faces:
+        about = {"face": face.id, "name": face.name, "component": face.component, "surface": face.surface, "shape": face.shape,
+                 "target": face.target, "ignored": face.ignored, "area_mm2": face.area_mm2, "samples": face.samples,
+                 "unjudged_why": face.unjudged, "cutter": entry.id}  # fmt: skip
+        known = entry.faces.get(face.id)
+        deep = [w for w in entry.witnesses if w.face == face.id and not w.inside_bodies and w.depth_mm is not None]
+        worst = max(deep, key=lambda w: w.depth_mm or 0.0, default=None) if known else None
+        rows.append({
+            **about, **_verdicts(known or VerdictCounts(), known.area_share if known else None),
+            "reason": (main_reason(known.area_share) or None) if known else None,
+            "depth_mm": worst.depth_mm if worst else np.nan, "obstacle": worst.obstacle_face if worst else None,
+        })  # fmt: skip
+    return rows
+
+
+def _cutters(result: Judged, _cutter: str) -> list[dict[str, Any]]:
+    """Give a row for each cutter, from the most wanted down; `feasible` is missing where it is not decided."""
+    return [
+        {"cutter": c.id, "name": c.name, "shape": c.shape, "radius_mm": c.radius, "corner_radius_mm": c.corner_radius,
+         "length_mm": c.length, "holder": c.holder or None, "selected": c.id == result.selected, "feasible": c.feasible,
+         **_verdicts(c, c.area_share), "reason": main_reason(c.area_share) or None}
+        for c in result.cutters
+    ]  # fmt: skip
+
+
+def _verdicts(counts: VerdictCounts, share: AreaShare | None) -> dict[str, Any]:
+    """Counts of samples by verdict, and shares of the area, 0 to 1."""
+    words = WORDS.values()
+    shares = {f"{word}_share": getattr(share, word) if share else np.nan for word in words}
+    return {**{word: counts.of(word) for word in words}, "inside_bodies": counts.inside_bodies, **shares}
+
+
+_TABLES: dict[str, Callable[[Judged, str], Any]] = {"samples": _samples, "faces": _faces, "cutters": _cutters}

@@ -4,13 +4,13 @@ import hashlib
 import os
 import secrets
 import shutil
-from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
@@ -24,28 +24,41 @@ if TYPE_CHECKING:
     from plan_cutters_base.copies import SideProcess
 
 
-#: Format -> (file name, module, function).
+class Writer(NamedTuple):
+    """The file of a format, the function that writes it, in a module of this room, and what it is given besides.
+
+    `by_name`: it can be requested; others are written where there are steps, setups were to be proposed, or posture maps or
+    operations were requested.
+    """
+
+    file: str
+    module: str
+    function: str
+    by_name: bool = False
+    options: dict[str, Any] | None = None
+
+
+_FASTEST = {"name": "fastest"}
 WRITERS = {
-    "html": ("review.html", "page", "write_html"),
-    "step": ("annotated.step", "models", "write_step"),
-    "glb": ("annotated.glb", "models", "write_glb"),
-    "merged": ("merged.glb", "models", "write_merged"),
-    "npz": ("samples.npz", "arrays", "write_npz"),
-    "process": ("process.toml", "process_file", "write_process"),
-    "setup_1": ("setup-1.toml", "process_file", "write_first"),
-    "setup_2": ("setup-2.toml", "process_file", "write_second"),
-    "setup_3": ("setup-3.toml", "process_file", "write_third"),
-    "postures": ("postures.npz", "arrays", "write_postures"),
-    "operations": ("operations.npz", "arrays", "write_operations"),
-    "operations_csv": ("operations.csv", "arrays", "write_operations_csv"),
-    "operations_step": ("operations.step", "models", "write_operations_step"),
-    "operations_glb": ("operations.glb", "models", "write_operations_glb"),
-    "fastest_step": ("operations_fastest.step", "models", "write_fastest_step"),
-    "fastest_glb": ("operations_fastest.glb", "models", "write_fastest_glb"),
-    "csv": ("axes.csv", "axes", "write_csv"),
-    "vtk": ("axes.vtp", "axes", "write_vtk"),
-    "png": ("review.png", "drawing.part", "write_png"),
+    "html": Writer("review.html", "page", "write_html", by_name=True),
+    "step": Writer("annotated.step", "models", "write_step", by_name=True),
+    "glb": Writer("annotated.glb", "models", "write_glb", by_name=True),
+    "merged": Writer("merged.glb", "models", "write_glb", by_name=True, options={"merged": True}),
+    "npz": Writer("samples.npz", "arrays", "write_npz", by_name=True),
+    "process": Writer("process.toml", "process_file", "write_process"),
+    **{f"setup_{k}": Writer(f"setup-{k}.toml", "process_file", "write_setup", options={"number": k}) for k in (1, 2, 3)},
+    "postures": Writer("postures.npz", "arrays", "write_postures"),
+    "operations": Writer("operations.npz", "arrays", "write_operations"),
+    "operations_csv": Writer("operations.csv", "arrays", "write_operations_csv"),
+    "operations_step": Writer("operations.step", "models", "write_operations_step"),
+    "operations_glb": Writer("operations.glb", "models", "write_operations_glb"),
+    "fastest_step": Writer("operations_fastest.step", "models", "write_operations_step", options=_FASTEST),
+    "fastest_glb": Writer("operations_fastest.glb", "models", "write_operations_glb", options=_FASTEST),
+    "csv": Writer("axes.csv", "arrays", "write_csv", by_name=True),
+    "vtk": Writer("axes.vtp", "arrays", "write_vtk", by_name=True),
+    "png": Writer("review.png", "drawing.part", "write_png", by_name=True),
 }
+_FILES = [writer.file for writer in WRITERS.values()]
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
 #: first plan, or of another one by its name. Of each, the first one is made while the others are.
 _MODELS = {
@@ -60,24 +73,10 @@ _COPY = 300.0
 
 
 class Making:
-    """Files of a result, made in a folder.
+    """Files of a result, made in a folder; `begins` is told what is begun: `split`, or a format. `alone`: no file beside
+    another one.
 
-    Parameters
-    ----------
-    result : Result
-    folder : Path
-    schema : str
-        As in `write_all`.
-    clock : Clock
-    begins : callable
-        Told what is begun: `split`, or a format.
-    alone : bool
-        Make no file beside another one.
-
-    Attributes
-    ----------
-    splits : dict
-        The part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
+    `splits` has the part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
     """
 
     def __init__(
@@ -92,10 +91,11 @@ class Making:
         """Make the file of a format."""
         from plan_cutters.plan_file.model import FileEntry
 
-        file, module, function = WRITERS[name]
-        write = getattr(import_module(f"plan_cutters.report.{module}"), function)
-        write(self._result, split, self._folder / file, **({"schema": self._schema} if file.endswith(".step") else {}))
-        return FileEntry(name=file, sha256=sha256(self._folder / file))
+        writer, path = WRITERS[name], self._folder / WRITERS[name].file
+        write = getattr(import_module(f"plan_cutters.report.{writer.module}"), writer.function)
+        schema = {"schema": self._schema} if path.suffix == ".step" else {}
+        write(self._result, split, path, **schema, **(writer.options or {}))
+        return FileEntry(name=path.name, sha256=sha256(path))
 
     def files(self, formats: Sequence[str]) -> Generator[tuple[str, Callable[[], "FileEntry"]]]:
         """Formats, and what to call for the file of each, which raises what its making does.
@@ -126,6 +126,11 @@ class Making:
                 for name in sorted(mine, key=lambda name: name == first and model.works):
                     yield name, model.result if name == first else partial(make, name)
 
+    def _model(self, which: int | None, name: str) -> "FileEntry":
+        if which in self._errors:
+            raise self._errors[which]
+        return self.file(name, self.splits[which])
+
     def _place(self, about: str) -> int | None:
         """Of a plan of operations its place among them; None where models are about verdicts."""
         plan = self._result.plan.operations
@@ -144,17 +149,6 @@ class Making:
                 except Exception as error:
                     self._errors[which] = error
 
-    def _model(self, which: int | None, name: str) -> "FileEntry":
-        if which in self._errors:
-            raise self._errors[which]
-        return self.file(name, self.splits[which])
-
-
-def with_operations(formats: Sequence[str], plans: Sequence[str]) -> list[str]:
-    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan."""
-    about = ["operations", *plans[1:]] if plans else []
-    return [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
-
 
 def sha256(file: Path) -> str:
     """Checksum of a file."""
@@ -163,21 +157,7 @@ def sha256(file: Path) -> str:
 
 PLAN = "plan.json"
 _STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
-#: Written where there are steps, setups were to be proposed, or posture maps or operations were requested.
-_SIDE_FILES = {
-    "process",
-    "setup_1",
-    "setup_2",
-    "setup_3",
-    "postures",
-    "operations",
-    "operations_csv",
-    "operations_step",
-    "operations_glb",
-    "fastest_step",
-    "fastest_glb",
-}
-FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES))
+FORMATS = ("json", *(name for name, writer in WRITERS.items() if writer.by_name))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -198,18 +178,9 @@ def read_formats(text: str) -> tuple[str, ...]:
 class Staging:
     """A folder beside the output in which files grow; each appears in the output whole, or not at all.
 
-    As long as it is there, no other run writes into the output.
-
-    Parameters
-    ----------
-    out : Path
-    named : callable, optional
-        Called with the folder and the lock before they exist, so that whoever ends this process at any moment can take them away.
-
-    Raises
-    ------
-    PlanError
-        At the start if the output can surely not be written, or another run writes there: before the work, not after it.
+    As long as it is there, no other run writes into the output. `named` is called with the folder and the lock before they
+    exist, so that whoever ends this process at any moment can take them away. A PlanError at the start if the output can surely
+    not be written, or another run writes there: before the work, not after it.
     """
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
@@ -272,38 +243,14 @@ def write_all(
     result: Judged, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242",
     listener: ProgressListener | None = None, clock: "Clock | None" = None, hurried: bool = False,
 ) -> "Plan":  # fmt: skip
-    """Write the formats asked for into the folder `out`, each file whole or not at all.
+    """Write the formats asked for (of FORMATS) into the folder `out`, each file whole or not at all; the plan as written.
 
-    The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in
-    one of these, as in the models, where the CAD kernel works, costs that file: the plan names it in `not_written`.
+    The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in one
+    of these, as in the models, where the CAD kernel works, costs that file: the plan names it in `not_written`.
 
-    Parameters
-    ----------
-    result : Result
-    out : Path
-    formats : sequence of str
-        Of FORMATS.
-    staging : Staging, optional
-        One made before the work began.
-    step_schema : str
-        `ap242`, `ap214` or `ap203`.
-    listener : Onlooker, optional
-    clock : Clock, optional
-        The one that ran while the plan was made; default one that goes on from there.
-    hurried : bool
-        One file after the other, for this may be ended at any moment.
-
-    Returns
-    -------
-    Plan
-        The plan as written.
-
-    Raises
-    ------
-    OptionError
-        An unknown format or schema.
-    PlanError
-        The folder cannot be written to.
+    `staging` is one made before the work began, `clock` the one that ran while the plan was made. `hurried`: one file after the
+    other, for this may be ended at any moment. An OptionError for an unknown format or schema, a PlanError where the folder
+    cannot be written to.
     """
     from plan_cutters.document.clock import Clock
 
@@ -316,7 +263,9 @@ def write_all(
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
     plans = [str(each.name) for each in result.plan.operations.plans] if result.plan.operations else []
-    wanted = with_operations(formats, plans)
+    # The first plan's models have no name of a plan.
+    about = ["operations", *plans[1:]] if plans else []
+    wanted = [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
     later = [name for name in LATER if name in wanted]
     with staging or Staging(out) as staging:
         making = Making(
@@ -324,8 +273,12 @@ def write_all(
         )
         stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
+        steps = result.plan.process is not None and bool(result.plan.process.steps)
+        arrays = [*(["npz"] if "npz" in formats else []), *_setup_files(result)]
+        arrays += ["process"] if steps and not _edited(result, out) else []
+        arrays += [*(["postures"] if result.maps else []), *(["operations", "operations_csv"] if plans else [])]
         try:
-            for name in _arrays(result, formats, out):
+            for name in arrays:
                 with clock.stage(name, shown=False):
                     written.files[name] = making.file(name)
         except OSError as error:
@@ -365,12 +318,8 @@ def write_all(
 def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, clock: "Clock") -> bool:
     """Let the plan of a run that goes on appear in the output, whole, with its setups alone; whether it is written at all.
 
-    The plan says of the other formats that the run ended before they were written: that is true whenever it ends.
-
-    Raises
-    ------
-    PlanError
-        The folder cannot be written to.
+    The plan says of the other formats that the run ended before they were written: that is true whenever it ends. A PlanError
+    where the folder cannot be written to.
     """
     from plan_cutters.report.to_json import PENDING
 
@@ -389,7 +338,6 @@ def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, c
 
 
 def _setup_files(result: Judged) -> list[str]:
-    """The formats of the setups that were proposed."""
     proposal = result.plan.setup_proposal
     return [f"setup_{number}" for number in range(1, 1 + len(proposal.setups))] if proposal else []
 
@@ -401,19 +349,6 @@ def _edited(result: Judged, out: Path) -> bool:
     own, path = result.ready.options.process, out / file_name("process")
     read = own is not None and bool(own.file) and os.path.abspath(own.file) == os.path.abspath(path)
     return read or (path.is_file() and (listed(out / PLAN) or {}).get(path.name) != sha256(path))
-
-
-def _arrays(result: Judged, formats: Sequence[str], out: Path) -> Iterator[str]:
-    """The files of arrays: they are written before the plan is safe."""
-    if "npz" in formats:
-        yield "npz"
-    yield from _setup_files(result)
-    if result.plan.process is not None and result.plan.process.steps and not _edited(result, out):
-        yield "process"
-    if result.maps:
-        yield "postures"
-    if result.plan.operations:
-        yield from ("operations", "operations_csv")
 
 
 @dataclass
@@ -452,7 +387,7 @@ class _Written:
 
 def file_name(name: str) -> str:
     """Name of the file of a format."""
-    return PLAN if name == "json" else WRITERS[name][0]
+    return PLAN if name == "json" else WRITERS[name].file
 
 
 def _cause(error: Exception) -> str:
@@ -477,10 +412,13 @@ def _clear(out: Path, result: Judged) -> None:
     before = listed(out / PLAN)
     if before is None:
         return
-    read, ours = _files_read(result), []
+    # They may be those of this folder.
+    options, ours = result.ready.options, []
+    read = {each.file for each in (options.placement, *options.other_placements) if each is not None}
+    read |= set() if options.process is None else {Path(options.process.file).name}
     for name, checksum in before.items():
         path = out / name
-        if name in _names() and name not in read and path.is_file() and not path.is_symlink():
+        if name in _FILES and name not in read and path.is_file() and not path.is_symlink():
             with suppress(OSError):  # it is named instead
                 if sha256(path) == checksum:
                     ours.append(path)
@@ -491,13 +429,6 @@ def _clear(out: Path, result: Judged) -> None:
     for path in ours:
         with suppress(OSError):
             path.unlink()
-
-
-def _files_read(result: Judged) -> set[str]:
-    """The names of the files in which the setups and the process of a plan were: they may be those of this folder."""
-    options = result.ready.options
-    read = {each.file for each in (options.placement, *options.other_placements) if each is not None}
-    return read | ({Path(options.process.file).name} if options.process is not None else set())
 
 
 def ended(out: Path, cause: str) -> tuple[str, ...]:
@@ -522,11 +453,7 @@ def stale_files(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
     mine |= {file_name("process")} if plan.effective.process is not None or "process" in plan.not_written else set()
     mine |= {each.file for each in (plan.effective.placement, *plan.effective.other_placements) if each and each.file}
-    return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]
-
-
-def _names() -> list[str]:
-    return [file for file, _, _ in WRITERS.values()]
+    return [name for name in (PLAN, *_FILES) if name not in mine and (out / name).is_file()]
 
 
 def _unwritable(out: Path, error: OSError) -> PlanError:

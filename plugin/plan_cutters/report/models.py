@@ -4,7 +4,7 @@ They show one cutter: the selected one or, where none is feasible, the one that 
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import FaceGrid, FaceLabels, Style
-from cad_io.kernel.shapes import Side, compound, prism, revolved
+from cad_io.arrays import FaceLabels, Style
+from cad_io.kernel.bodies import Side, prism, revolved
+from cad_io.kernel.components import compound
 from cad_io.part import Part
 from cad_io.split import split, split_by_turns
 from cad_io.write import write_gltf
@@ -21,56 +22,31 @@ from cad_io.write.gltf import Other as Drawn
 from cad_io.write.step import Other as Product
 from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.build import fixture_entry
-from plan_cutters.domain.clamping import Block, Clamping, Solid
-from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
+from plan_cutters.domain.clamping import Block, Clamping
+from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.model import FaceEntry, Plan, SplitEntry
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.reasons import LABELS, MEANING, parts, rgb
 from plan_cutters.report.protocol import Judged
-from plan_cutters.scene.surroundings import PlacedFixture
 
 
 def clamping_shape(clamping: Clamping, chord: float) -> Any:
     """The bodies of a vise or chuck in its own frame, a solid each; of the table below them, what is drawn.
 
-    Parameters
-    ----------
-    clamping : Vise or Chuck
-        In its place: how far its jaws stand apart is known.
-    chord : float
-        How far the bore of a jaw may be from its planes, mm.
+    It is in its place: how far its jaws stand apart is known. `chord`: how far the bore of a jaw may be from its planes, mm.
     """
-    return compound([_solid(each) for each in clamping.solids(chord, shown=True)])
+    shapes = []
+    for each in clamping.solids(chord, shown=True):
+        if isinstance(each, Block):
+            shapes.append(prism((*each.inner, *reversed(each.outer)), each.low, each.high))
+        else:
+            corners = (each.radius, each.low), (each.radius, each.high), (0.0, each.high), (0.0, each.low)
+            shapes.append(revolved((0.0, each.low), [Side(corner) for corner in corners]))
+    return compound(shapes)
 
-
-def _solid(solid: Solid) -> Any:
-    if isinstance(solid, Block):
-        return prism((*solid.inner, *reversed(solid.outer)), solid.low, solid.high)
-    radius, low, high = solid.radius, solid.low, solid.high
-    return revolved((0.0, low), [Side((radius, low)), Side((radius, high)), Side((0.0, high)), Side((0.0, low))])
-
-
-_LABEL = {
-    INTERFERENCE_FREE: LABELS.index("interference_free"),
-    ACCESSIBLE: LABELS.index("accessible"),
-    UNDECIDED: LABELS.index("undecided"),
-    INACCESSIBLE: LABELS.index("inaccessible"),
-    UNJUDGED: LABELS.index("unjudged"),
-}
 
 #: STEP application protocols that can be requested, and the kernel's names of them.
 SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS", "ap203": "AP203"}
-
-
-def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
-    """Labels at a face's grid nodes; a seam, sampled once, is put at both ends."""
-    on = np.where(grid.index >= 0, label[grid.index], -1).astype(np.int32)
-    u, v = grid.u, grid.v
-    if grid.closed_u:
-        u, on = np.append(u, u[0] + grid.span[1] - grid.span[0]), np.vstack([on, on[:1]])
-    if grid.closed_v:
-        v, on = np.append(v, v[0] + grid.span[3] - grid.span[2]), np.hstack([on, on[:, :1]])
-    return FaceLabels(grid.face, u, v, on)
 
 
 def split_result(result: Judged, cutter: str | None = None) -> Any:
@@ -90,8 +66,8 @@ def split_result(result: Judged, cutter: str | None = None) -> Any:
 def verdict_labels(result: Judged, cutter: str | None = None) -> NDArray[np.int32]:
     """The verdict of each sample (n,) as an index into LABELS."""
     code = np.full(256, -1, np.int32)
-    for verdict, word in _LABEL.items():
-        code[verdict] = word
+    for verdict, word in WORDS.items():
+        code[verdict] = LABELS.index(word)
     label = code[result.reaches[cutter or result.shown].verdict]
     label[result.inside_bodies] = LABELS.index("inside_bodies")
     return label
@@ -100,43 +76,38 @@ def verdict_labels(result: Judged, cutter: str | None = None) -> NDArray[np.int3
 def face_labels(
     result: Judged, label: NDArray[np.int32], of_face: Callable[[NDArray[np.int64]], int], first: int
 ) -> list[FaceLabels]:
-    """Labels on the grids of all faces.
+    """Labels on the grids of all faces, of samples (n,) from 0; those of LABELS begin at `first`.
 
-    Parameters
-    ----------
-    result : Result
-    label : (n,) int32
-        Of the samples, from 0; those of LABELS begin at `first`.
-    of_face : callable
-        Gives the label of a face that was sampled without a grid, by the rows (k,) of its samples.
-    first : int
+    `of_face` gives the label of a face that was sampled without a grid, by the rows (k,) of its samples. A seam, sampled once, is
+    put at both ends.
     """
-    samples = result.samples
+    samples, labels = result.samples, []
     grids = {g.face: g for g in samples.grids}
     sampled = samples.by_face()
     check, ignored, unjudged = (first + LABELS.index(word) for word in ("check", "ignored", "unjudged"))
-    labels = []
+    ends = np.array([0.0, 1.0])
     for face in result.plan.faces:
         number = int(face.id[1:])
+        if face.target and number in grids:
+            grid = grids[number]
+            on = np.where(grid.index >= 0, label[grid.index], -1).astype(np.int32)
+            u, v = grid.u, grid.v
+            if grid.closed_u:
+                u, on = np.append(u, u[0] + grid.span[1] - grid.span[0]), np.vstack([on, on[:1]])
+            if grid.closed_v:
+                v, on = np.append(v, v[0] + grid.span[3] - grid.span[2]), np.hstack([on, on[:, :1]])
+            labels.append(FaceLabels(number, u, v, on))
+            continue
+        whole = of_face(sampled[number]) if face.target and number in sampled else unjudged
         if not face.target:
-            labels.append(_whole(number, ignored if face.ignored else check))
-        elif number in grids:
-            labels.append(_grid_labels(grids[number], label))
-        elif number in sampled:
-            labels.append(_whole(number, of_face(sampled[number])))
-        else:
-            labels.append(_whole(number, unjudged))
+            whole = ignored if face.ignored else check
+        labels.append(FaceLabels(number, ends, ends, np.full((2, 2), whole, np.int32)))
     return labels
 
 
-def _whole(face: int, label: int) -> FaceLabels:
-    ends = np.array([0.0, 1.0])
-    return FaceLabels(face, ends, ends, np.full((2, 2), label, np.int32))
-
-
-def verdict_of(piece: Any) -> str:
-    """The word for a piece of a split."""
-    return LABELS[piece.label] if piece.label >= 0 else "mixed"
+def verdict_of(piece: Any, first: int = 0) -> str:
+    """The word for a piece of a split, whose labels of verdicts begin at `first`; also for one that could not be split."""
+    return LABELS[piece.label - first] if piece.label >= 0 else "mixed"
 
 
 def rungs(split: Any) -> dict[str, SplitEntry]:
@@ -163,43 +134,41 @@ def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:
     return plan.model_copy(update=update)
 
 
-def styles(result: Judged) -> Callable[[Any], Style]:
-    """Name and colour of a piece: a target face has the colour of its verdict, others keep their own."""
+def styles(result: Judged, operations: Sequence[OperationEntry] = ()) -> Callable[[Any], Style]:
+    """Name and colour of a piece: those of its operation, else of its verdict; faces that are no target keep their own colour."""
     faces = result.part.faces
 
     def style(piece: Any) -> Style:
-        info, verdict = faces[piece.face - 1], verdict_of(piece)
-        own = info.colour if verdict in ("check", "ignored") else None
-        return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict), verdict)
+        info = faces[piece.face - 1]
+        if 0 <= piece.label < len(operations):
+            each = operations[piece.label]
+            return Style(f"F{piece.face}_{each.id} {info.name}".strip(), parts(each.colour), each.id)
+        word = verdict_of(piece, len(operations))
+        own = info.colour if word in ("check", "ignored") else None
+        return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word), word)
 
     return style
 
 
-def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
-    """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`."""
-    write_styled_step(result, split, path, styles(result), schema)
+def write_step(
+    result: Judged, split: Any, path: Path, *, schema: str = "ap242", operations: Sequence[OperationEntry] = ()
+) -> None:
+    """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`.
 
-
-def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[Any], Style], schema: str) -> None:
-    """Write a split part with names and colours, and beside it the fixtures that are CAD files, vises and chucks."""
-    part = result.part
-    others = [
-        Product(each.name, shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture"))
-        for each in result.conditions.surroundings.fixtures
-        if (shape := _shape(each)) is not None
-    ]
+    Beside it stand the fixtures that are CAD files, vises and chucks.
+    """
+    part, others = result.part, []
+    for each in result.conditions.surroundings.fixtures:
+        shape = each.source.shape if isinstance(each.source, Part) else None
+        if shape is None and (clamping := each.fixture.clamping) is not None:
+            shape = clamping_shape(clamping, each.obstacles.triangles.chord_error)
+        if shape is not None:
+            place = np.column_stack([each.fixture.rotation, each.fixture.shift])
+            others.append(Product(each.name, shape, place, rgb("fixture")))
     write_cad(
-        split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema], others=others
-    )
-
-
-def _shape(placed: PlacedFixture) -> Any:
-    """A fixture as a CAD body in its own frame; None where it is none."""
-    if isinstance(placed.source, Part):
-        return placed.source.shape
-    if (clamping := placed.fixture.clamping) is not None:
-        return clamping_shape(clamping, placed.obstacles.triangles.chord_error)
-    return None
+        split, path, styles(result, operations), product=product(result), tree=part.tree, layers=part.layers,
+        schema=SCHEMAS[schema], others=others,
+    )  # fmt: skip
 
 
 def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:
@@ -268,11 +237,6 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
     )
 
 
-def write_merged(result: Judged, split: Any, path: Path) -> None:
-    """Write `merged.glb`: one mesh for parts of so many faces that viewers are slow with a node each."""
-    write_glb(result, split, path, merged=True)
-
-
 def product(result: Judged) -> str:
     """Give the name of the part: that of its file, without the suffix, or "part"."""
     return Path(result.part.file).stem if result.part.file else "part"
@@ -298,14 +262,20 @@ def split_operations(result: Judged, number: int) -> Any:
     return split_by_turns(result.part, face_labels(result, label, of_face, first))
 
 
-def write_operations_step(result: Judged, split: Any, path: Path, *, number: int = 0, schema: str = "ap242") -> None:
+def _operations(result: Judged, name: str | None) -> OperationPlanEntry:
+    """A plan of operations by its name, or the first one: their models are written where these were requested."""
+    plans = result.plan.operations.plans if result.plan.operations else []
+    return next(each for each in plans if name in (None, each.name))
+
+
+def write_operations_step(result: Judged, split: Any, path: Path, *, name: str | None = None, schema: str = "ap242") -> None:
     """Write `operations.step`: as `annotated.step`, but with a face named `F<number>_<operation>` for each piece."""
-    write_styled_step(result, split, path, _styles(result, _entry(result, number)), schema)
+    write_step(result, split, path, schema=schema, operations=_operations(result, name).operations)
 
 
-def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int = 0) -> None:
+def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | None = None) -> None:
     """Write `operations.glb`: as `annotated.glb`, with the operation of each piece in `extras`."""
-    plan = _entry(result, number)
+    plan = _operations(result, name)
     entries = {int(face.id[1:]): face for face in result.plan.faces}
 
     def extras(face: int) -> dict[str, Any]:
@@ -318,33 +288,16 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int 
         return {**face_facts(result, entries[face]), "plan": plan.name, "operations": here}
 
     def facts(piece: Any) -> dict[str, Any]:
-        operation = _operation(piece, plan)
-        if operation is None:
-            word = _word(piece, plan)
-            return {"face": f"F{piece.face}", "plan": plan.name, "operation": None, "verdict": word, "meaning": MEANING[word],
-                    "cutter": result.shown}  # fmt: skip
+        about = {"face": f"F{piece.face}", "plan": plan.name}
+        if not 0 <= piece.label < len(plan.operations):
+            word = verdict_of(piece, len(plan.operations))
+            return {**about, "operation": None, "verdict": word, "meaning": MEANING[word], "cutter": result.shown}
+        operation = plan.operations[piece.label]
         known = operation.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
-        return {"face": f"F{piece.face}", "plan": plan.name, "operation": operation.id, **known}
+        return {**about, "operation": operation.id, **known}
 
-    write_gltf(
-        shown_pieces(result, split), path, _styles(result, plan), extras=extras, piece_extras=facts, others=_fixtures(result)
-    )
-
-
-def write_fastest_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
-    """Write `operations_fastest.step`: the fastest plan beside another one."""
-    write_operations_step(result, split, path, number=_place(result, "fastest"), schema=schema)
-
-
-def write_fastest_glb(result: Judged, split: Any, path: Path) -> None:
-    """Write `operations_fastest.glb`."""
-    write_operations_glb(result, split, path, number=_place(result, "fastest"))
-
-
-def _place(result: Judged, name: str) -> int:
-    operations = result.plan.operations
-    assert operations is not None, "models of operations are written where these were requested"
-    return [str(each.name) for each in operations.plans].index(name)
+    style, pieces = styles(result, plan.operations), shown_pieces(result, split)
+    write_gltf(pieces, path, style, extras=extras, piece_extras=facts, others=_fixtures(result))
 
 
 def _fixtures(result: Judged) -> list[Drawn]:
@@ -358,33 +311,3 @@ def _fixtures(result: Judged) -> list[Drawn]:
             facts = fixture_entry(each, [k]).model_dump(mode="json")
             fixtures.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
     return fixtures
-
-
-def _entry(result: Judged, number: int) -> OperationPlanEntry:
-    operations = result.plan.operations
-    assert operations is not None, "models of operations are written where these were requested"
-    return operations.plans[number]
-
-
-def _operation(piece: Any, plan: OperationPlanEntry) -> OperationEntry | None:
-    return plan.operations[piece.label] if 0 <= piece.label < len(plan.operations) else None
-
-
-def _word(piece: Any, plan: OperationPlanEntry) -> str:
-    """What a piece is called that no operation takes; also one that could not be split."""
-    return LABELS[piece.label - len(plan.operations)] if piece.label >= 0 else "mixed"
-
-
-def _styles(result: Judged, plan: OperationPlanEntry) -> Callable[[Any], Style]:
-    """Name and colour of a piece: those of its operation, else of its verdict; faces that are no target keep their own colour."""
-    faces = result.part.faces
-
-    def style(piece: Any) -> Style:
-        info, operation = faces[piece.face - 1], _operation(piece, plan)
-        if operation is not None:
-            return Style(f"F{piece.face}_{operation.id} {info.name}".strip(), parts(operation.colour), operation.id)
-        word = _word(piece, plan)
-        own = info.colour if word in ("check", "ignored") else None
-        return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word), word)
-
-    return style

@@ -53,7 +53,7 @@ def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
     text = plan.text or made_of(plan)
-    lines = [text.headline, *text.lines, "", *_lines(story), "", *_table(story), ""]
+    lines = [text.headline, *text.lines, "", *story.inside, *of_the_plan(story), "", *_table(story), ""]
     lines += [each.left for each in story.cutters if each.left]
     lines += further(story)
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
@@ -92,30 +92,18 @@ def card(result: Judged, *, height: int = HEIGHT, size: Size = "full") -> str:
 def show(result: Judged, height: int = HEIGHT, size: Size = "full") -> Path | None:
     """Show the review page: in a notebook below the cell, else in a browser, from a file in the folder for temporary files.
 
-    A small card is for notebooks alone: it stands below the cell without the page.
-
-    Returns
-    -------
-    Path or None
-        The file, which stays there; None in a notebook.
-
-    Raises
-    ------
-    PlanError
-        No browser is found; the message names the file.
+    A small card is for notebooks alone: it stands below the cell without the page. Returns the file, which stays there; None in
+    a notebook. A PlanError, which names the file, where no browser is found.
     """
     if size not in get_args(Size):
         raise OptionError(f"card: {shown(size)} is neither full nor small")
-    if size == "small" and _in_notebook():
-        from IPython.display import HTML, display
-
-        display(HTML(card(result, size=size)))
-        return None
-    data = page(result)
+    small = size == "small" and _in_notebook()
+    data = b"" if small else page(result)
     if _in_notebook():
         from IPython.display import HTML, display
 
-        display(HTML(_rendered(result, story_of(result.plan), height, page=data.decode(), opened=True)))
+        opened = "" if small else _rendered(result, story_of(result.plan), height, page=data.decode(), opened=True)
+        display(HTML(opened or card(result, size=size)))
         return None
     path = Path(tempfile.mkdtemp(prefix="plan-cutters-")) / "review.html"
     path.write_bytes(data)
@@ -129,11 +117,6 @@ def _in_notebook() -> bool:
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None
     return getattr(shell, "kernel", None) is not None
-
-
-def _lines(story: Story) -> list[str]:
-    """What is said beside the headline: surface that is none, the scope, and all doubts."""
-    return [*story.inside, *of_the_plan(story)]
 
 
 def _table(story: Story) -> list[str]:
@@ -150,7 +133,6 @@ def _table(story: Story) -> list[str]:
 
 
 def _picture(result: Judged) -> str:
-    """The sheet of `review.png`, in base64."""
     from plan_cutters.report.drawing.part import write_png
     from plan_cutters.report.models import split_result
 
@@ -191,7 +173,7 @@ def _rendered(
     return _TEMPLATE.render(
         chip=_CHIPS[story.headline.good], headline=story.headline,
         text="\n".join((result.plan.text or made_of(result.plan)).lines),
-        told=_lines(story), columns=list(_COLUMNS.values()),
+        told=[*story.inside, *of_the_plan(story)], columns=list(_COLUMNS.values()),
         cutters=cutters[:most], unlisted=max(0, len(cutters) - most) if most else 0, kind=kind,
         taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],

@@ -2,7 +2,6 @@
 
 import json
 from collections import Counter
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from plan_cutters.domain.figures import area, duration, percent
 from plan_cutters.files.content import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep
-from plan_cutters.plan_file.setups import ProposedSetup
+from plan_cutters.plan_file.part_info import ProposedSetup
 from plan_cutters.report.protocol import Judged
 
 
@@ -108,10 +107,8 @@ def setup_toml(setup: ProposedSetup) -> str:
     )
 
 
-def _write(number: int, result: Judged, _split: object, path: Path) -> None:
+def write_setup(result: Judged, _split: object, path: Path, *, number: int) -> None:
+    """Write `setup-1.toml` and so on, of the setups that were proposed."""
     proposal = result.plan.setup_proposal
     assert proposal is not None, "written where setups were proposed"
-    path.write_text(setup_toml(proposal.setups[number]), encoding="utf-8")
-
-
-write_first, write_second, write_third = (partial(_write, number) for number in range(3))
+    path.write_text(setup_toml(proposal.setups[number - 1]), encoding="utf-8")

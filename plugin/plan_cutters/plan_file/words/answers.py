@@ -1,15 +1,284 @@
-"""Put the answers after the plan into words: least stick-outs, largest radii and next steps."""
+"""Put the answers after the plan into words: changes, next steps, what would help against a cause, stick-outs and radii."""
 
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterator, Sequence
 
-from plan_cutters.domain.dimensions import notation
-from plan_cutters.domain.figures import capital, down, mm, place, some, up
-from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StickOutEntry
-from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.words.cutters import reason
-from plan_cutters.plan_file.words.headline import every
-from plan_cutters.plan_file.words.names import Line, named
-from plan_cutters.plan_file.words.next_steps import is_excluded, remaining, step_text
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import angle, capital, down, listed, mm, percent, place, reported, some, up
+from plan_cutters.domain.figures import area as size
+from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.placement import axis_words
+from plan_cutters.domain.spec import notation
+from plan_cutters.domain.standard_tools import USUAL, slenderness
+from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, RunEntry, StepEntry, StickOutEntry
+from plan_cutters.plan_file.model import ANOTHER_SETUP, CutterEntry, Plan
+from plan_cutters.plan_file.operations import UNJUDGED_CAUSE, FitEntry, HelpEntry, RemainingEntry
+from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS, reason
+from plan_cutters.plan_file.words.headline import every, not_sampled, shown_cutter
+from plan_cutters.plan_file.words.names import Line, kind, named
+
+Range = tuple[float, float]
+
+#: Faces that are named one by one.
+_FACES = 5
+_ORDER = {2: "second", 3: "third", 4: "fourth"}
+
+
+def tolerance(requested: float, now: float) -> str:
+    return f"a tolerance of {mm(requested)} instead of {mm(now)}"
+
+
+def tilt_range(wanted: Range, now: Range) -> str:
+    return f"tilts from {angle(wanted[0])} to {angle(wanted[1])} in the search instead of {angle(now[0])} to {angle(now[1])}"
+
+
+def tilt_limit(requested: float, now: float | None, machine: str) -> str:
+    """Name a machine that tilts further; `now` is None where rotary axes limit it, not an angle."""
+    instead = f"every way instead of {machine}" if now is None else f"instead of {angle(now)}"
+    return f"a machine that tilts by {angle(requested)} {instead}"
+
+
+def stick_out(requested: float, now: Cutter) -> str:
+    """Name a stick-out; one of more than the usual diameters says so."""
+    how, ratio = notation(now.name), requested / (2.0 * now.radius)
+    return f"a stick-out of {how.mm(requested)}{_ratio(ratio)} instead of {how.mm(now.length)}"
+
+
+def tool(cutter: Cutter) -> str:
+    """Name a cutter that is sold, by kind, size and stick-out.
+
+    >>> tool(Cutter.parse("D4L20rc2")), tool(Cutter.parse("R2L40rc0.5"))
+    ('a ball end D4 held 20 mm out', 'a bull nose R2 rc0.5 held 40 mm out (10 D, more than the usual 5 D)')
+    """
+    how = notation(cutter.name)
+    return f"a {kind(cutter)} {typed_size(cutter)} held {how.mm(cutter.length)} out{_ratio(slenderness(cutter))}"
+
+
+def typed_size(cutter: Cutter) -> str:
+    """The size of an end mill as it is typed, with the corner of a bull nose.
+
+    >>> typed_size(Cutter.parse("D4L20rc2")), typed_size(Cutter.parse("R2L40rc0.5"))
+    ('D4', 'R2 rc0.5')
+    """
+    how = notation(cutter.name)
+    corner = f" rc{how.length(cutter.corner_radius)}" if kind(cutter) == "bull nose" else ""
+    return f"{how.by}{how.across(cutter.radius)}{corner}"
+
+
+def _ratio(ratio: float) -> str:
+    return f" ({ratio:.3g} D, more than the usual {USUAL:g} D)" if ratio > USUAL * (1.0 + 1e-9) else ""
+
+
+def holder(requested: Holder, now: Cutter) -> str:
+    how = notation(now.name)
+    return f"the holder {requested.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
+
+
+def rest(cutter: str) -> str:
+    return f"{cutter} for the rest"
+
+
+def clamped(axis: Sequence[float], degrees: float) -> str:
+    """Say how the part is clamped for a setup axis that is so many degrees from the present one."""
+    words = axis_words(axis)
+    return f"turned over (setup {words})" if degrees > 179.0 else f"clamped with {words} along the spindle"
+
+
+def more_setup(axis: Sequence[float], degrees: float, number: int) -> str:
+    return f"{clamped(axis, degrees)} as a {_ORDER.get(number, 'further')} setup"
+
+
+def patch(area: Patch) -> str:
+    """An area that is lost, with its place.
+
+    >>> patch(Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13))
+    '57.2 mm² of F31, about (12, 3, -8.04), 4.1 mm across'
+    """
+    wide = f", {mm(float(f'{area.across:.2g}'))} across" if area.across else ""
+    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in area.place)
+    return f"{size(area.area)} of {listed(area.faces, _FACES)}, about ({where}){wide}"
+
+
+def excluded_areas(areas: Sequence[Patch], area: float) -> str:
+    """Say which connected areas to leave to another process, and how much they are in all, mm2."""
+    if len(areas) == 1:
+        return f"leave to another process: {patch(areas[0])}"
+    return f"leave to another process: {size(area)} in {len(areas):,} places, the largest {patch(areas[0])}"
+
+
+def samples(count: int) -> str:
+    """Give a number of samples as the subject of a sentence and its verb."""
+    return "1 sample is" if count == 1 else f"{count:,} samples are"
+
+
+#: Runs that are named one by one.
+_RUNS = 6
+
+
+def together(plan: Plan) -> str:
+    """Which of the given cutters and setups reach together all that any of them reaches, as one sentence without its stop.
+
+    Empty where the plan does not say, or where one cutter in one setup reaches everything.
+    """
+    least = plan.least_set
+    if least is None or (len(least.runs) < 2 and not least.left):
+        return ""
+    if not least.runs:
+        return "No cutter given reaches any of the area"
+    several = len({run.setup for run in least.runs}) > 1
+    judged = not plan.samples.unjudged and not not_sampled(plan)
+    whole = percent(least.share, some=True, whole=judged and not least.left)
+    if len(least.runs) == 1:
+        text = f"{_run(least.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
+    else:
+        named, last = least.runs[:-1][:_RUNS], least.runs[-1]
+        each = [f"{_run(run, several)} for {percent(run.share, some=True, whole=False)}" for run in named]
+        each[0] += " of the area"
+        more = len(least.runs) - 1 - len(named)
+        if more:
+            each.append(f"{more} more cutters for {percent(sum(r.share for r in least.runs[_RUNS:-1]), some=True, whole=False)}")
+        every = "all of it" if judged else "all of it that could be judged"
+        text = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if least.left else every}"
+    if least.left:
+        other = "the other" if judged else "another"
+        rest = f"{other} {percent(least.left_share, some=True, whole=False)}"
+        stood = plan.process is not None and any(each.cause == ANOTHER_SETUP for each in plan.process.left)
+        text += f"; they leave {rest}, also for another setup" if stood else f"; nothing given reaches {rest}"
+    if not least.proven:
+        text += " (a smaller set may do: the search ended before the proof)"
+    if least.doubtful:
+        text += ", unless a missing obstacle is in the way"
+    return text
+
+
+def _run(run: RunEntry, several: bool) -> str:
+    return f"{run.cutter} in setup {axis_words(run.setup)}" if several else run.cutter
+
+
+def effect(step: StepEntry) -> str:
+    """Say how much a step gains.
+
+    >>> effect(StepEntry(changes=[], lost_before=0.348, lost_after=0.322, gained=883, left=9000, cutters=[], setups=[],
+    ...                  option=None, why="", remains=[]))
+    'lost 34.8 to 32.2 % of the area (883 more samples)'
+    """
+    before = percent(step.lost_before, some=True, whole=False)
+    after = percent(step.lost_after, some=bool(step.left), whole=False)
+    many = f"{step.gained:,} more sample{'' if step.gained == 1 else 's'}"
+    end = "; then nothing is lost" if not step.left else ""
+    if before == after:
+        return f"lost {before} of the area, hardly less than now ({many}){end}"
+    return f"lost {before.removesuffix(' %')} to {after} of the area ({many}){end}"
+
+
+def is_excluded(step: StepEntry) -> bool:
+    """Whether a step changes nothing but leaves what is not reached to other means."""
+    return any(change.thing == "area" for change in step.changes)
+
+
+def step_text(step: StepEntry) -> str:
+    """A step and its effect, without its stop."""
+    if is_excluded(step):
+        return step.why
+    return f"{step.why}: {effect(step)}"
+
+
+def first_step(entry: CutterEntry) -> StepEntry | None:
+    """The best step of a cutter; None where there is none but to leave it."""
+    return next((step for step in (entry.mend.steps if entry.mend else []) if not is_excluded(step)), None)
+
+
+#: Faces that are named; shares of an area from which on points are named, and from which on they are most of it.
+_FEW, _NAMED, _POINTS, _MAINLY = 2, 3, 0.05, 0.5
+#: A step that does less of an area is no answer to it; what does so much leaves hardly any; a size that fits less does not fit.
+_HELPS, _NEARLY, _SOME = 0.1, 0.9, 0.01
+#: Shares that differ by less are alike.
+_ALIKE = 0.05
+
+
+def needs(plan: Plan, entry: RemainingEntry) -> str:
+    """Say what would help against a cause, in a clause; empty where nothing is known."""
+    if entry.cause == "sharp_edge" and plan.sharp_edges:
+        return f"the model has no fillet there, and the cutter leaves one of R{reported(plan.sharp_edges[0].radius_mm):.4g}"
+    if entry.cause == UNJUDGED_CAUSE:
+        faces = set(entry.faces)
+        return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
+    if entry.cause not in REASONS:
+        return ""
+    if entry.cause == "buried" and (shut := [face for face in entry.faces if face in plan.part.void_faces]):
+        if len(shut) == len(entry.faces):
+            return CLOSED_VOID
+        return f"{CLOSED_VOID} at {listed(shut, _NAMED)}; for the rest {REASONS[entry.cause].hint}"
+    advice = shown_cutter(plan).mend
+    hint = first_tries(entry.cause, advice)
+    if advice is not None and (best := _best(entry, advice)) is not None:
+        what = re.sub(r" \([^()]*\)|,? for the rest$", "", advice.steps[best.step].why)
+        first, share = f"{what} {'may finish' if advice.unsure else 'finishes'} {_share(best.share)} of it", best.share
+    elif hint and entry.fits is not None:
+        # What was judged says more than a hint; a size that reaches next to nothing is none that fits.
+        first = _sizes(entry.fits)
+        share = entry.fits[-1].share if first else 0.0
+    else:
+        first, share = hint or "no change that was tried helps", 0.0
+    points = _points(entry, share)
+    return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
+
+
+def _best(entry: RemainingEntry, advice: MendEntry) -> HelpEntry | None:
+    """The step that does most of an area; where others do hardly less, one on the same machine, of fewer changes."""
+    known = [each for each in entry.helped if each.step < len(advice.steps) and each.share >= _HELPS]
+
+    def effort(each: HelpEntry) -> tuple[bool, int, float, int]:
+        things = [change.thing for change in advice.steps[each.step].changes]
+        return "tilt_limit" in things, len(things), -each.share, each.step
+
+    return min((each for each in known if each.share >= known[0].share - _ALIKE), key=effort, default=None)
+
+
+def first_tries(cause: str, advice: MendEntry | None) -> str:
+    """Say what to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
+    if cause not in REASONS:
+        return ""
+    # Where steps were looked for, a change that none of them makes is refuted.
+    compared = bool(advice and advice.steps)
+    made = {change.thing for step in advice.steps for change in step.changes} if advice else set()
+    tries = REASONS[cause].tries
+    return ", or ".join(words for words, means in tries if not (compared and means and made.isdisjoint(means)))
+
+
+def _sizes(fits: list[FitEntry]) -> str:
+    """Which sizes reach how much; empty where they reach less than a hundredth.
+
+    >>> fits = [("R1.5L40", "D3", 3.0, 0.749), ("R1L40", "D2", 2.0, 0.9)]
+    >>> _sizes([FitEntry(cutter=spec, kind="flat end", size=d, diameter_mm=mm, share=s) for spec, d, mm, s in fits])
+    'flat end D3 fits 74 % of it, D2 90 %'
+    """
+    if not fits or fits[0].share < _SOME:
+        return ""
+    first, *more = fits
+    smaller = [f"{each.size} {_share(each.share)}" for each in more]
+    return ", ".join([f"{first.kind} {first.size} fits {_share(first.share)} of it", *smaller])
+
+
+def _share(share: float) -> str:
+    """A share in whole percents, no more than it is.
+
+    >>> _share(0.749), _share(1.0), _share(0.004)
+    ('74 %', '100 %', '<0.1 %')
+    """
+    return percent(math.floor(100.0 * share + 1e-9) / 100.0, some=True)
+
+
+def _points(entry: RemainingEntry, share: float) -> str:
+    """Say that no end fits the points of cones: where they are most of an area, or much of one of which a share leaves a part."""
+    points = entry.points
+    if points is None or points.share < (_MAINLY if share >= _NEARLY else _POINTS):
+        return ""
+    which = "" if share else f" ({listed(points.faces, _FEW)})"
+    return f"no end fits a cone's point{which}: left for a drill or by hand"
+
 
 #: Steps that are said of a cutter.
 _STEPS = 5
@@ -19,7 +288,7 @@ SAME = 0.02
 
 def answers(plan: Plan) -> list[Line]:
     """A line or two for each answer, cutters called as everywhere; what is to be typed is as it must be typed."""
-    lines = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
+    lines = (*_stick_outs(plan), *_radii(plan), *_next(plan))
     return [line._replace(text=capital(named(plan, line.text))) for line in lines]
 
 
@@ -83,37 +352,29 @@ def _radii(plan: Plan) -> Iterator[Line]:
         yield Line("Stick-outs and largest radii hold provided that no missing obstacle is in the way.")
 
 
-def _mends(plan: Plan) -> Iterator[Line]:
+def _next(plan: Plan) -> Iterator[Line]:
+    """Steps for each cutter, the best first, with the option that each takes."""
     for c in sorted((c for c in plan.cutters if c.mend), key=lambda c: c.mend.lost_share if c.mend else 0.0):
-        if c.mend is None:
+        advice = c.mend
+        if advice is None or not advice.steps:
+            yield Line(f"Nothing sure would make {c.id} finish: {advice.why if advice else ''}.")
             continue
-        yield from _next(c, c.mend)
-        if not c.mend.steps:
-            yield Line(f"Nothing sure would make {c.id} finish: {c.mend.why}.")
+        unsure = " (provided that no missing obstacle is in the way)" if advice.unsure else ""
+        yield Line(f"What next for {c.id}, which leaves {some(advice.lost_share)} of the area{unsure}:")
+        steps = [step for step in advice.steps if not is_excluded(step)]
+        for k, step in enumerate(steps[:_STEPS], 1):
+            typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
+            yield Line(f"  {k}. {step_text(step)}.", typed=typed)
+        if len(steps) > _STEPS:
+            yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
+        if not steps:
+            yield Line("  No step was found that frees any of it.")
+        if advice.uncompared:
+            of = len(steps) + advice.uncompared
+            yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
+        if steps and (rest := "; ".join(each.why for each in steps[0].remains)):
+            yield Line(f"  After step 1 stays: {rest}.")
+        yield from (Line(f"  Or {step.why}.") for step in advice.steps if is_excluded(step))
     if omitted := len(plan.not_mended):
         which = "cutter that leaves more was" if omitted == 1 else "cutters that leave more were"
         yield Line(f"{omitted} more {which} not asked about: plan with one of them alone.")
-
-
-def _next(c: CutterEntry, advice: MendEntry) -> Iterator[Line]:
-    """Steps for a cutter, the best first, with the option that each takes."""
-    if not advice.steps:
-        return
-    unsure = " (provided that no missing obstacle is in the way)" if advice.unsure else ""
-    yield Line(f"What next for {c.id}, which leaves {some(advice.lost_share)} of the area{unsure}:")
-    steps = [step for step in advice.steps if not is_excluded(step)]
-    for k, step in enumerate(steps[:_STEPS], 1):
-        typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
-        yield Line(f"  {k}. {step_text(step)}.", typed=typed)
-    if len(steps) > _STEPS:
-        yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
-    if not steps:
-        yield Line("  No step was found that frees any of it.")
-    if advice.uncompared:
-        of = len(steps) + advice.uncompared
-        yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
-    if rest := remaining(advice):
-        yield Line(f"  After step 1 stays: {rest}.")
-    for step in advice.steps:
-        if is_excluded(step):
-            yield Line(f"  Or {step.why}.")

@@ -1,19 +1,23 @@
-"""Describe each cutter: its kind, how much it reaches, where it fails, and why."""
+"""Describe cutters and faces: how much is reached, where a cutter fails and why, what is in the way there."""
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from plan_cutters.domain.figures import angle, capital, figure, listed, mm, percent, place, reported, unit
+from plan_cutters.domain.figures import angle, capital, count, direction, figure, listed, mm, percent, place, reported, size, unit
+from plan_cutters.plan_file.answers import MendEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.reasons import REASONS, Reason
-from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
+from plan_cutters.plan_file.reasons import REASONS, reason
+from plan_cutters.plan_file.shares import VERDICTS, AreaShare, FaceVerdicts, by_share, part_of, reached, unreached
+from plan_cutters.plan_file.words.answers import effect, first_step, first_tries, is_excluded, step_text
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
-from plan_cutters.plan_file.words.next_steps import first_step, first_tries, step_text
+from plan_cutters.plan_file.words.notes import machine
 
-#: Faces that are named on which a cutter leaves something.
-_FACES = 3
+#: Faces that are named on which a cutter leaves something, and those of its story; stages that are named.
+_FACES, _WORST, _STAGES = 3, 5, 6
 FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
 
@@ -35,20 +39,10 @@ class WorstFace:
 class CutterStory:
     """A cutter's story has these texts; a text is empty where there is nothing to say.
 
-    Attributes
-    ----------
-    name, tool : str
-        Its name in all texts; its kind, and how far it stands out of which holder.
-    reached, shares : str, dict
-        Of the area, in percent: in all, and by verdict.
-    reason, hint, besides : str
-        The reason of most of the area that is not reached, the thing to try first against it, and other reasons within the axis
-        limit.
-    sentence, next, left, between : str
-        Sentences: how much it reaches, or what it leaves; the next step, or a change that would help; how much is not reached,
-        why and where; how much is known between its samples.
-    faces, failing : tuple of WorstFace, int
-        The worst faces, and how many there are in all.
+    `name` is that of all texts, `tool` its kind and how far it stands out of which holder; `reached` and `shares` are percent of
+    the area, in all and by verdict; `reason` is that of most of what is not reached, `hint` the thing to try first against it.
+    `sentence` says how much it reaches, or what it leaves (`left`), `next` the next step, `between` how much is known between its
+    samples. `faces` are the worst ones, of `failing` in all.
     """
 
     id: str
@@ -69,9 +63,14 @@ class CutterStory:
 
 def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     """All that is told of a cutter."""
-    main = REASONS.get(main_reason(c.area_share))
-    faces, failing = worst_faces(plan, c)
+    main, hint = REASONS.get(main_reason(c.area_share)), ""
+    # No hint where all that lies inside material is the wall of a closed void.
+    enclosed = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
+    if main and not (main.code == "buried" and enclosed <= set(plan.part.void_faces)):
+        hint = first_tries(main.code, c.mend)
     loss = capital(named(plan, remaining_text(plan, c))) if c.not_reached else ""
+    unsure = "" if c.feasible else ", but obstacles are missing that may be in its way"
+    failing = _by_remaining_area(plan, c)
     return CutterStory(
         id=c.id,
         name=name,
@@ -80,43 +79,19 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         reached=reached(c, c.area_share),
         shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
         reason=main.name if main else "",
-        hint=_hint(plan, c, main) if main else "",
-        sentence=loss or _reaches(plan, c, name),
+        hint=hint,
+        sentence=loss or f"{capital(name)} reaches {every(plan)}{unsure}.",
         next=_next(plan, c),
         left=loss,
         between=between(plan, c),
-        faces=tuple(faces),
-        failing=failing,
+        faces=tuple(_worst(face, c) for face in failing[:_WORST]),
+        failing=len(failing),
     )
-
-
-def _hint(plan: Plan, c: CutterEntry, main: Reason) -> str:
-    """The thing to try first; nothing where all that lies inside material is the wall of a closed void."""
-    enclosed = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
-    return "" if main.code == "buried" and enclosed <= set(plan.part.void_faces) else first_tries(main.code, c.mend)
 
 
 def main_reason(share: AreaShare) -> str:
     """By which reason the most is not reached; empty where all is reached."""
     return max(share.lost_by, key=lambda name: share.lost_by[name], default="")
-
-
-def reason(code: str) -> str:
-    """Give the name of a reason: it is empty where there is none, and the code where a newer plan has an unknown reason."""
-    return REASONS[code].name if code in REASONS else code.replace("_", " ")
-
-
-def _reaches(plan: Plan, c: CutterEntry, name: str) -> str:
-    """Say that a cutter reaches all that could be judged, and what makes that unsure."""
-    unsure = "" if c.feasible else ", but obstacles are missing that may be in its way"
-    return f"{capital(name)} reaches {every(plan)}{unsure}."
-
-
-def _besides(c: CutterEntry) -> str:
-    """List the reasons that take part in the axis limit, by samples, the most of them first."""
-    ranked = sorted(c.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
-    each = ", ".join(f"{reason(word)} at {count:,}" for word, count in ranked)
-    return f"{each} sample{'' if ranked[-1][1] == 1 else 's'}" if each else ""
 
 
 def _next(plan: Plan, c: CutterEntry) -> str:
@@ -129,10 +104,17 @@ def _next(plan: Plan, c: CutterEntry) -> str:
 
 
 def reasons(c: CutterEntry) -> list[str]:
-    """Why a cutter loses what it loses, with shares of the area: the reason with the largest one first."""
+    """Why a cutter loses what it loses, with shares of the area: the reason with the largest one first.
+
+    The axis limit says what takes part in it, by samples, the most of them first.
+    """
     lines = []
     for code, share in sorted(c.area_share.lost_by.items(), key=lambda item: -item[1]):
-        besides = f" (with {_besides(c)})" if code == "axis_limit" and c.axis_limit_with else ""
+        besides = ""
+        if code == "axis_limit" and c.axis_limit_with:
+            ranked = sorted(c.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
+            each = ", ".join(f"{reason(word)} at {count:,}" for word, count in ranked)
+            besides = f" (with {each} sample{'' if ranked[-1][1] == 1 else 's'})"
         lines.append(f"{reason(code)} {percent(share, some=True, whole=False)}{besides}")
     return lines
 
@@ -142,7 +124,7 @@ def remaining_text(plan: Plan, c: CutterEntry) -> str:
     why = ", ".join(reasons(c))
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
-    failing = _by_remaining_area(plan, c)
+    failing = [face.id for face in _by_remaining_area(plan, c)]
     deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
     where = ""
     if deep:
@@ -200,12 +182,6 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
     return first + rest
 
 
-def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
-    """The faces of which a cutter loses the largest area, and how many there are in all."""
-    faces, ranked = {face.id: face for face in plan.faces}, _by_remaining_area(plan, c)
-    return [_worst(faces[name], c, _remaining_area(faces[name], c)) for name in ranked[:most]], len(ranked)
-
-
 def worst_face_text(face: WorstFace) -> str:
     """A face on which a cutter fails, in a line."""
     deep = f", {face.depth} {unit()} too deep" if face.depth else ""
@@ -213,15 +189,14 @@ def worst_face_text(face: WorstFace) -> str:
     return f"{face.id}: {face.area} {unit()}² lost, {face.share} of the face, mainly {face.reason}{deep}{way}"
 
 
-def _by_remaining_area(plan: Plan, c: CutterEntry) -> list[str]:
-    """Ids of the faces on which a cutter leaves something, the one with the largest area of it first."""
+def _by_remaining_area(plan: Plan, c: CutterEntry) -> list[FaceEntry]:
+    """Faces on which a cutter leaves something, the one with the largest area of it first."""
 
     def rank(face: FaceEntry) -> tuple[float, float]:
         area = _remaining_area(face, c)
         return -area if math.isfinite(area) else 0.0, -c.faces[face.id].area_share.not_reached
 
-    failing = [face for face in plan.faces if face.id in c.faces and c.faces[face.id].not_reached]
-    return [face.id for face in sorted(failing, key=rank)]
+    return sorted((face for face in plan.faces if face.id in c.faces and c.faces[face.id].not_reached), key=rank)
 
 
 def _remaining_area(face: FaceEntry, c: CutterEntry) -> float:
@@ -230,7 +205,7 @@ def _remaining_area(face: FaceEntry, c: CutterEntry) -> float:
     return face_entry.area_share.not_reached * (1.0 - face_entry.inside_share) * face.area_mm2
 
 
-def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
+def _worst(face: FaceEntry, c: CutterEntry) -> WorstFace:
     mine = [w for w in c.witnesses if w.face == face.id and not w.inside_bodies]
     share = c.faces[face.id].area_share
     main = reason(main_reason(share) or (mine[0].reason if mine else ""))
@@ -238,8 +213,144 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     verdict = "undecided" if unsure else "inaccessible"
     deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
     depth = "" if deepest is None or deepest.depth_mm is None else figure(reported(deepest.depth_mm))
-    size = figure(reported(reported(lot)))
+    size = figure(reported(reported(_remaining_area(face, c))))
     return WorstFace(
         face.id, face.name, size, unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
         "" if deepest is None else deepest.obstacle_face or "",
     )  # fmt: skip
+
+
+def scene(plan: Plan) -> str:
+    """Give the faces to machine, the samples and the machine in a sentence or two."""
+    targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
+    also = f", {ignored} ignored" if ignored else ""
+    return (
+        f"The part has {count(plan.part.faces, 'face')}: {targets} to machine{also}, with "
+        f"{count(plan.samples.count, 'sample')}, at most {mm(plan.samples.max_gap_mm)} apart. {machine(plan)}"
+    )
+
+
+def rendered(plan: Plan) -> str:
+    """Say whose verdicts a drawing of the part shows, and under which conditions they were found."""
+    taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
+    return (
+        f"This cutter {taken}. Part {size(plan.part.size_mm)}. Machine {plan.effective.machine}, setup axis "
+        f"({direction(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
+        f"{count(plan.samples.count, 'sample')}."
+    )
+
+
+def unjudged_share(plan: Plan) -> str:
+    """Say how much of the area could not be judged for any cutter; empty where all could."""
+    share = plan.cutters[0].area_share.unjudged
+    if not share and not plan.samples.unjudged:
+        return ""
+    return f"Besides, {percent(share, some=True, whole=False)} of the area could not be judged, for any cutter."
+
+
+def others(plan: Plan) -> list[str]:
+    """Say how much each cutter before the one to take does not reach, and why."""
+    before = itertools.takewhile(lambda c: c.id != plan.selected, plan.cutters)
+    return [capital(named(plan, remaining_text(plan, c))) for c in before if c.not_reached]
+
+
+def details(plan: Plan) -> Iterator[str]:
+    """Give what is shown only to users who ask for all of it."""
+    e = plan.effective
+    # The end of a range of rotations: here a whole turn is one.
+    turns = ["360°" if degrees == 360.0 else angle(degrees) for degrees in e.rotation_deg]
+    yield (f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
+    yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
+    yield (
+        f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
+        f"{plan.samples.unjudged} not judged, in {count(plan.samples.regions, 'region')}."
+    )
+    yield (
+        f"Searched: tilts {angle(e.tilt_deg[0])} to {angle(e.tilt_deg[1])}, rotations {turns[0]} to "
+        f"{turns[1]} every {angle(e.rotation_step_deg)}; tolerance {mm(e.tolerance_mm)}, of which "
+        f"{mm(e.chord_error_mm)} for {e.obstacle_triangles:,} obstacle triangles."
+    )
+    for c in plan.cutters:
+        if c.area:
+            yield (f"Between samples of {c.id}: {c.area.contacts} contacts were looked at, {c.area.left} cells are not proved.")
+    yield f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}."
+    slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:_STAGES]
+    yield f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}."
+
+
+class InTheWay(NamedTuple):
+    """A face, or `fixture:NAME`, that is in the way at the best postures, and how deep in the tool (mm; None: not known)."""
+
+    face: str
+    reason: str
+    depth_mm: float | None
+    places: int
+
+
+def in_the_way(witnesses: Sequence[WitnessEntry]) -> list[InTheWay]:
+    """Obstacles that some witnesses name, the one that most of them name first."""
+    places: dict[tuple[str, str], list[float | None]] = {}
+    for w in witnesses:
+        if w.obstacle_face:
+            places.setdefault((w.obstacle_face, w.reason), []).append(w.depth_mm)
+    each = [
+        InTheWay(face, code, max((depth for depth in depths if depth is not None), default=None), len(depths))
+        for (face, code), depths in places.items()
+    ]
+    return sorted(each, key=lambda each: (-each.places, -(each.depth_mm or 0.0), each.face))
+
+
+def helping(advice: MendEntry) -> list[StepEntry]:
+    """The steps that gain something."""
+    return [step for step in advice.steps if not is_excluded(step) and step.gained]
+
+
+def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -> str:
+    """Say how much of a target face a cutter does not reach, why, what is in the way, and what would help.
+
+    `unhelped`: why no change is known that helps, a clause. Cutters are called as everywhere.
+    """
+    verdicts = cutter.faces.get(face.id, FaceVerdicts())
+    if not verdicts.reached and not verdicts.not_reached:
+        inside = "all of it lies inside other bodies of the part" if verdicts.inside_bodies else face.unjudged
+        return f"{face.id} could not be judged: {inside or 'it has no sample'}."
+    doubt = f" Of {face.id} could not be judged: {face.unjudged}." if face.unjudged else ""
+    if not verdicts.not_reached:
+        return named(plan, f"{cutter.id} reaches every judged sample of {face.id} ({verdicts.reached:,}).{doubt}")
+    share = verdicts.area_share
+    why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=False)}" for code, part in by_share(share.lost_by))
+    text = (
+        f"{cutter.id} does not reach {unreached(verdicts, share)} of {face.id} ({count(verdicts.not_reached, 'sample')}): "
+        f"{why or 'no reason is known'}."
+    )
+    if verdicts.undecided:
+        much = part_of(verdicts, share, ["undecided"])
+        text += f" {much} of it is undecided ({verdicts.undecided:,} samples): neither proved safe nor proved blocked."
+    mine = [w for w in cutter.witnesses if w.face == face.id and not w.inside_bodies]
+    if way := in_the_way(mine):
+        deep = f", up to {mm(way[0].depth_mm)} deep in the tool" if way[0].depth_mm is not None else ""
+        text += f" At the best posture {called(way[0].face)} is in the way{deep}."
+    if cutter.mend and (changes := helping(cutter.mend)):
+        option = f" [{changes[0].option}]" if changes[0].option else ""
+        text += f" What would help: {changes[0].why}: {effect(changes[0])}{option}."
+    else:
+        text += f" What would help is not known: {unhelped}."
+    return named(plan, text + doubt)
+
+
+def posture_text(face: str, free: float, undecided: float, forbidden: Sequence[tuple[str, float]], *, certified: bool) -> str:
+    """Say how many of the postures at a point are free, or what forbids the most of them; shares are 0 to 1."""
+    place = f"At the point, on {face}, "
+    if free > 0.0:
+        sure = "" if certified else ", provided that no missing obstacle is in the way,"
+        return f"{place}{percent(free)} of the postures{sure} are free."
+    if undecided > 0.0:
+        return f"{place}no posture is surely free; {percent(undecided)} are undecided."
+    why = ", ".join(f"{reason(code)} {percent(share)}" for code, share in forbidden[:3])
+    return f"{place}no posture that was searched is free ({why or 'no contact'})."
+
+
+def sample_text(distance_mm: float, verdict: str, code: str | None) -> str:
+    """Say what is known of the sample that is nearest to a point."""
+    why = f", {reason(code)}" if code else ""
+    return f"The nearest sample, {mm(distance_mm)} off, is {verdict.replace('_', '-')}{why}."

@@ -1,38 +1,257 @@
-"""The doubts about verdicts, the limits of the tool and the notes of a plan: a code decides who reads them, never a text."""
+"""Notes of a plan, each with a code by which programs decide and a text for people; its doubts and the limits of the tool.
 
-from collections.abc import Iterator, Sequence
+To add a note, add its code and its text here, and the call where it is found.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import zip_longest
+from typing import Any, Literal, NamedTuple
 
-from plan_cutters.domain.figures import ROUNDING, consecutive, count, joined, listed, mm, percent, place, ranges, size
+from plan_cutters.domain.figures import (
+    ROUNDING,
+    angle,
+    area,
+    consecutive,
+    count,
+    joined,
+    listed,
+    mm,
+    percent,
+    place,
+    plainly,
+    ranges,
+    size,
+)
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.plan_file.model import CutterEntry, LibraryEntry, Plan
-from plan_cutters.plan_file.notes import NoteCode
-from plan_cutters.plan_file.part_info import UnitEntry
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.names import Line, named
-from plan_cutters.plan_file.words.scope import shown_cutter
+
+#: What a note is about. A text may be reworded; a code stays.
+NoteCode = Literal[
+    "cutters_built_in", "no_holder", "tilts_not_searched", "all_length_cuts", "samples_apart", "samples_coarser", "samples_wide",
+    "coarser_than_requested",
+    "not_sampled", "no_machine", "side_guessed", "side_by_setup", "names_decoded",
+    "angles_rounded", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
+    "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
+    "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
+    "stick_out_each_setup", "maps_first_setup",
+    "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
+    "repeated_body", "crosses_itself", "folds_back", "changed_by_step",
+]  # fmt: skip
+
+
+class Note(NamedTuple):
+    """A note tells a reader of the plan something that the verdicts do not say."""
+
+    code: NoteCode
+    text: str
+
+
+#: Texts of notes that are filled in: `{names}` are listed, `{all}` are all of them, `{are}`, `{faces}` and `{s}` (a verb) agree
+#: with their number; what ends in `_mm`, `_mm2` and `_deg` is written as a length, an area and an angle.
+_TEXTS: dict[NoteCode, str] = {
+    "cutters_built_in": "The cutters are the built-in set, of usual metric sizes in plain holders: give your own with --cutter "
+    "or --cutters.",
+    "no_holder": "{names} {are} judged up to the stated length, without a holder.",
+    "tilts_not_searched": "{names} can touch at larger tilts than the {most_deg} searched: --tilt asks for more.",
+    "all_length_cuts": "All of a cutter's length cuts, unless it says where its flutes end.",
+    "samples_apart": "Verdicts are about samples; grid neighbours, and points of a face from its nearest sample, are at most "
+    "{most_mm} apart.",
+    "samples_coarser": "Samples are {times:.3g} times as far apart as curvature and the smallest cutter ask, for a default "
+    "plan takes about {budget:,}: --spacing asks for more, --faces for less.",
+    # Of a part of a batch whose density is for all parts.
+    "coarser_than_requested": "Coarser than requested: {wanted} would take too many samples here; judged at {samples}, up to "
+    "{most_mm} apart.",
+    "samples_wide": "Samples are farther apart than asked on {names}, whose borders no grid follows: `gap_mm` of each face in "
+    "plan.json says how far.",
+    "not_sampled": "No verdict is about {all}: no sample could be taken there.",
+    "maps_partial": "Postures of {unmapped} of {judged} samples were not mapped, for it would take too long: there every tilt "
+    "is undecided in postures.npz; sample more coarsely (--spacing), or give --map-budget.",
+    "maps_first_setup": "The posture maps are about the first setup alone: others hold the part differently.",
+    "stick_out_each_setup": "With the least stick-outs each setup reaches all that it serves now; if another setup served some "
+    "of it, less might do.",
+    "no_machine": "No machine was given: any tool axis counts as possible.",
+    "names_decoded": "Names in the file are neither ASCII nor UTF-8, and the file does not say what they are: read as "
+    "{encoding}.",
+    "side_by_setup": "The setup axis decides the side of open faces: with 0,0,1 as setup {names} would be machined on the "
+    "other side.",
+    "tolerance_raised": "The tolerance was raised from {requested_mm} to {met_mm}: the obstacle triangles could not be made to "
+    "follow the surface more closely.",
+    "faces_loose": "The obstacle triangles follow {names} only within {worst_mm}. The surface may be anywhere within that: "
+    "what only it may forbid is undecided. All else is judged to {tolerance_mm}.",
+    "open_faces": "{names} enclose{s} no material: only the surface is in the way, not what may lie behind it.",
+    "folds_back": "{names} folds back onto {neighbour}, with {size_mm2}: a surface of revolution that crosses its axis comes "
+    "back from STEP as the rest of what was made. Give the shape in Python or as BREP, or leave it out: {option}.",
+    "faces_none_sculptured": "No face that can be judged is sculptured: all are targets ({targets}); --faces chooses among them.",
+    "faces_ignored": "{faces} {are} ignored, neither targets nor obstacles (nothing is checked against them): {names}.",
+    "faces_clamped": "{faces} {are} clamped and left for another setup: {names}.",
+    "faces_clamped_there": "{all}: clamped in the setup {setup}, and to be machined in another one.",
+    "setup_without_fixtures": "No fixture stands in the setup {setup}: nothing that holds the part there was in the way.",
+    "fixture_stays": "{names}: it lies across the axis of the first setup, and stays there in the others.",
+    "fixture_not_cad": "Only the GLB model, the review page and pictures show what is no CAD body: {all}.",
+    "travel_not_judged": "Linear travel is not judged: {why}.",
+    "travel_of_holder": "Linear travel is that of the holder's gauge face at the postures found; it changes no verdict.",
+    "travel_first_setup": "Linear travel is judged in the first setup alone.",
+    "area_unknown": "The area of {all} is not known: it is not in the share that is served.",
+}
+_UNITS: dict[str, Callable[[float], str]] = {"mm": mm, "mm2": area, "deg": angle}
+
+
+def note(code: NoteCode, *names: str, **values: Any) -> Note:
+    """A note of `_TEXTS`, about some faces, cutters or fixtures, with its values.
+
+    >>> note("samples_wide", "F1", "F2").text[:53], note("travel_not_judged", why="no limits").text
+    ('Samples are farther apart than asked on F1, F2, whose', 'Linear travel is not judged: no limits.')
+    """
+    one, number = len(names) == 1, len(names)
+    texts = {name: _UNITS.get(name.rpartition("_")[2], lambda each: each)(value) for name, value in values.items()}
+    agreed = {"are": "is" if one else "are", "s": "s" * one, "faces": f"{number} face{'' if one else 's'}"}
+    return Note(code, _TEXTS[code].format(names=listed(names), all=", ".join(names), **agreed, **texts))
+
+
+def later_stages(
+    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False,
+    reasons: Sequence[str] = (), witnesses: bool = False, setups: Sequence[Sequence[float]] = (),
+) -> tuple[str, ...]:  # fmt: skip
+    """Name what follows the verdicts, in its order, by its options; empty for what was not requested.
+
+    `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either; `setups`:
+    axes of those that are not judged.
+
+    >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
+    ('', '', '', 'the proof between the samples', '', '--operations fewest', '')
+    """
+    return (
+        f"what follows in setup {joined([axis_words(each) for each in setups])}" if setups else "",
+        f"the reasons of {listed(reasons)}" if reasons else "",
+        "witnesses" if witnesses else "",
+        "the proof between the samples" if area else "",
+        f"--answers {','.join(answers)}" if answers else "",
+        "your steps (--process)" if process else f"--operations {operations}" if operations is not None else "",
+        "--posture-maps" if maps else "",
+    )
+
+
+def run_unfinished(absent: Sequence[str], work: str = "", *, unexplained: bool = False) -> Note:
+    """Say what a plan is without; `work`: what the run was doing when it was interrupted; `unexplained`: reasons are missing.
+
+    >>> run_unfinished(["--answers mend", "--operations fewest"], "planning the operations").text
+    'The run was interrupted while planning the operations: this plan is without --answers mend and --operations fewest.'
+    """
+    how = f"was interrupted while {work}" if work else "was not done"
+    instead = " What it names in their place forbids most tilts, and need not be what helps." if unexplained else ""
+    return Note("run_unfinished", f"The run {how}: this plan is without {joined(absent)}.{instead}")
+
+
+def angles_rounded(steps: Mapping[int, Mapping[str, float]]) -> Note:
+    """`steps`: angles as they are judged, deg, by the number of the step in the planner's own file."""
+    each = [f"step {k} at {' '.join(f'{name} {plainly(a, 9)}' for name, a in angles.items())}" for k, angles in steps.items()]
+    return Note("angles_rounded", f"Angles in the process file have more digits than a control shows: judged is {listed(each)}.")
+
+
+def side_guessed(*, loose: bool) -> Note:
+    """`loose`: there are faces in no solid, which alone can be turned."""
+    return Note("side_guessed", f"Which side is material is a guess{'; --flip machines the other side' if loose else ''}.")
+
+
+def all_faces_open() -> Note:
+    return Note("open_faces", "No face encloses material: only the surfaces are in the way, not what may lie behind them.")
+
+
+def crosses_itself(faces: Sequence[str], why: str, areas_mm2: float, option: str) -> Note:
+    """Faces that run through themselves, why, and the area that they have so."""
+    which, them = (f"{faces[0]} {why}", "it") if len(faces) == 1 else (f"Each of {listed(faces)} {why}", "them")
+    return Note(
+        "crosses_itself",
+        f"{which}, with {area(areas_mm2)}: STEP makes such faces larger than they were, and no verdict is about {them}. Give the "
+        f"shape in Python or as BREP, or leave {them} out: {option}.",
+    )
+
+
+def changed_by_step(face: str, here_mm2: float, there_mm2: float) -> Note:
+    """A face of a shape comes back from STEP with another area."""
+    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is missing"
+    return Note(
+        "changed_by_step",
+        f"Written as STEP and read again, {face} {back}: its surface of revolution crosses its axis. This plan is of the shape "
+        "as it was given; its STEP models, and any other STEP of it, show another part.",
+    )
+
+
+def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note:
+    """A body of the part that lies where another one lies; number 0: a shell."""
+    name, other = (f"body {n}" if n else "a shell" for n in (number, stays))
+    return Note(
+        "repeated_body",
+        f"{name.capitalize()} ({faces}) is {other} ({stays_faces}) again, in the same place, and is left out; to leave out "
+        f"the other one: --ignore {stays_faces}.",
+    )
+
+
+def repeated_faces(faces: str, stay: str, count_: int) -> Note:
+    are, others = ("is", "other one") if count_ == 1 else ("are", "others")
+    return Note(
+        "repeated_body",
+        f"{faces} {are} {stay} again, in the same place, and left out; to leave out the {others}: --ignore {stay}.",
+    )
+
+
+def setup_proposed(setups: Sequence[str], why: str) -> Note:
+    return Note("setup_proposed", f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {' and '.join(setups)}. {why}")
+
+
+def fixture(name: str, how: str, setup: str = "") -> Note:
+    """How a fixture was understood; in another setup than the first, with that one."""
+    return Note("fixture", f"{name}{f' in the setup {setup}' if setup else ''}: {how}.")
+
+
+def area_proved(cutter: str, *, whole: bool, doubtful: bool) -> Note:
+    """`whole`: the area of no face is unknown; `doubtful`: obstacles are missing."""
+    what = "all of the target surface" if whole else "all of the target surface whose area is known"
+    known = "as far as curvature between grid nodes" + (" and the obstacles are" if doubtful else " is") + " known"
+    return Note("area_proved", f"{cutter} serves {what}, {known}.")
+
+
+def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
+    """Cells for which no posture was found, that were not cut up, and for which the budget was spent."""
+    why = [f"no posture was found that serves the cells about {unserved} contacts, or finer ones"] if unserved > 0 else []
+    if dropped:
+        why.append(f"{dropped} cells were not cut up, for too little of the surface was to be gained")
+    if short:
+        why.append(f"the budget was spent with {short} cells open, so a larger --area-budget may serve more")
+    causes = "; ".join(why) or "some of it has no samples or no closed border"
+    return Note(
+        "area_left",
+        f"{cutter} reaches every judged sample, but not all of the target surface was shown to be served: {causes}. "
+        "Finer samples may help, too.",
+    )
+
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
 #: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
 _LONG = 1000.0
 _WRONG = "is its unit wrong? --unit gives the right one."
+_SHEETS = "stand", "construction sheets do", "them"
+#: Notes that are doubts, in the order in which these are listed.
+_DOUBTFUL: tuple[tuple[NoteCode, ...], ...] = (
+    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back", "changed_by_step")
+)  # fmt: skip
 
 
 def doubts(plan: Plan) -> list[str]:
-    """All doubts about a plan, for people; empty where there is none.
-
-    Parameters
-    ----------
-    plan : Plan
-        With its process, if it has one.
-
-    Returns
-    -------
-    list of str
-        Whole sentences.
-    """
-    each = (_unfinished, _coarser, _surfaces, _unit, _travel, _held, _bodies, _unheld, _side, _sheets, _tolerance)
-    return [named(plan, line) for doubt in each for line in doubt(plan)]
+    """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
+    noted = [*zip(plan.note_codes, plan.notes, strict=False)]
+    lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
+    for doubt in (_unit, _travel, _held, _unheld, _side):
+        lines += doubt(plan)
+    requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
+    if requested is not None and met > _RAISED * requested:
+        lines.append(
+            f"The tolerance had to be raised from {mm(requested)} to {mm(met)}: the triangles follow the surface no closer."
+        )
+    return [named(plan, line) for line in lines]
 
 
 def repeated_warnings(plan: Plan) -> set[str]:
@@ -40,43 +259,26 @@ def repeated_warnings(plan: Plan) -> set[str]:
     return {text for text in (plan.part.unit_doubt, plan.part.sheets_doubt) if text}
 
 
-def _unfinished(plan: Plan) -> Iterator[str]:
-    yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "run_unfinished")
-
-
-def _coarser(plan: Plan) -> Iterator[str]:
-    yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "coarser_than_requested")
-
-
-def _surfaces(plan: Plan) -> Iterator[str]:
-    """What is there twice, and what is not the surface that was made."""
-    noted = [*zip(plan.note_codes, plan.notes, strict=False)]
-    yield from (text for code, text in noted if code in ("repeated_body", "crosses_itself", "folds_back", "changed_by_step"))
-
-
 def _unit(plan: Plan) -> Iterator[str]:
     longest = max(plan.part.size_mm)
     widths = [2.0 * cutter.radius for cutter in plan.cutters]
+    for each in plan.part.unit_readings:
+        this, other = size(plan.part.size_mm), size(plan.part.size_mm, each.times)
+        choose = f": --unit {each.unit} takes the latter" if each.unit else ""
+        if each.cause == "disagree":
+            yield f"The file states two units ({each.stated}): {this} by its flag, judged so, {other} by its name{choose}."
+        elif each.cause == "scale":
+            yield f"The file states a model space scale of {each.stated}: {this} by it, judged so, {other} without it{choose}."
+        else:
+            yield f"The file's unit is not sure ({each.stated}): it is taken in {each.taken}; --unit gives another one."
     if plan.part.unit_readings:
-        yield from (_reading(plan, each) for each in plan.part.unit_readings)
-    elif plan.part.unit_doubt:
+        return
+    if plan.part.unit_doubt:
         yield f"The part is {mm(longest)} long: if that is wrong, --unit gives the right unit."
     elif longest < min(widths):
         yield f"The part is smaller than any cutter is wide: {_WRONG}"
     elif longest > _LONG * max(widths):
-        wide = f"{longest / max(widths):,.0f} times as long as the widest cutter is wide"
-        yield f"The part is {wide}: {_WRONG}"
-
-
-def _reading(plan: Plan, each: UnitEntry) -> str:
-    """A doubt about what the file says of its unit: sizes by both readings, and how to choose."""
-    this, other = size(plan.part.size_mm), size(plan.part.size_mm, each.times)
-    choose = f": --unit {each.unit} takes the latter" if each.unit else ""
-    if each.cause == "disagree":
-        return f"The file states two units ({each.stated}): {this} by its flag, judged so, {other} by its name{choose}."
-    if each.cause == "scale":
-        return f"The file states a model space scale of {each.stated}: {this} by it, judged so, {other} without it{choose}."
-    return f"The file's unit is not sure ({each.stated}): it is taken in {each.taken}; --unit gives another one."
+        yield f"The part is {longest / max(widths):,.0f} times as long as the widest cutter is wide: {_WRONG}"
 
 
 def _travel(plan: Plan) -> Iterator[str]:
@@ -112,18 +314,14 @@ def _held(plan: Plan) -> Iterator[str]:
     yield f"No fixture was given{where}: {which} {'partly ' if partly else ''}from below."
 
 
-def _bodies(plan: Plan) -> Iterator[str]:
-    """Bodies of the part that a vise or chuck does not hold."""
+def _unheld(plan: Plan) -> Iterator[str]:
+    """Bodies of the part that a vise or chuck does not hold, and tools of a library that do not fit their holders."""
     several = len({setup for fixture in plan.fixtures for setup in fixture.setups}) > 1
     for fixture in plan.fixtures:
         if fixture.unheld:
             kind, bodies = (fixture.clamping or fixture.name).partition(":")[0], "body" if len(fixture.unheld) == 1 else "bodies"
             where = f" in setup {fixture.setups[0] + 1}" if several else ""
             yield f"The jaws of the {kind} do not hold the {bodies} of {listed(fixture.unheld, _FACES)}{where}."
-
-
-def _unheld(plan: Plan) -> Iterator[str]:
-    """Tools of a library that do not fit their holders."""
     tools = [(tool.name or tool.place, tool.why) for library in plan.libraries for tool in library.unused if tool.unheld]
     if tools:
         more = f" ({len(tools) - 1} more)" if len(tools) > 1 else ""
@@ -131,6 +329,7 @@ def _unheld(plan: Plan) -> Iterator[str]:
 
 
 def _side(plan: Plan) -> Iterator[str]:
+    """Faces whose side of the material is a guess, and construction sheets."""
     part = plan.part
     # The option turns what stands in no solid.
     turned = [name for name in part.guessed_faces if not part.solids or name in part.loose_faces]
@@ -138,25 +337,13 @@ def _side(plan: Plan) -> Iterator[str]:
         yield "An open shell: which side is material is a guess; --flip takes the other one."
     elif turned:
         yield f"Which side of {listed(turned, _FACES)} is material is a guess; --flip takes the other one."
-    solid = [name for name in part.guessed_faces if name not in turned]
-    if solid:
+    if solid := [name for name in part.guessed_faces if name not in turned]:
         faces = listed(solid, _FACES)
         yield f"Which side of {faces} is material is a guess: a solid that is open or crosses itself does not tell it."
-
-
-def _sheets(plan: Plan) -> Iterator[str]:
-    faces = plan.part.loose_faces
-    if faces:
-        verb = "stands" if len(faces) == 1 else "stand"
-        what, them = ("a construction sheet does", "it") if len(faces) == 1 else ("construction sheets do", "them")
-        option = f"--ignore {ranges(int(face[1:]) for face in faces)}"
-        yield f"{listed(faces, _FACES)} {verb} in no solid, as {what}: {option} leaves {them} out."
-
-
-def _tolerance(plan: Plan) -> Iterator[str]:
-    requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
-    if requested is not None and met > _RAISED * requested:
-        yield f"The tolerance had to be raised from {mm(requested)} to {mm(met)}: the triangles follow the surface no closer."
+    if loose := part.loose_faces:
+        verb, what, them = ("stands", "a construction sheet does", "it") if len(loose) == 1 else _SHEETS
+        option = f"--ignore {ranges(int(face[1:]) for face in loose)}"
+        yield f"{listed(loose, _FACES)} {verb} in no solid, as {what}: {option} leaves {them} out."
 
 
 def _runs(numbers: Sequence[int]) -> str:
@@ -191,24 +378,17 @@ def notes(plan: Plan) -> Iterator[Line]:
         yield Line(named(plan, text), "Note:", minor=code in _STATED_ABOVE)
 
 
-def warnings(plan: Plan) -> Iterator[Line]:
-    """Warn of the unusual properties of the part."""
-    for text in plan.part.warnings:
-        yield Line(text if text.endswith(".") else f"{text}.", "Warning:")
-
-
-def unjudged(plan: Plan) -> Iterator[Line]:
-    """Faces that could not be judged, or not all of them."""
-    for f in plan.faces:
-        if f.target and f.unjudged:
-            yield Line(f"{' '.join(filter(None, (f.id, f.name)))} ({f.unjudged}).", "Not judged:")
-
-
-def missing(plan: Plan) -> Iterator[Line]:
-    """Obstacles that are missing, so that no cutter is feasible beyond doubt."""
-    for m in plan.missing:
-        which = " ".join(filter(None, (m.face or m.entity, m.name))) or "a face of the file"
-        yield Line(f"{which} ({m.why}; {_STAND_IN[m.stand_in]}).", "Missing obstacle:")
+def unsure(plan: Plan) -> dict[str, tuple[Line, ...]]:
+    """Causes that make verdicts unsure, by their kind in the plural: while an obstacle is missing, no cutter is feasible."""
+    missing = [(" ".join(filter(None, (m.face or m.entity, m.name))) or "a face of the file", m) for m in plan.missing]
+    unjudged = [(" ".join(filter(None, (f.id, f.name))), f.unjudged) for f in plan.faces if f.target and f.unjudged]
+    return {
+        "warnings": tuple(Line(f"{text.removesuffix('.')}.", "Warning:") for text in plan.part.warnings),
+        "faces that are not judged": tuple(Line(f"{which} ({why}).", "Not judged:") for which, why in unjudged),
+        "missing obstacles": tuple(
+            Line(f"{which} ({m.why}; {_STAND_IN[m.stand_in]}).", "Missing obstacle:") for which, m in missing
+        ),
+    }
 
 
 def side(plan: Plan) -> Line:
@@ -226,23 +406,18 @@ def side(plan: Plan) -> Line:
 def libraries(plan: Plan) -> Iterator[Line]:
     """Say how many tools were read from tool libraries, and which are not used, reason by reason."""
     for library in plan.libraries:
-        yield from library_lines(library)
-
-
-def library_lines(library: LibraryEntry) -> Iterator[Line]:
-    """Say how many tools were read from a tool library, and which are not used."""
-    unused = len(library.unused)
-    more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused else ""
-    of = f"{library.file} ({library.format}) gives {count(library.cutters, 'cutter')} of {count(library.tools, 'tool')}"
-    yield Line(f"{of}{more}.")
-    for note in library.notes:
-        yield Line(f"  {note}", minor=True)
-    places: dict[str, list[str]] = {}
-    for tool in library.unused:
-        places.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
-    for why, each in places.items():
-        omitted = f" and {len(each) - _TOOLS} more" if len(each) > _TOOLS else ""
-        yield Line(f"  Not used: {', '.join(each[:_TOOLS])}{omitted}: {why}.", minor=True)
+        unused = len(library.unused)
+        more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused else ""
+        of = f"{library.file} ({library.format}) gives {count(library.cutters, 'cutter')} of {count(library.tools, 'tool')}"
+        yield Line(f"{of}{more}.")
+        for remark in library.notes:
+            yield Line(f"  {remark}", minor=True)
+        places: dict[str, list[str]] = {}
+        for tool in library.unused:
+            places.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
+        for why, each in places.items():
+            omitted = f" and {len(each) - _TOOLS} more" if len(each) > _TOOLS else ""
+            yield Line(f"  Not used: {', '.join(each[:_TOOLS])}{omitted}: {why}.", minor=True)
 
 
 def machine(plan: Plan) -> str:

@@ -4,19 +4,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import count, reporting, sentence
-from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.domain.figures import count, sentence
+from plan_cutters.domain.lengths import reporting
+from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText, nearest
 from plan_cutters.plan_file.words import notes
-from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
-from plan_cutters.plan_file.words.headline import Headline, could_not, headline
-from plan_cutters.plan_file.words.names import Line, named, short_names
-from plan_cutters.plan_file.words.next_steps import together
-from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import in_short, one_more, operations
-from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
-from plan_cutters.plan_file.words.scope import (
+from plan_cutters.plan_file.words.headline import (
+    Headline,
+    could_not,
+    headline,
     in_summary,
     inside,
     inside_radii,
@@ -28,28 +25,30 @@ from plan_cutters.plan_file.words.scope import (
     undecided,
     unseen,
 )
+from plan_cutters.plan_file.words.names import Line, named, short_names
+from plan_cutters.plan_file.words.notes import repeated_warnings
+from plan_cutters.plan_file.words.process import (
+    ProcessStory,
+    in_short,
+    one_more,
+    operations,
+    process_story,
+    shortened,
+    with_process_words,
+    wrapped,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Story:
     """A story puts a plan into words, in the order in which people read them.
 
-    Attributes
-    ----------
-    names : dict
-        Id of a cutter -> its name in the texts.
-    taken, shown : str
-        Ids of the cutter that the headline says to take, if any, and of the one that the models show.
-    inside, scope, between : tuple of str
-        Surface that does not belong to the finished part, which comes first; what is undecided, which faces were not judged or
-        not seen, and how much the cutters reach together; how much is known between the samples.
-    process : ProcessStory, optional
-        Its steps, what is left and what to do next; None where an older file has none.
-    proposal, in_short : tuple of str
-        Setups that were proposed; what the plan of operations leaves, and how many orientations it needs.
-    setups, operations, answers, notes : tuple of Line
-    doubts : dict
-        Causes that make verdicts unsure, by their kind in the plural.
+    `names` are those of cutters in the texts, by id; `taken` and `shown` the ids of the cutter that the headline says to take,
+    if any, and of the one that the models show. `inside` is surface that does not belong to the finished part, which comes
+    first; `scope` what is undecided, which faces were not judged or not seen, and how much the cutters reach together;
+    `between` how much is known between the samples; `in_short` what the plan of operations leaves, and how many orientations it
+    needs; `doubts` causes that make verdicts unsure, by their kind in the plural. `process` is None where an older file has
+    none.
     """
 
     names: Mapping[str, str]
@@ -103,11 +102,7 @@ def story_of(plan: Plan) -> Story:
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
         operations=tuple(operations(plan)),
         answers=tuple(answers(plan)),
-        doubts={
-            "warnings": tuple(notes.warnings(plan)),
-            "faces that are not judged": tuple(notes.unjudged(plan)),
-            "missing obstacles": tuple(notes.missing(plan)),
-        },
+        doubts=notes.unsure(plan),
         notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
     )
 
@@ -150,12 +145,6 @@ def chip(plan: Plan, story: Story) -> Chip:
     return CHIPS[good]
 
 
-def cutter_chip(plan: Plan, cutter: CutterEntry) -> Chip:
-    """The verdict on a cutter. As of the part: feasible without more words only where all was judged and seen."""
-    unseen = plan.effective.sampled_by == "default" and not cutter.seen
-    return _WHERE_JUDGED if cutter.feasible and (unseen or could_not(plan)) else CHIPS[cutter.feasible]
-
-
 #: Most lines: with the headline and the path of the page they are 25 in a terminal.
 MOST = 22
 #: Doubts, and cutters, that are named.
@@ -177,12 +166,16 @@ def with_text(plan: Plan) -> Plan:
 def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines."""
     story = story_of(plan)
+    # As of the part: feasible without more words only where all was judged and seen.
+    default, judged = plan.effective.sampled_by == "default", not could_not(plan)
+    unsure = {c.id: bool(c.feasible) and not (judged and (c.seen or not default)) for c in plan.cutters}
+    chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
         headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],
         lines=process_lines(plan, story, MOST),
         cutters={each.id: each.sentence for each in story.cutters},
-        verdicts={each.id: _verdict(plan, each) for each in plan.cutters},
+        verdicts={name: VerdictText(tone=TONES[each], word=each.word) for name, each in chips.items()},
         shares={each.id: each.shares for each in story.cutters},
     )
 
@@ -192,6 +185,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
     process = story.process
     inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
+    unshown = len(story.notes) + len(story.setups) + len(story.answers)
     blocks: list[list[str]] = [
         wrapped(plan.process.doubts if plan.process else [], 2),
         [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
@@ -201,16 +195,14 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],
         wrapped(list(process.next), 3) if process else [],
         wrapped(list(process.remaining[process.much :]), _LEFT) if process else [],
-        wrapped(_unsure(plan, story), 2),
+        wrapped([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),
         wrapped(_alone(story), _ALONE),
         wrapped([story.headline.why] if story.headline.why else [], 2),
         wrapped(list(story.between[:1]), 2),
-        _remaining(plan, story),
+        [f"{count(unshown, 'note')}: -v, or the review page."] if unshown else [],
     ]
-    lines: list[str] = []
-    for block in blocks:
-        lines += block
+    lines = [line for block in blocks for line in block]
     return lines if len(lines) <= most else [*lines[: most - 1], "More: -v, or the review page."]
 
 
@@ -220,34 +212,18 @@ def _doubts(plan: Plan, story: Story) -> list[str]:
     return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines if line.text not in above]
 
 
-def _unsure(plan: Plan, story: Story) -> list[str]:
-    """What is undecided, and not seen between the samples."""
-    return [*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])]
-
-
 def _alone(story: Story) -> list[str]:
     """How much each of several cutters reaches by itself, and why no more."""
     if len(story.cutters) < 2:
         return []
-    each = [f"{c.name} {_alone_reaches(c)}" for c in story.cutters]
+    why = {c.id: f" ({c.reason})" if c.reason else "" for c in story.cutters}
+    each = [f"{c.name} {'all' if c.feasible else f'{c.reached}{why[c.id]}'}" for c in story.cutters]
     for shown in range(min(_CUTTERS, len(each)), 0, -1):
         more = f" and {len(each) - shown} more" if len(each) > shown else ""
         text = f"Each alone reaches: {', '.join(each[:shown])}{more}."
         if len(wrapped([text], len(text))) <= _ALONE:
             break
     return [text]
-
-
-def _alone_reaches(cutter: CutterStory) -> str:
-    if cutter.feasible:
-        return "all"
-    return f"{cutter.reached} ({cutter.reason})" if cutter.reason else cutter.reached
-
-
-def _remaining(plan: Plan, story: Story) -> list[str]:
-    """How many notes there are that are not shown."""
-    number = len(story.notes) + len(story.setups) + len(story.answers)
-    return [f"{count(number, 'note')}: -v, or the review page."] if number else []
 
 
 def of_the_plan(story: Story) -> list[str]:
@@ -264,8 +240,3 @@ def further(story: Story) -> list[str]:
     operations = (line for line in story.operations if line.text not in story.in_short)
     lines = (*story.setups, *operations, *story.answers, *story.notes)
     return [f"{line.mark} {line.text}{line.typed}".lstrip() for line in lines if not line.minor]
-
-
-def _verdict(plan: Plan, cutter: CutterEntry) -> VerdictText:
-    chip = cutter_chip(plan, cutter)
-    return VerdictText(tone=TONES[chip], word=chip.word)

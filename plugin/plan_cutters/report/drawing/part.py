@@ -3,7 +3,6 @@
 Drawn without a screen and without OpenGL: triangles with a depth at each pixel (`kernels.linear.raster`), all else by matplotlib.
 """
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,7 +17,7 @@ from plan_cutters.domain.figures import mm
 from plan_cutters.domain.posture import unit
 from plan_cutters.plan_file.reasons import LABELS, label, rgb
 from plan_cutters.plan_file.shares import VERDICTS, part_of
-from plan_cutters.plan_file.words.face import rendered
+from plan_cutters.plan_file.words.cutters import rendered
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.posture_map import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.models import shown_pieces
@@ -70,16 +69,9 @@ def fitted(frame: Floats, points: Floats, width: int, height: int) -> tuple[floa
 
 
 def view(frame: Floats, body: Body, scale: float, middle: Floats, width: int, height: int, finer: int = FINER) -> View:
-    """Draw a body from one side; the image has finer pixels, `finer` along each side of one.
+    """Draw a body from one side, in a `frame` (3, 3), with scale and middle as `fitted` gives them.
 
-    Parameters
-    ----------
-    frame : (3, 3) float
-    body : Body
-    scale, middle
-        As `fitted` gives them.
-    width, height : int
-        Of the finished image, pixels.
+    The image, `width` by `height` pixels when finished, has finer pixels, `finer` along each side of one.
     """
     from plan_cutters.kernels.linear.raster import draw
 
@@ -151,17 +143,29 @@ def write_png(result: Judged, split: Any, path: Path) -> None:
     mixed = LABELS.index("mixed")
     verdict = np.array([piece.label if piece.label >= 0 else mixed for piece, _ in meshes], np.int32)
     face = np.array([piece.face for piece, _ in meshes], np.int32)
-    own = [result.part.faces[piece.face - 1].colour for piece, _ in meshes]
-    pieces = _Pieces(verdict, face, _colours(verdict, own))
+    colours = np.array([_PALE if LABELS[code] in _PLAIN else rgb(LABELS[code]) for code in verdict.tolist()])
+    for k, (piece, _) in enumerate(meshes):
+        # Faces that are no target keep a pale shade of their own colour.
+        own = result.part.faces[piece.face - 1].colour
+        if own is not None and LABELS[verdict[k]] in _PLAIN:
+            colours[k] = 0.75 * _PALE + 0.25 * np.array(own)
+    pieces = _Pieces(verdict, face, colours)
     part = Body(
         np.concatenate([mesh.point[mesh.triangle] for _, mesh in meshes]),
         np.concatenate([mesh.normal[mesh.triangle] for _, mesh in meshes]),
         np.repeat(np.arange(len(meshes), dtype=np.int32), [len(mesh.triangle) for _, mesh in meshes]),
     )
-    fixtures = _fixtures(result)
+    # All fixtures as one body, or none. Glass has no shade: they need no normals.
+    shown = [each.shown for each in result.conditions.surroundings.fixtures if len(each.shown)]
+    glass = np.concatenate([np.empty((0, 3, 3)), *shown])
+    fixtures = [Body(glass, np.zeros_like(glass), np.zeros(len(glass), np.int32))] if shown else []
     up = unit(result.scene.setup, "setup axis")
     sheet = figure(*_SHEET)
-    near = _near(part, fixtures)
+    # What must fill the views: the part, and its fixtures as far as half its size around it.
+    points = part.corner.reshape(-1, 3)
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = 0.5 * float(np.linalg.norm(high - low))
+    near = np.concatenate([points, np.clip(glass.reshape(-1, 3), low - half, high + half)])
     for place, (words, viewer) in zip(_PLACES, _viewers(part, pieces, up), strict=True):
         frame = frame_towards(viewer, up)
         if viewer is up and (extent := np.ptp(near @ frame[:2].T, axis=0))[1] > extent[0]:
@@ -174,80 +178,43 @@ def write_png(result: Judged, split: Any, path: Path) -> None:
     save(sheet, path)
 
 
-def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Floats:
-    """Of the verdicts; faces that are no target keep a pale shade of their own colour."""
-    colours = np.array([_PALE if LABELS[code] in _PLAIN else rgb(LABELS[code]) for code in verdict.tolist()])
-    for k, colour in enumerate(own):
-        if colour is not None and LABELS[verdict[k]] in _PLAIN:
-            colours[k] = 0.75 * _PALE + 0.25 * np.array(colour)
-    return colours
-
-
-def _fixtures(result: Judged) -> list[Body]:
-    """All fixtures as one body, or none. Glass has no shade: they need no normals."""
-    shown = [each.shown for each in result.conditions.surroundings.fixtures if len(each.shown)]
-    corner = np.concatenate([np.empty((0, 3, 3)), *shown])
-    return [Body(corner, np.zeros_like(corner), np.zeros(len(corner), np.int32))] if shown else []
-
-
-def _near(part: Body, fixtures: list[Body]) -> Floats:
-    """Give the points (n, 3) that must fill the views: the part, and its fixtures as far as half its size around it."""
-    points = part.corner.reshape(-1, 3)
-    low, high = points.min(axis=0), points.max(axis=0)
-    half = 0.5 * float(np.linalg.norm(high - low))
-    others = [np.clip(body.corner.reshape(-1, 3), low - half, high + half) for body in fixtures]
-    return np.concatenate([points, *others])
-
-
 def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]]:
     """Four directions to look from, with their words: from above along the setup axis, from two opposite corners, and of many the
     one that shows the most of what is not reached, or from below if all is."""
-    right, back = _across(up)
+    # Two unit directions across the setup axis, as near to X and Y as can be.
+    axis = np.eye(3)[0] if abs(up[0]) < 0.9 else np.eye(3)[1]
+    right = axis - (axis @ up) * up
+    right = right / np.linalg.norm(right)
+    back = np.cross(up, right)
     first, second = right - back + 0.9 * up, -right + back + 0.9 * up
     corners = [x * right + y * back + z * up for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)]
     others = [each / np.linalg.norm(each) for each in corners if np.linalg.norm(each) > 0.5]
     taken = [each / np.linalg.norm(each) for each in (up, right - back + up, -right + back + up)]
     others = [each for each in others if max(float(each @ t) for t in taken) < 0.99]
-    seen = [_not_reached_seen(part, pieces, each, up) for each in others]
-    # The views that there are already show as much of the rest as can be seen: then look from below.
+    not_reached = [LABELS.index(word) for word in ("undecided", "inaccessible")]
+
+    def seen(viewer: Floats) -> float:
+        """How much of what is not reached a small view shows, mm2 on its sheet."""
+        frame = frame_towards(viewer, up)
+        scale, middle = fitted(frame, part.corner.reshape(-1, 3), *_SMALL)
+        small = view(frame, part, scale, middle, *_SMALL, finer=1).seen
+        return round(float(np.isin(pieces.verdict[small[small >= 0]], not_reached).sum()) / scale**2, 6)
+
+    areas = [seen(each) for each in others] if np.isin(pieces.verdict, not_reached).any() else [0.0]
+    # Where the views that there are already show as much of the rest as can be seen, the last one looks from below.
     front, words = (
-        (others[int(np.argmax(seen))], "where most of what is not reached is seen")
-        if max(seen) > 0.0
+        (others[int(np.argmax(areas))], "where most of what is not reached is seen")
+        if max(areas) > 0.0
         else (right - back - 0.9 * up, "from below, from a corner")
     )
     return [("along the setup axis", up), ("from a corner", first), ("from the opposite corner", second), (words, front)]
 
 
-def _not_reached_seen(part: Body, pieces: _Pieces, viewer: Floats, up: Floats) -> float:
-    """How much of what is not reached a small view shows, mm2 on its sheet."""
-    not_reached = _codes(("undecided", "inaccessible"))
-    if not np.isin(pieces.verdict, not_reached).any():
-        return 0.0
-    frame = frame_towards(viewer, up)
-    scale, middle = fitted(frame, part.corner.reshape(-1, 3), *_SMALL)
-    result = view(frame, part, scale, middle, *_SMALL, finer=1)
-    shown = pieces.verdict[result.seen[result.seen >= 0]]
-    return round(float(np.isin(shown, not_reached).sum()) / scale**2, 6)
-
-
-def _across(up: Floats) -> tuple[Floats, Floats]:
-    """Two unit directions across the setup axis, as near to X and Y as can be."""
-    axis = np.eye(3)[0] if abs(up[0]) < 0.9 else np.eye(3)[1]
-    right = axis - (axis @ up) * up
-    right = right / np.linalg.norm(right)
-    return right, np.cross(up, right)
-
-
-def _codes(words: Sequence[str]) -> list[int]:
-    return [LABELS.index(word) for word in words]
-
-
 def _put(axes: Any, views: list[View], pieces: _Pieces) -> None:
-    """The part, and over it patterns and fixtures."""
     part = views[0]
     hit, piece = part.seen >= 0, np.maximum(part.seen, 0)
     verdict = np.where(hit, pieces.verdict[piece], -1)
-    shade = np.where(np.isin(verdict, _codes(_PLAIN)), 1.0 - _SOFT * (1.0 - part.shade), part.shade)
+    shade = np.where(np.isin(verdict, [LABELS.index(word) for word in _PLAIN]), 1.0 - _SOFT * (1.0 - part.shade), part.shade)
     image = np.where(hit[:, :, None], pieces.colour[piece] * shade[:, :, None], _BACKGROUND)
     # Lines between faces, between verdicts, and around the part.
     image[borders(np.where(hit, pieces.face[piece], -1) * len(LABELS) + verdict)] = _LINE
@@ -294,7 +261,6 @@ def _window(sheet: Any, place: tuple[float, float], frame: Floats, scale: float,
 
 
 def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
-    """Title and legend."""
     plan = result.plan
     entry = next(c for c in plan.cutters if c.id == result.shown)
     shares = entry.area_share.model_dump()

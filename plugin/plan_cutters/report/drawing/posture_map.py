@@ -137,11 +137,6 @@ _WIDTH, _SIDE, _PLOT = 9.0, 0.3, (0.675, 6.3, 3.45)
 _TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
-def _look(code: str) -> Look:
-    look = REASONS.get(code, NO_CONTACT)
-    return Look(look.name, look.colour, look.hatch)
-
-
 #: In this order each counts for what is forbidden: where the cutter does not touch, nothing else is drawn.
 _CAUSES = (NO_CONTACT.code, *CAUSES)
 #: All that is drawn, in the legend's order. "Other" is neither free nor undecided, and nothing alone forbids it: within the
@@ -149,7 +144,7 @@ _CAUSES = (NO_CONTACT.code, *CAUSES)
 _LOOKS = {
     "free": Look("free", PALETTE["interference_free"]),
     "undecided": Look("undecided", PALETTE["undecided"], ".."),
-    **{code: _look(code) for code in _CAUSES},
+    **{each.code: Look(each.name, each.colour, each.hatch) for each in (REASONS.get(code, NO_CONTACT) for code in _CAUSES)},
     "other": Look("not free", "#555555"),
 }
 
@@ -157,13 +152,8 @@ _LOOKS = {
 def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Floats]]:
     """Find the tilts that each cause forbids in a posture map: intervals (k, 2) at each rotation, rad.
 
-    No tilt is counted twice: it belongs to the first cause that forbids it.
-
-    Parameters
-    ----------
-    posture_map : PostureMap
-    low, high : float
-        The tilts that were requested, rad.
+    `low` and `high` are the tilts that were requested, rad. No tilt is counted twice: it belongs to the first cause that
+    forbids it.
     """
     shares: dict[str, list[Floats]] = {code: [] for code in (*_CAUSES, "undecided", "other")}
     whole = np.array([[low, high]])
@@ -171,7 +161,11 @@ def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Float
         remaining = without(without(whole, posture_map.free[i]), posture_map.undecided[i])
         shares["undecided"].append(posture_map.undecided[i])
         for cause in _CAUSES:
-            mine = _gouged(posture_map, i, low, high) if cause == "local_gouge" else getattr(posture_map, cause)[i]
+            if cause == "local_gouge":
+                least, most = posture_map.local_gouge[i], posture_map.local_gouge_most[i]
+                mine = whole if np.isnan(least) else complement(np.array([[least, most]]), low, high)
+            else:
+                mine = getattr(posture_map, cause)[i]
             rest = without(remaining, mine)
             shares[cause].append(without(remaining, rest))
             remaining = rest
@@ -179,29 +173,11 @@ def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Float
     return shares
 
 
-def _gouged(posture_map: Any, i: int, low: float, high: float) -> Floats:
-    """Tilts (k, 2) that local gouging alone forbids at a rotation."""
-    least, most = posture_map.local_gouge[i], posture_map.local_gouge_most[i]
-    if np.isnan(least):
-        return np.array([[low, high]])
-    return complement(np.array([[least, most]]), low, high)
-
-
 def draw_map(posture_map: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:
-    """Draw a posture map, once for each path: PNG or SVG by its ending.
+    """Draw a posture map, once for each path: PNG or SVG by its ending. The same map gives the same bytes.
 
-    Parameters
-    ----------
-    posture_map : PostureMap
-        At rotations that ascend evenly.
-    tilt : (float, float)
-        The tilts that were requested, rad.
-    title : str
-    notes : sequence of str
-        Lines beneath the picture.
-    paths : sequence of Path
-
-    The same map gives the same bytes. Each rotation that was searched is a column; nothing is known between.
+    Its rotations ascend evenly; each that was searched is a column, and nothing is known between. `tilt`: what was requested,
+    rad; `notes` are lines beneath the picture.
     """
     from matplotlib.collections import PolyCollection
 

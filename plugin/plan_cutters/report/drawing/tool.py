@@ -76,10 +76,7 @@ def _mm(value: float) -> str:
 class Sheet:
     """A sheet collects a drawing in layers: fills and lines at the bottom, texts over them.
 
-    Parameters
-    ----------
-    title, description : str
-        For readers that see no picture, and of all there is.
+    Title and description are for readers that see no picture, and of all there is.
     """
 
     def __init__(self, title: str, description: str) -> None:
@@ -88,15 +85,12 @@ class Sheet:
         self.root = ET.Element(
             "svg", {"xmlns": "http://www.w3.org/2000/svg", "role": "img", "aria-labelledby": f"{self.key}-title {self.key}-desc"}
         )
-        self._add(self.root, "title", {"id": f"{self.key}-title"}).text = title
-        self._add(self.root, "desc", {"id": f"{self.key}-desc"}).text = description
-        self._defs = self._add(self.root, "defs")
-        self._lines = self._add(self.root, "g", {"fill": "none"})
-        self._texts = self._add(self.root, "g", {"font-family": _FAMILY, "fill": "#000"})
+        ET.SubElement(self.root, "title", {"id": f"{self.key}-title"}).text = title
+        ET.SubElement(self.root, "desc", {"id": f"{self.key}-desc"}).text = description
+        self._defs = ET.SubElement(self.root, "defs")
+        self._lines = ET.SubElement(self.root, "g", {"fill": "none"})
+        self._texts = ET.SubElement(self.root, "g", {"font-family": _FAMILY, "fill": "#000"})
         self._clip: str | None = None
-
-    def _add(self, to: ET.Element, tag: str, attributes: dict[str, str] | None = None) -> ET.Element:
-        return ET.SubElement(to, tag, attributes or {})
 
     def finished(self, width: float, height: float, **data: str) -> str:
         """The sheet as text, of a size, framed."""
@@ -115,24 +109,24 @@ class Sheet:
         self._clip = None
         if width:
             self._clip = f"{self.key}-window"
-            within = self._add(self._defs, "clipPath", {"id": self._clip})
-            self._add(within, "rect", {"x": _mm(x), "y": _mm(y), "width": _mm(width), "height": _mm(height)})
+            within = ET.SubElement(self._defs, "clipPath", {"id": self._clip})
+            ET.SubElement(within, "rect", {"x": _mm(x), "y": _mm(y), "width": _mm(width), "height": _mm(height)})
 
     def fill(self, path: str, name: str, kind: str) -> None:
         """A closed path in the fill of a part; `kind` is its class."""
         ground, colour, angle, gap, stroke = FILLS[name]
         id_ = f"{self.key}-{name}"
         if self._defs.find(f"pattern[@id='{id_}']") is None:
-            pattern = self._add(self._defs, "pattern", {"id": id_, "width": _mm(gap), "height": _mm(gap), "patternUnits":
+            pattern = ET.SubElement(self._defs, "pattern", {"id": id_, "width": _mm(gap), "height": _mm(gap), "patternUnits":
                                 "userSpaceOnUse", "patternTransform": f"rotate({angle:g})"})  # fmt: skip
-            self._add(pattern, "rect", {"width": _mm(gap), "height": _mm(gap), "fill": ground})
+            ET.SubElement(pattern, "rect", {"width": _mm(gap), "height": _mm(gap), "fill": ground})
             if stroke:
                 line = {"d": f"M0 {_mm(0.5 * gap)}h{_mm(stroke)}", "stroke": colour, "stroke-width": "0.25"}
-                self._add(pattern, "path", line)
+                ET.SubElement(pattern, "path", line)
         self.path(path, "edge", fill=f"url(#{id_})", kind=kind)
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:
-        element = self._add(self._lines, "path", {"d": path, **_PENS[pen]})
+        element = ET.SubElement(self._lines, "path", {"d": path, **_PENS[pen]})
         element.attrib |= {"class": kind} if kind else {}
         element.attrib |= {"fill": fill} if fill else {}
         element.attrib |= {"clip-path": f"url(#{self._clip})"} if self._clip else {}
@@ -142,7 +136,7 @@ class Sheet:
         self.path("M" + "L".join(at(point) for point in points), pen)
 
     def circle(self, centre: Point, radius: float, pen: str, *, fill: str = "none") -> None:
-        self._add(
+        ET.SubElement(
             self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": _mm(radius), "fill": fill, **_PENS[pen]}
         )
 
@@ -155,7 +149,7 @@ class Sheet:
             attributes["font-weight"] = "bold"
         if upright:
             attributes["transform"] = f"rotate(-90 {_mm(x)} {_mm(y)})"
-        self._add(self._texts, "text", attributes).text = words
+        ET.SubElement(self._texts, "text", attributes).text = words
 
     def arrow(self, tip: Point, tail: Point) -> None:
         """A filled arrow head whose tip points away from `tail`."""
@@ -195,9 +189,13 @@ class Note(NamedTuple):
     at: Point
     lines: list[str]
 
+    @property
+    def height(self) -> float:
+        return LINE * len(self.lines) + 0.8
+
 
 class Span(NamedTuple):
-    """A length along the axis, between two heights."""
+    """A length along the axis, between two heights, and its number."""
 
     low: float
     high: float
@@ -207,10 +205,6 @@ class Span(NamedTuple):
     def number(self) -> str:
         return length(self.high - self.low)
 
-    @property
-    def words(self) -> str:
-        return f"{self.name} {self.number}"
-
 
 def across(radius: float, upper: float | None = None) -> str:
     words = f"Ø{length(2 * radius)}"
@@ -218,29 +212,14 @@ def across(radius: float, upper: float | None = None) -> str:
 
 
 def notes_of(cutter: Cutter, line: Outline) -> list[Note]:
-    """Write a note on each part and segment, from the tip upwards."""
-    flutes = max((s for s in line.of("flutes") if s.end[1] > s.start[1]), key=lambda s: s.end[1] - s.start[1])
-    notes = [Note(flutes.at(0.5), _cutting(cutter))]
-    holder = 0
-    for part, low, stage in stages(cutter):
-        holder += part == "holder"
-        which = f"holder {holder}" if part == "holder" and cutter.holder and len(cutter.holder.stages) > 1 else part
-        middle = 0.5 * (stage.radius + stage.upper_radius), low + 0.5 * stage.length
-        words = f"{which} {across(stage.radius, stage.upper_radius)} × {length(stage.length)}"
-        notes.append(Note(middle, [words]))
-    return notes
-
-
-def _cutting(cutter: Cutter) -> list[str]:
-    """The dimensions of the cutting part."""
+    """Write a note on each part and segment, from the tip upwards: first the dimensions of the cutting part."""
     corner = cutter.corner_radius
     lines = [f"flutes {across(cutter.radius)} × {length(flute_length(cutter))}"]
     if cutter.shape == "lollipop":
         lines.append(f"ball R{length(corner)}")
     elif cutter.shape == "barrel":
-        lines.append(f"flank R{length(cutter.arc_radius)}")
-        lines.append(f"widest {length(cutter.arc_height)} over the tip")
-        lines.append(f"tip R{length(corner)}" if corner else f"flat tip {across(flank(cutter, 0.0))}")
+        tip = f"tip R{length(corner)}" if corner else f"flat tip {across(flank(cutter, 0.0))}"
+        lines += [f"flank R{length(cutter.arc_radius)}", f"widest {length(cutter.arc_height)} over the tip", tip]
     elif cutter.shape == "lens":
         lines += [f"bottom R{length(cutter.arc_radius)}", f"corner R{length(corner)}"]
     elif cutter.shape == "form":
@@ -256,7 +235,15 @@ def _cutting(cutter: Cutter) -> list[str]:
             lines.append(f"{'taper' if cutter.taper > 0 else 'undercut'} {angle}° (half angle)")
     if abs(top_radius(cutter) - cutter.radius) > SAME and cutter.shape in ("end", "barrel"):
         lines.append(f"{across(top_radius(cutter))} where the flutes end")
-    return lines
+    flutes = max((s for s in line.of("flutes") if s.end[1] > s.start[1]), key=lambda s: s.end[1] - s.start[1])
+    notes, holder = [Note(flutes.at(0.5), lines)], 0
+    for part, low, stage in stages(cutter):
+        holder += part == "holder"
+        which = f"holder {holder}" if part == "holder" and cutter.holder and len(cutter.holder.stages) > 1 else part
+        middle = 0.5 * (stage.radius + stage.upper_radius), low + 0.5 * stage.length
+        words = f"{which} {across(stage.radius, stage.upper_radius)} × {length(stage.length)}"
+        notes.append(Note(middle, [words]))
+    return notes
 
 
 def spans_of(cutter: Cutter) -> list[Span]:
@@ -273,22 +260,18 @@ def spans_of(cutter: Cutter) -> list[Span]:
 
 def facts_of(cutter: Cutter) -> list[str]:
     """List the facts of the whole assembly: its holder, allowance and clearance."""
-    holder = "no holder"
-    if cutter.holder:
-        holder = f"holder: {printable(cutter.holder.name)}" if cutter.holder.name else "a holder without a name"
-    facts = [holder]
-    if cutter.allowance:
-        facts.append(f"allowance {length(cutter.allowance)} on the surface, not shown")
-    if cutter.clearance:
-        facts.append(f"clearance {length(cutter.clearance)} of neck, shank and holder, not shown")
-    return facts
+    name = cutter.holder.name if cutter.holder else ""
+    facts = [f"holder: {printable(name)}" if name else "a holder without a name" if cutter.holder else "no holder"]
+    facts += [f"allowance {length(cutter.allowance)} on the surface, not shown"] if cutter.allowance else []
+    clearance = [f"clearance {length(cutter.clearance)} of neck, shank and holder, not shown"] if cutter.clearance else []
+    return facts + clearance
 
 
 def description(cutter: Cutter, notes: list[Note], spans: list[Span], facts: list[str]) -> str:
     """All of it in words, for whoever sees no picture; nothing is left out here."""
     form = "; ".join(f"{across(r)} at height {length(h)}" for r, h in cutter.outline)
     lines = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
-    return "; ".join([*lines, *(span.words for span in spans), *facts, *([form] if form else [])]) + "."
+    return "; ".join([*lines, *(f"{span.name} {span.number}" for span in spans), *facts, *([form] if form else [])]) + "."
 
 
 #: A4 upright, its margin, and what stands around the view: room for arrows below the tip and for the axis above the end.
@@ -317,26 +300,13 @@ class _View(NamedTuple):
 
 
 def draw(cutter: Cutter, *, name: str = "") -> str:
-    """A tool assembly as an SVG drawing.
+    """A tool assembly as an SVG drawing, an `svg` element without an XML declaration.
 
     It is drawn upright, its tip at the bottom, 1:1 where that fits an A4 sheet, else in the largest standard reduction that
     does; the sheet states which, and is as large on paper as the SVG says. What is small of the cutting end is drawn again,
-    enlarged.
+    enlarged. `name` is the title; else the cutter's own name, or its id. `data-scale` is mm on paper a mm; paths of the class
+    `part` are the silhouettes of flutes, neck, shank and holder.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    name : str
-        The title; the cutter's own name, or its id, if it is left out.
-
-    Returns
-    -------
-    str
-        The `svg` element, without an XML declaration. `data-scale` is mm on paper a mm; paths of the class `part` are the
-        silhouettes of flutes, neck, shank and holder.
-
-    Examples
-    --------
     >>> "no holder" in draw(Cutter.parse("R6L80"))
     True
     """
@@ -346,7 +316,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     facts = facts_of(cutter)
     sheet = Sheet(title, description(cutter, notes, spans, facts))
     widest = max(width_of(words) for note in notes for words in note.lines)
-    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - _block_height(_NAMES, _IDS, len(facts))
+    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + LINE + 8.0)
     available = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER
     scale = _scale(line, spans, available - widest, high)
     if _zoom(cutter, line, scale):
@@ -361,11 +331,16 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     # A sheet is no narrower than its title: the view stands in its middle.
     right = 0.5 * (width + right - widest - _MARGIN)
     top = _MARGIN + _ABOVE
-    bottom = top + max(tall + _BELOW, sum(map(_height, notes)) + enlarged)
+    bottom = top + max(tall + _BELOW, sum(note.height for note in notes) + enlarged)
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
-    _lengths(sheet, columns, line, view)
-    _across(sheet, cutter, view)
+    _dimensions(sheet, columns, line, view)
+    # The cutting diameter, below the tip.
+    y, r = view.y + 9.0, view.scale * cutter.radius
+    for side in (-r, r):
+        sheet.lines(((view.x + side, view.y + 0.8), (view.x + side, y + 1.2)), "fine")
+    sheet.between((view.x - r, y), (view.x + r, y))
+    sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
     _leaders(sheet, notes, view, wide, (right, top, bottom - enlarged))
     if zoom:
         _detail(sheet, cutter, line, view, zoom, (right, bottom - _DETAIL[1]))
@@ -393,7 +368,7 @@ def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
     columns: list[list[tuple[Span, str]]] = []
     taken: list[list[Point]] = []
     for span in sorted(spans, key=lambda each: each.high - each.low):
-        column_width, words = scale * (span.high - span.low), span.words
+        column_width, words = scale * (span.high - span.low), f"{span.name} {span.number}"
         if span.name in _NOTED and width_of(words) > column_width:
             words = span.number
             if max(width_of(words), 3.0 * ARROW) > column_width:
@@ -411,12 +386,7 @@ def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
     return columns
 
 
-def _height(note: Note) -> float:
-    return LINE * len(note.lines) + 0.8
-
-
 def _silhouette(segments: tuple[Segment, ...], view: _View) -> str:
-    """A closed path about the axis."""
     path = ["M" + at(view(segments[0].start))]
     path += [_side(segment, view, segment.end) for segment in segments]
     path.append("L" + at(view(segments[-1].end, -1.0)))
@@ -434,46 +404,26 @@ def _side(segment: Segment, view: _View, to: Point, side: float = 1.0) -> str:
 def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
     for part in line.parts:
         sheet.fill(_silhouette(line.of(part), view), part, f"part {part}")
-    for height, radius in _edges(line):
-        sheet.lines((view((radius, height), -1.0), view((radius, height))), "fine")
+    for below, above in zip(line.segments[:-1], line.segments[1:], strict=True):
+        # Circles along which the outline has an edge: seen from the side they are lines across.
+        (a, b), (c, d) = below.direction(1.0), above.direction(0.0)
+        if abs(a * d - b * c) > _SMOOTH:
+            sheet.lines((view(below.end, -1.0), view(below.end)), "fine")
     sheet.lines(((view.x, view.y + 4.0), (view.x, view.y - view.scale * line.height - 4.0)), "axis")
 
 
-def _edges(line: Outline) -> list[Point]:
-    """Heights and radii of the circles along which the outline has an edge: seen from the side they are lines across."""
-    edges = []
-    for below, above in zip(line.segments[:-1], line.segments[1:], strict=True):
-        (a, b), (c, d) = below.direction(1.0), above.direction(0.0)
-        if abs(a * d - b * c) > _SMOOTH:
-            edges.append((below.end[1], below.end[0]))
-    return edges
-
-
-def _lengths(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
-    """Dimension lines along the axis, in columns left of the view."""
+def _dimensions(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
+    """Dimension lines along the axis, in columns left of the view, each from the largest radius at its height."""
+    ends = [end for segment in line.segments for end in (segment.start, segment.end)]
     for i, column in enumerate(columns):
         x = view.x - view.scale * line.widest - _GAP - i * _COLUMN
         for span, words in column:
             low, high = view.y - view.scale * span.low, view.y - view.scale * span.high
             for height, y in ((span.low, low), (span.high, high)):
-                sheet.lines(((view.x - view.scale * _radius(line, height) - 0.8, y), (x - 1.2, y)), "fine")
+                radius = max((r for r, h in ends if abs(h - height) <= 1e-6), default=0.0)
+                sheet.lines(((view.x - view.scale * radius - 0.8, y), (x - 1.2, y)), "fine")
             sheet.between((x, low), (x, high))
             sheet.text(x - 1.0, 0.5 * (low + high), words, anchor="middle", upright=True)
-
-
-def _radius(line: Outline, height: float) -> float:
-    """The largest of an outline at one of its corners' heights."""
-    ends = [end for segment in line.segments for end in (segment.start, segment.end)]
-    return max((r for r, h in ends if abs(h - height) <= 1e-6), default=0.0)
-
-
-def _across(sheet: Sheet, cutter: Cutter, view: _View) -> None:
-    """The cutting diameter, below the tip."""
-    y, r = view.y + 9.0, view.scale * cutter.radius
-    for side in (-r, r):
-        sheet.lines(((view.x + side, view.y + 0.8), (view.x + side, y + 1.2)), "fine")
-    sheet.between((view.x - r, y), (view.x + r, y))
-    sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
 
 
 def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins: tuple[float, float, float]) -> None:
@@ -482,7 +432,7 @@ def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins:
 
     x, top, bottom = margins
     notes = sorted(notes, key=lambda note: -note.at[1])
-    sizes = [_height(note) for note in notes]
+    sizes = [note.height for note in notes]
     before = [sum(sizes[:i]) for i in range(len(notes))]
     # Each wants its middle at the height of its point. In order and without overlap, the least squares are isotonic.
     wish = [view(note.at)[1] - 0.5 * size - above for note, size, above in zip(notes, sizes, before, strict=True)]
@@ -532,10 +482,6 @@ def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: floa
             sheet.lines((end, point), "fine")
             sheet.arrow(point, end)
             sheet.text(end[0] + 0.6, end[1] + 1.0, f"R{length(segment.radius)}")
-
-
-def _block_height(names: int, ids: int, facts: int) -> float:
-    return 4.5 * names + 3.0 * ids + LINE * facts + LINE + 8.0
 
 
 def _block(

@@ -21,8 +21,26 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.words.cutters import ranked_spots
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.witness import row_of
 from plan_cutters.scene.surroundings import PlacedFixture
+
+
+def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:
+    """Find the row of a witness's sample; a ValueError where the samples have none such: the witness is of another plan.
+
+    The plan says it. Older plans do not: there it is the sample of the witness's own face that lies at its point.
+    """
+    face, point = int(witness.face[1:]), np.array(witness.point)
+    if witness.sample is not None:
+        mine = np.arange(witness.sample, min(witness.sample + 1, len(samples)))
+    else:
+        mine = np.arange(len(samples))
+    mine = mine[samples.face[mine] == face]
+    away = np.linalg.norm(samples.point[mine] - point, axis=1)
+    # A point without coordinates is at no distance.
+    if not (away <= 1e-6 * max(1.0, float(np.abs(point).max()))).any():
+        raise ValueError(f"no sample of {witness.face} lies at the point of this witness: it is of another plan")
+    return int(mine[int(np.nanargmin(away))])
+
 
 #: Spots of the cutter that is shown, and of each other one.
 _SPOTS, _OTHER_SPOTS = 20, 6
@@ -123,10 +141,10 @@ class Stored:
         tried = [len(_piece(filtered(array[first : first + _TRIED], each), _QUICK)) for each in FILTERS]
         chosen = FILTERS[int(np.argmin(tried))]
         data = filtered(array, chosen)
-        return cls(_WORD[array.dtype], array.shape, chosen, len(data), _piece(data, 6))
+        return cls(_WORD[array.dtype], array.shape, chosen, len(data), _piece(data))
 
 
-def _piece(data: bytes, level: int) -> bytes:
+def _piece(data: bytes, level: int = 6) -> bytes:
     made = zlib.compressobj(level, zlib.DEFLATED, -15)
     return made.compress(data) + made.flush(zlib.Z_FULL_FLUSH)
 
@@ -217,13 +235,12 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Atlas:
-    """All sheets side by side."""
+    """All sheets, by face number, side by side: `index` (height, width) is the row of the sample, -1 where no sheet lies;
+    `corner` the row and column at which a sheet begins.
+    """
 
-    #: (height, width); row of the sample; -1 where no sheet lies.
     index: Ints
-    #: Face number -> row and column at which its sheet begins.
     corner: Mapping[int, tuple[int, int]]
-    #: Face number -> Sheet.
     sheets: Mapping[int, Sheet]
 
 
@@ -252,43 +269,35 @@ def _even(line: Floats, finer: int) -> NDArray[np.intp]:
     return np.searchsorted(0.5 * (line[1:] + line[:-1]), at)
 
 
-def _list_of(rows: NDArray[np.int64]) -> Sheet:
-    """Samples without a grid, in lines."""
-    width = max(1, int(np.ceil(np.sqrt(len(rows)))))
-    index = np.full(-(-len(rows) // width) * width, -1, np.int32)
-    index[: len(rows)] = rows
-    return Sheet(index.reshape(-1, width), None)
-
-
 def atlas_of(samples: SurfaceSamples) -> Atlas:
-    """Lay out the sheets of all sampled faces, with as fine steps as there is room for."""
+    """Lay out the sheets of all sampled faces side by side, the highest first, in shelves, with the finest steps that fit."""
     grids = {grid.face: grid for grid in samples.grids}
     rows = samples.by_face()
     for finer in _FINER:
         sheets = {}
         for number, mine in rows.items():
             grid = grids.get(number)
-            fits = grid is not None and max(grid.index.shape) < _LONGEST
-            sheets[number] = sheet_of(grid, finer) if grid is not None and fits and finer else _list_of(mine)
-        atlas = _laid_out(sheets)
-        if atlas.index.shape[0] <= _LONGEST and (finer <= 1 or atlas.index.size <= _TEXELS):
+            if grid is not None and finer and max(grid.index.shape) < _LONGEST:
+                sheets[number] = sheet_of(grid, finer)
+                continue
+            # Samples without a grid, in lines.
+            wide = max(1, int(np.ceil(np.sqrt(len(mine)))))
+            lines = np.full(-(-len(mine) // wide) * wide, -1, np.int32)
+            lines[: len(mine)] = mine
+            sheets[number] = Sheet(lines.reshape(-1, wide), None)
+        size = {number: sheet.index.shape for number, sheet in sheets.items()}
+        area = sum(h * w for h, w in size.values())
+        width = min(_LONGEST, max(*(w for _, w in size.values()), math.ceil(1.1 * math.sqrt(area)), 1))
+        corner, row, column, high = {}, 0, 0, 0
+        for number in sorted(sheets, key=lambda n: (-size[n][0], n)):
+            h, w = size[number]
+            if column + w > width:
+                row, column, high = row + high, 0, 0
+            corner[number] = (row, column)
+            column, high = column + w, max(high, h)
+        index = np.full((max(1, row + high), max(1, width)), -1, np.int32)
+        if index.shape[0] <= _LONGEST and (finer <= 1 or index.size <= _TEXELS):
             break
-    return atlas
-
-
-def _laid_out(sheets: Mapping[int, Sheet]) -> Atlas:
-    """Put sheets side by side, the highest first, in shelves."""
-    size = {number: sheet.index.shape for number, sheet in sheets.items()}
-    area = sum(h * w for h, w in size.values())
-    width = min(_LONGEST, max(*(w for _, w in size.values()), math.ceil(1.1 * math.sqrt(area)), 1))
-    corner, row, column, high = {}, 0, 0, 0
-    for number in sorted(sheets, key=lambda n: (-size[n][0], n)):
-        h, w = size[number]
-        if column + w > width:
-            row, column, high = row + high, 0, 0
-        corner[number] = (row, column)
-        column, high = column + w, max(high, h)
-    index = np.full((max(1, row + high), max(1, width)), -1, np.int32)
     for number, (row, column) in corner.items():
         h, w = size[number]
         index[row : row + h, column : column + w] = sheets[number].index
@@ -329,16 +338,14 @@ Range = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Vertices and triangles."""
+    """Vertices (v, 3), mm, part coordinates, with unit normals out of the material; triangles (m, 3), counter-clockwise from
+    outside; places (v, 2) in the atlas. Face number, or place among the fixtures, -> Range.
+    """
 
-    #: (v, 3), mm, part coordinates; unit, out of the material.
     point: Floats
     normal: Floats
-    #: (m, 3); counter-clockwise from outside.
     triangle: NDArray[np.uint32]
-    #: (v, 2); in the atlas.
     place: NDArray[np.uint16]
-    #: Face number, or place among the fixtures, -> Range.
     faces: dict[int, Range]
     fixtures: dict[int, Range]
 
@@ -348,20 +355,27 @@ def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface
     start = 0
     meshes: list[Mesh] = []
     places: list[NDArray[np.uint16]] = []
-    faces: dict[int, Range] = {}
+
+    def add(mesh: Mesh, place: NDArray[np.uint16] | None = None) -> Range:
+        nonlocal start
+        meshes.append(mesh)
+        places.append(np.full((len(mesh.point), 2), NOWHERE, np.uint16) if place is None else place)
+        start += len(mesh.triangle)
+        return start - len(mesh.triangle), len(mesh.triangle)
+
+    faces = {
+        number: add(*placed_in(atlas, result.samples, number, mesh, render_mesh.periods[number]))
+        for number, mesh in sorted(render_mesh.meshes.items())
+    }
     fixtures: dict[int, Range] = {}
-    for number in sorted(render_mesh.meshes):
-        mesh, place = placed_in(atlas, result.samples, number, render_mesh.meshes[number], render_mesh.periods[number])
-        faces[number] = (start, len(mesh.triangle))
-        start += len(mesh.triangle)
-        meshes.append(mesh)
-        places.append(place)
     for i, (fixture, _) in enumerate(fixtures_of(result)):
-        mesh = _facets(fixture.shown)
-        fixtures[i] = (start, len(mesh.triangle))
-        start += len(mesh.triangle)
-        meshes.append(mesh)
-        places.append(np.full((len(mesh.point), 2), NOWHERE, np.uint16))
+        # Flat facets.
+        normal = np.cross(fixture.shown[:, 1] - fixture.shown[:, 0], fixture.shown[:, 2] - fixture.shown[:, 0])
+        length = np.linalg.norm(normal, axis=1)
+        flat, unit = fixture.shown[length > 0], normal[length > 0] / length[length > 0][:, None]
+        count = 3 * len(flat)
+        triangle = np.arange(count, dtype=np.uint32).reshape(-1, 3)
+        fixtures[i] = add(Mesh(flat.reshape(-1, 3), np.repeat(unit, 3, axis=0), triangle, np.zeros((count, 2))))
     first = np.cumsum([0, *(len(m.point) for m in meshes)])[:-1]
     return Surface(
         np.concatenate([m.point for m in meshes]),
@@ -376,20 +390,6 @@ def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface
 def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
     """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
     return fixtures_in([each.surroundings for each in result.ready.setups])
-
-
-def _facets(corner: Floats) -> Mesh:
-    """Triangles (n, 3, 3) with flat facets."""
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    length = np.linalg.norm(normal, axis=1)
-    corner, normal, length = corner[length > 0], normal[length > 0], length[length > 0]
-    count = 3 * len(corner)
-    return Mesh(
-        corner.reshape(-1, 3),
-        np.repeat(normal / length[:, None], 3, axis=0),
-        np.arange(count, dtype=np.uint32).reshape(-1, 3),
-        np.zeros((count, 2)),
-    )
 
 
 def box_of(surface: Surface, samples: Any) -> tuple[Floats, Floats]:

@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,16 +18,16 @@ from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, OPERATIONS, PALETTE, REASONS, label, operation_colour
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
+from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import Line, named, short_names
-from plan_cutters.plan_file.words.next_steps import step_text
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text
+from plan_cutters.plan_file.words.process import OperationText, of_the_whole, operation_text
 from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
 from plan_cutters.report.protocol import Judged
@@ -44,16 +45,13 @@ def operation_arrays(result: Judged) -> Arrays:
     """For each plan the operation of each sample, counted from 1, 0 is none; and where its tool leans."""
     operations, arrays = result.answers.operations, Arrays()
     for plan in operations.plans if operations else ():
-        arrays[f"operation.{key(plan)}"] = Stored.of(_numbers(plan))
+        arrays[f"operation.{key(plan)}"] = Stored.of(
+            (plan.label + 1).astype(np.uint8 if len(plan.operations) < 255 else np.uint16)
+        )
         arrays[f"operation_lean.{key(plan)}"] = Stored.of(turned_by(result.samples, plan.lean))
         if (share := shares(plan.lean)) is not None:
             arrays[f"operation_share.{key(plan)}"] = Stored.of(share)
     return arrays
-
-
-def _numbers(plan: OperationPlan) -> Any:
-    kind = np.uint8 if len(plan.operations) < 255 else np.uint16
-    return (plan.label + 1).astype(kind)
 
 
 def operations_of(result: Judged) -> dict[str, Any] | None:
@@ -180,9 +178,22 @@ def meta_of(result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, F
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
             for entry in plan.cutters
         ],
-        "spots": [_spot(each) for each in spots],
+        "spots": [
+            {
+                **_of(each, "cutter", "sample"),
+                **_of(each.witness, "face", "reason", "point", "obstacle_face", "obstacle_point", "depth_mm"),
+                **dict(zip(("tilt_deg", "lean_deg", "axis"), _posture(each.witness), strict=True)),
+                "text": sentence(each.witness),
+            }
+            for each in spots
+        ],
         "operations": operations_of(result),
     }
+
+
+def _posture(witness: WitnessEntry) -> tuple[Any, Any, Any]:
+    best = witness.best_posture
+    return (best.tilt, best.rotation, best.axis) if best else (None, None, None)
 
 
 def _kinematics(axes: Kinematics) -> dict[str, Any]:
@@ -199,48 +210,29 @@ def _face(entry: Any, surface: Surface) -> dict[str, Any]:
 
 
 def _of(record: Any, *words: str) -> dict[str, Any]:
-    """Attributes of a record by their names."""
     return {word: getattr(record, word) for word in words}
 
 
 def _cutter(name: str, entry: CutterEntry, cutter: Cutter, data: dict[str, Any]) -> dict[str, Any]:
-    return {
-        "name": name,
-        **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
-        "modes": [_mode(mode) for mode in modes(cutter)],
-        "outline": _outline(cutter),
-        "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
-        "counts": data,
-        "by_reason": {name: n for name, n in entry.by_reason.items() if n},
-        "undecided_by_reason": {name: n for name, n in entry.undecided_by_reason.items() if n},
-    }
-
-
-def _mode(mode: Any) -> dict[str, float]:
-    low, high = degrees((mode.low, mode.high))
-    return {**_of(mode, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high}
-
-
-def _outline(cutter: Cutter) -> list[dict[str, Any]]:
-    """The polyline of each part of a tool, from the tip up."""
-    whole, rows = outline(cutter), []
+    """A cutter, with the polyline of each of its parts, from the tip up."""
+    whole, parts = outline(cutter), []
     for part in whole.parts:
         segments = whole.of(part)
         line = points(Outline(segments), _CHORD)
         line[0] = segments[0].start
-        rows.append({"part": part, "points": line.round(4).tolist()})
-    return rows
-
-
-def _spot(spot: Spot) -> dict[str, Any]:
-    w, best = spot.witness, spot.witness.best_posture
+        parts.append({"part": part, "points": line.round(4).tolist()})
+    ends = [(mode, degrees((mode.low, mode.high))) for mode in modes(cutter)]
     return {
-        **_of(spot, "cutter", "sample"),
-        **_of(w, "face", "reason", "point", "obstacle_face", "obstacle_point", "depth_mm"),
-        "tilt_deg": best and best.tilt,
-        "lean_deg": best and best.rotation,
-        "axis": best and best.axis,
-        "text": sentence(w),
+        "name": name,
+        **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
+        "modes": [
+            {**_of(mode, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high} for mode, (low, high) in ends
+        ],
+        "outline": parts,
+        "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
+        "counts": data,
+        "by_reason": {name: n for name, n in entry.by_reason.items() if n},
+        "undecided_by_reason": {name: n for name, n in entry.undecided_by_reason.items() if n},
     }
 
 
@@ -273,7 +265,12 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     shown = next(c for c in plan.cutters if c.id == story.shown)
     rows = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
-    faces = _faces(plan, shown)
+    faces, bars = _faces(plan, shown), dict[str, list[tuple[str, float, float, str]]]()
+    for c in plan.cutters:
+        # Shares as bars (word, from, width, colour) of 100 in all.
+        wide = [100.0 * getattr(c.area_share, word) for word in VERDICTS]
+        row = zip(VERDICTS, accumulate(wide, initial=0.0), wide, strict=False)
+        bars[c.id] = [(word, round(at, 2), round(width, 2), plan.legend[word]) for word, at, width in row if width]
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
     header, commands = _apart(_header(plan, story, shown))
     return {
@@ -292,7 +289,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "chips": CHIPS,
         "feasible": cutters.FEASIBLE,
         "order": {True: 0, None: 1, False: 2},
-        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in sorted(rows, key=lambda each: each[1] is not shown)],
+        "cutters": [(c, entry, bars[c.id]) for c, entry in sorted(rows, key=lambda each: each[1] is not shown)],
         "label": label,
         "failing": [c for c in first if c.failing][:_CUTTERS],
         "verdicts": _VERDICTS,
@@ -317,7 +314,6 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
 
 
 def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
-    """The texts below the title."""
     p = story.process
     process = [p.more, *p.own, *p.remaining, *p.next, p.clearance] if p else []
     return [*process, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
@@ -337,7 +333,6 @@ def _apart(texts: list[str]) -> tuple[list[str], list[str]]:
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
-    """Write the sentences below the title."""
     _, _, about, why = story.headline
     taken = next((c for c in plan.cutters if c.id == story.taken), shown)
     least = taken.least_stick_out.least_mm if taken.least_stick_out else None
@@ -346,17 +341,6 @@ def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
         short = taken.length - least < answers.SAME
         held = "It cannot be held shorter." if short else f"It can be held as short as {numbers.up(least)}."
     return " ".join(filter(None, (about, why, *story.scope, held, story.cutter(taken.id).next if taken.not_reached else "")))
-
-
-def _bars(plan: Plan, entry: CutterEntry) -> list[tuple[str, float, float, str]]:
-    """Shares as bars (word, from, width, colour) of 100 in all."""
-    bars, at = [], 0.0
-    for word in VERDICTS:
-        wide = 100.0 * getattr(entry.area_share, word)
-        if wide:
-            bars.append((word, round(at, 2), round(wide, 2), plan.legend[word]))
-        at += wide
-    return bars
 
 
 def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
@@ -377,7 +361,6 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
 
 
 def _effective(plan: Plan) -> list[tuple[str, str]]:
-    """Options that have a value, as texts."""
     return [
         (name.replace("_", " "), _value(name, value))
         for name, value in plan.effective.model_dump(mode="json").items()

@@ -1,6 +1,5 @@
 """The page as a file: data, tables and script in one, within its size."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,6 @@ from cad_io.write.render_mesh import render_mesh
 from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.verdicts import depths
 from plan_cutters.files.markup import embedded, policy, template, with_three
-from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays, atlas_of, box_of, joined, spots_of, surface_of
 from plan_cutters.report.page.tables import Drawing, meta_of, operation_arrays
@@ -30,36 +28,22 @@ _OTHERS = "Postures are stored for the cutter shown alone, to keep this page sma
 
 
 def write_html(result: Judged, _split: object, path: Path) -> None:
-    """Write `review.html`.
-
-    Raises
-    ------
-    CadIoError
-        The kernel cannot mesh the part.
-    OSError
-        The file cannot be written.
-    """
+    """Write `review.html`; a CadIoError where the kernel cannot mesh the part."""
     path.write_bytes(page(result))
 
 
 @reporting(lambda result: result.plan.effective.units)
 def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) -> bytes:
-    """The page of a plan.
+    """The page of a plan, UTF-8; the same for the same plan.
 
-    Parameters
-    ----------
-    result : Result
-    largest : int
-        Bytes that it may have: where it has more, postures of the cutters that are not shown are left out.
-    triangles : int
-        To draw, about.
-
-    Returns
-    -------
-    bytes
-        UTF-8; the same for the same plan.
+    `largest`: bytes that it may have; where it has more, postures of the cutters that are not shown are left out. `triangles`:
+    to draw, about.
     """
-    chord = _chord(result.plan, triangles)
+    effective = result.plan.effective
+    # With this chord error, mm, fewer triangles than so many are to be expected, as the obstacles have theirs. Not below half the
+    # tolerance: whoever counts with what is drawn allows for both.
+    alike = effective.chord_error_mm * effective.obstacle_triangles / triangles
+    chord = max(0.5 * effective.tolerance_mm, _SURELY * alike)
     # Of two faces in one place the one that was judged is shown.
     scene = result.scene
     faces = render_mesh(result.part, scene.orientation.sign, most=triangles, deflection=chord, without=scene.doubles)
@@ -75,8 +59,10 @@ def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) 
         **scalars,
         **operation_arrays(result),
     }
-    others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
-    _, overlooked = depths(result.plan.effective.tolerance_mm, faces.deflection)
+    others = Arrays()
+    for name in result.reaches:
+        others |= arrays.posture_arrays(result, name) if name != result.shown else {}
+    _, overlooked = depths(effective.tolerance_mm, faces.deflection)
     meta = {
         **meta_of(result, surface, atlas, box, spots),
         "drawn_chord_mm": faces.deflection,
@@ -95,22 +81,9 @@ def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) 
     return made({}, [_OTHERS]) if len(data) > largest and others else data
 
 
-def _chord(plan: Plan, triangles: int) -> float:
-    """The chord error, mm, with which fewer than so many triangles are to be expected, as the obstacles have theirs.
-
-    Not below half the tolerance: whoever counts with what is drawn allows for both.
-    """
-    effective = plan.effective
-    alike = effective.chord_error_mm * effective.obstacle_triangles / triangles
-    return max(0.5 * effective.tolerance_mm, _SURELY * alike)
-
-
-def _together(each: Iterable[Arrays]) -> Arrays:
-    return {name: array for one in each for name, array in one.items()}
-
-
 def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
-    script, style = with_three(_asset("page.js")), _asset("page.css")
+    script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
+    script = with_three(script)
     return _TEMPLATE.render(
         policy=policy(script, style, "data: blob:"),
         script=Markup(script),
@@ -119,10 +92,6 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
         data=Markup(data),
         **shown,
     ).encode()
-
-
-def _asset(name: str) -> str:
-    return (_HERE / name).read_text(encoding="utf-8")
 
 
 _TEMPLATE = template(_HERE / "page.html.jinja")
