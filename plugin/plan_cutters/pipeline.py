@@ -17,11 +17,9 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.setups import OtherSetup
+from plan_cutters.document.process import OtherSetup
 from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.checks import shown, spelled_out
-from plan_cutters.document.process import OtherSetup
-from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import handed, order, wanted
 from plan_cutters.domain.verdicts import Verdicts

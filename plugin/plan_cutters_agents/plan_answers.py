@@ -13,12 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from plan_cutters.domain.figures import listed
 from plan_cutters.plan_file.frozen import Vector
-from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.operations import ProcessStep, RemainingEntry
-from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.model import CutterEntry, Plan, leaves
-from plan_cutters.plan_file.operations import OwnStepEntry
+from plan_cutters.plan_file.operations import ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS, reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.answers import first_tries

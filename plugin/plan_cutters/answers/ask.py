@@ -22,7 +22,7 @@ from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts, over_setups
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.words.next_steps import samples
+from plan_cutters.plan_file.words.answers import samples
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.work import Budget, Progress, part_of
 

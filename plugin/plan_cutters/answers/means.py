@@ -25,7 +25,7 @@ from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.errors import CutterError
 from plan_cutters.judging.limits import within_limits
 from plan_cutters.option_table import LEAST_TOLERANCE
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Axis, Prepared, conditions_of, with_setups
 from plan_cutters.scene.work import Budget

@@ -22,7 +22,7 @@ from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
-from plan_cutters.plan_file.words import next_steps
+from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.preparation import Axis, Prepared, places

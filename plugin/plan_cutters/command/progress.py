@@ -16,8 +16,7 @@ from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
-    from plan_cutters.cases.case import Case
-    from plan_cutters.cases.files import CaseFiles
+    from plan_cutters.cases.files import Case, CaseFiles
     from plan_cutters.plan_file.model import Plan
 
 _SELF = "plan-cutters"
@@ -91,7 +90,7 @@ class PartCases:
 
     def handed(self, text: str) -> None:
         """Take the cases of the part that began last."""
-        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.files import Case
 
         self.cases[self.part] = [Case(*each) for each in json.loads(text)]
 
@@ -103,7 +102,7 @@ class PartCases:
 
     def write(self, rest: str = "not planned") -> None:
         """Write the files; `rest`: why parts of which nothing is known have no plan. PlanError where one cannot be written."""
-        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.files import Case
         from plan_cutters.cases.plan import PROCESS
 
         cases: list[Case] = []

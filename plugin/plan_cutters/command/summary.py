@@ -12,11 +12,6 @@ from rich.text import Text
 
 from plan_cutters.command.terminal import show, wrapped
 from plan_cutters.domain.figures import reporting, unit
-from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.words.cutters import FEASIBLE, worst_face_text
-from plan_cutters.plan_file.words.face import details, scene, unjudged_share
-from plan_cutters.domain.figures import unit
-from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import leaves
 from plan_cutters.plan_file.words.cutters import FEASIBLE, details, scene, unjudged_share, worst_face_text
 from plan_cutters.plan_file.words.text import Story, story_of, text_of

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Ints, SurfaceSamples
-from cad_io.part.inside_edges import InsideEdge
+from cad_io.part.edges import InsideEdge
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fillet import largest_fitting, least_radius
+from plan_cutters.domain.standard_tools import largest_fitting, least_radius
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, REAR_GOUGE, Verdicts
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry

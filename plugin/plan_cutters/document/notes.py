@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from cad_io import Part
-from cad_io.part.inside_edges import folded_faces
-from cad_io.part.unjudged import CROSSES
-from cad_io.write.back import changed_by_step
+from cad_io.part.edges import folded_faces
+from cad_io.part.part import CROSSES
+from cad_io.write.step import changed_by_step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, ranges
 from plan_cutters.domain.placement import axis_words
@@ -19,10 +19,8 @@ from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.notes import Note, note
 from plan_cutters.scene.faces import clamped_faces, repeated_groups
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import BUDGET, Prepared, places
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import places
-from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import Surroundings
 
 

@@ -24,19 +24,15 @@ from plan_cutters.document.build import (
 )
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
-from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import Advice
-from plan_cutters.domain.fillet import Fitting
-from plan_cutters.domain.least_set import LeastSet
-from plan_cutters.domain.lengths import reporting
+from plan_cutters.domain.answers import Advice, LeastSet, Patch, RadiusMap
+from plan_cutters.domain.figures import reporting
+from plan_cutters.domain.kinematics import positions
 from plan_cutters.domain.operations import INDEX_TIME
-from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.own_process import cutter_of
-from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.standard_tools import Fitting
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED, effective_tolerance
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.answers import (

@@ -12,17 +12,17 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
-from plan_cutters.domain.change import Step
+from plan_cutters.domain.answers import Step
 from plan_cutters.domain.figures import exact
-from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import Strategy
-from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.own_process import OwnResult
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import by_radius
+from plan_cutters.domain.standard_tools import Fitting
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE, Verdicts
-from plan_cutters.judging.setups import AXES, within_limits
+from plan_cutters.judging.limits import AXES, within_limits
 from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest

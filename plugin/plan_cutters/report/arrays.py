@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.clearance import part_words
+from plan_cutters.domain.assembly import part_words
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import FaceLabels, Style
-from cad_io.kernel.bodies import Side, prism, revolved
-from cad_io.kernel.components import compound
+from cad_io.kernel.shapes import Side, compound, prism, revolved
 from cad_io.part import Part
 from cad_io.split import split, split_by_turns
 from cad_io.write import write_gltf

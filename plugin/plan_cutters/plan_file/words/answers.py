@@ -4,13 +4,13 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.domain.area import Patch
+from plan_cutters.domain.answers import Patch
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.figures import angle, capital, down, listed, mm, percent, place, reported, some, up
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.domain.spec import notation
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, RunEntry, StepEntry, StickOutEntry
 from plan_cutters.plan_file.model import ANOTHER_SETUP, CutterEntry, Plan

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import count, sentence
-from plan_cutters.domain.lengths import reporting
+from plan_cutters.domain.figures import count, reporting, sentence
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText, nearest
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
