@@ -247,9 +247,9 @@ def test_search_agrees_with_a_posture_grid(seed):
     tool = waves.flat(radius, length, s)
     search.search(np.arange(n), contacts, waves.ranges(rotations), tool, tool, solids, solids, out)
     verdicts = set(out[0].tolist())
-    assert verdicts == {search.ACCESSIBLE, search.INACCESSIBLE}
+    assert verdicts == {search.codes.ACCESSIBLE, search.codes.INACCESSIBLE}
     for i in range(n):
-        if out[0][i] == search.ACCESSIBLE:
+        if out[0][i] == search.codes.ACCESSIBLE:
             assert depth_in_cutter(dense, point[i], normal[i], out[1][i], out[2][i], radius, length).max() <= s + 1e-9
         else:
             for rotation in rotations:

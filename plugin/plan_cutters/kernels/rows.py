@@ -77,10 +77,10 @@ class Cylinder(NamedTuple):
 #: Contact p, normal n, tilt direction f, and t = n x f; each (3,).
 Frame = namedtuple("Frame", "p n f t")
 
-#: A workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3). looked (1,)
+#: A workspace: stack and masks (64,) int64, corner (3, 3), face (4, 3), polygon and spare (8, 3), pieces (k, 3, 3). looked (1,)
 #: int64: boxes looked at since it was made, and what else takes as long. balls (k, 5), stored (2,) int64: balls in bodies, see
 #: `material.keep_ball`; of which solids, and how many were stored.
-Scratch = namedtuple("Scratch", "stack masks corner drawn polygon spare pieces looked balls stored")
+Scratch = namedtuple("Scratch", "stack masks corner face polygon spare pieces looked balls stored")
 
 #: A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`.
 VerdictArrays = namedtuple("VerdictArrays", "verdict axis tilt_direction tilt rotation reason")

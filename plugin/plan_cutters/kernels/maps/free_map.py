@@ -115,7 +115,7 @@ def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin,
 #: blocks kept, leaves kept, the place of the next triangle that is tried first, and blocks visited in all.
 #: known (rotations + 1, LANES): triangles that cut intervals of each rotation last, of this sample or the one before, the last
 #: row those of any; place (rotations,) of the next of a rotation. Obstacles beyond `reach` of the contact cannot be hit.
-_View = namedtuple("_View", "boxes leaves below home tally known place queue ahead margin inside which left reach")
+_View = namedtuple("_View", "boxes leaves below home tally known place queue following margin inside which remaining reach")
 
 
 @kernel
@@ -151,8 +151,8 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
     p, n, (cosine, sine) = frame.p, frame.n, turn
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
-    known, queue, ahead = seen.known, seen.queue, seen.ahead
-    margin, inside, which, remaining = seen.margin, seen.inside, seen.which, seen.left
+    known, queue, following = seen.known, seen.queue, seen.following
+    margin, inside, which, remaining = seen.margin, seen.inside, seen.which, seen.remaining
     triangles, levels = len(vertex), len(offset) - 1
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
@@ -214,9 +214,9 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                     for g in range(count):
                         interval[INTERVALS, UF] += interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
                     return 0
-                ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, remaining[lane]
+                following[coming, 0], following[coming, 1], following[coming, 2] = inner, box, remaining[lane]
                 coming += 1
-        queue, ahead = ahead, queue
+        queue, following = following, queue
         waiting = coming
     return count
 

@@ -303,12 +303,12 @@ def _extruded(corner, least, most, half, piece, k, workspace):
                 at = (side - 2 + (1 if c == 1 or c == 2 else 0)) % 3
                 away = -half if c < 2 else half
             for j in range(3):
-                workspace.drawn[c, j] = corner[at, j]
-            workspace.drawn[c, 2] += away
+                workspace.face[c, j] = corner[at, j]
+            workspace.face[c, 2] += away
         where, count = clipped(
-            workspace.drawn, count, least, most, piece[k, LOW], piece[k, HIGH], workspace.polygon, workspace.spare
+            workspace.face, count, least, most, piece[k, LOW], piece[k, HIGH], workspace.polygon, workspace.spare
         )
-        source = workspace.drawn if where == 0 else workspace.polygon if where == 1 else workspace.spare
+        source = workspace.face if where == 0 else workspace.polygon if where == 1 else workspace.spare
         if count > 0 and polygon_hit(source, count, piece, k, 0.0)[0]:
             return True
     middle = 0.5 * (piece[k, BOTTOM] + piece[k, TOP])
