@@ -13,7 +13,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io.arrays import Floats
 from cad_io.kernel.calls import may_refuse
-from plan_cutters_base.copies import Ended, each
+from plan_cutters_base.forks import Ended, each
 
 Taken = TypeVar("Taken")
 

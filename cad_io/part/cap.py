@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats
 from cad_io.kernel import may_refuse
 from cad_io.part.sew import edge_uses
-from plan_cutters_base.copies import Ended, each
+from plan_cutters_base.forks import Ended, each
 
 #: Deflections of a cap's border, rad, and mm as a share of the part's diagonal.
 _ANGLE, _CHORD = 0.2, 1e-4

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import translated
 from cad_io.part.packing import PartContent, packed, unpacked
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 
 
 class Crashed(ReadError):

@@ -10,7 +10,7 @@ from cad_io.kernel import translated
 from cad_io.read.references import DOCUMENTS, in_folder_of, names
 from cad_io.read.sniff import sniff
 from cad_io.read.step import Loaded, distinct_faces
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.user_files import OutsideError
 
 

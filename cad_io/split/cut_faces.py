@@ -1,7 +1,7 @@
 """Cut all faces that can be cut, in a copy of the process that can be ended; what fails or hangs costs its own face alone.
 
 Cost is linear in the length of the curves. Time decides nothing but whether a call of the kernel is endless, in processor
-seconds (`plan_cutters_base.copies`): what comes out does not depend on how busy the machine is.
+seconds (`plan_cutters_base.forks`): what comes out does not depend on how busy the machine is.
 """
 
 import io
@@ -25,8 +25,7 @@ from cad_io.split.contour import smoothed
 from cad_io.split.drawing import Drawing, in_words
 from cad_io.split.repair import repair
 from cad_io.surface import Surface
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
-from plan_cutters_base.forks import end_within
+from plan_cutters_base.forks import ChildDied, TimeLimit, end_within, limited
 
 #: Why a face is not cut if the limit ended the work.
 TOO_LONG = "splitting it takes too long"

@@ -23,7 +23,7 @@ from cad_io.kernel import bounding
 from cad_io.kernel.mesher import under_mesh, uv_triangles
 from cad_io.part import Part
 from cad_io.surface import Surface
-from plan_cutters_base.copies import ChildDied, limited
+from plan_cutters_base.forks import ChildDied, limited
 
 #: How far a border curve may pass a mesh's nodes, mm.
 _ON = 1e-7

@@ -18,7 +18,7 @@ from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start
 from cad_io.tessellate.outline import Outline, Steps, Use, cut_where_they_meet, outline_of, uses_of
 from cad_io.tessellate.planar import cells, odd, triangulated
-from plan_cutters_base.copies import TimeLimit
+from plan_cutters_base.forks import TimeLimit
 
 #: Places each way where bends are looked at, to lay out a grid.
 _LOOKED = 13

@@ -13,7 +13,7 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Wr
 
 from cad_io.kernel import may_refuse, silence
 from cad_io.part import Part
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 
 #: Processor seconds that it may take, and more for each face.
 _SECONDS, _A_FACE = 20.0, 0.2

@@ -39,7 +39,7 @@ from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import children, compound, flat
 from cad_io.split.pieces import Piece, Split
 from cad_io.write.canonical import canonical
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.whole import whole
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.

@@ -34,9 +34,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.fingerprint import PROGRAM, fingerprint
-from plan_cutters_base.user_cache import roots, writable
+from plan_cutters_base.user_cache import CacheWarning, roots, writable
 
 VERSION: str = numba.__version__
 

@@ -20,11 +20,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
-from plan_cutters_base.digest import digest, sources
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.fingerprint import PROGRAM
-from plan_cutters_base.packed import packed, unpacked
-from plan_cutters_base.user_cache import own, roots, writable
+from plan_cutters_base.user_cache import CacheWarning, own, roots, writable
+from plan_cutters_base.values import digest, packed, sources, unpacked
 from plan_cutters_base.whole import whole
 
 Made = TypeVar("Made")

@@ -33,3 +33,7 @@ def writable(folder: Path) -> bool:
         folder.mkdir(parents=True, exist_ok=True)
         return os.access(folder, os.W_OK)
     return False
+
+
+class CacheWarning(UserWarning):
+    """Machine code in the compiler's cache is damaged, or cannot be read or written: compiling it anew takes time alone."""

@@ -184,11 +184,10 @@ def _code(row: "PartRow", fail_on: frozenset[str]) -> int:
 def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]) -> int:
     """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
     from plan_cutters.domain.figures import count as counted
-    from plan_cutters_batch import cluster
-    from plan_cutters_batch.index import PAGE
+    from plan_cutters_batch import run as cluster
     from plan_cutters_batch.progress import Board
     from plan_cutters_batch.run import run_batch
-    from plan_cutters_batch.summary import OUTCOMES, outcome
+    from plan_cutters_batch.summary import OUTCOMES, PAGE, outcome
 
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(request.quiet, len(parts))

@@ -1,14 +1,17 @@
-"""A part of a batch and what travels for it: the content of its files, and its settings, or why it cannot be planned."""
+"""A part of a batch and what travels for it: the content of its files, its settings, and the key of both."""
 
 import contextlib
 import copy
+import functools
 import os
 import pickle
+import platform
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path, PurePath, PureWindowsPath
 from typing import Any
 
+import plan_cutters
 from cad_io.read.references import followed
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
@@ -16,7 +19,9 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files import folder as folders
 from plan_cutters.options import Options
 from plan_cutters_base import user_files
+from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
 from plan_cutters_base.user_files import checksum, checksums, fingerprint
+from plan_cutters_base.values import digest, sources
 from plan_cutters_batch.row import PartRow
 
 #: Exit codes of a batch: as of a single plan (`docs/command.md`).
@@ -207,3 +212,39 @@ def faced(job: Settings, part: Any) -> Settings:
                 continue
         changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
     return replace(job, options=_with(options, **changed)) if changed else job
+
+
+@functools.cache
+def _own() -> bytes | None:
+    return sources(Path(__file__).parent)
+
+
+def program() -> bytes:
+    """A checksum of what makes plans, and of this package, which makes rows of them."""
+    return digest([made_by(), _own()])
+
+
+def versions() -> dict[str, str]:
+    """The versions that must be the same on all machines of a batch: of this program with its checksum, for an edit counts."""
+    return {
+        "python": platform.python_version(),
+        **{name: installed(name) for name in (*PACKAGES, "dask", "distributed")},
+        "plan-cutters": f"{plan_cutters.__version__}+{program().hex()[:12]}",
+    }
+
+
+def settings_key(settings: Settings, there: Handed) -> str:
+    """Checksum of all but the part: effective options with tools, machine and fixtures, every file that was read for them, what
+    is written, versions.
+
+    The number of threads and the limits of time change no result and do not count.
+    """
+    options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
+    del options["jobs"]
+    parts = [options, sorted(settings.formats), sorted(settings.read), settings.step_schema, program()]
+    return digest([parts, there.outside, *there.files]).hex()
+
+
+def key(content: str, settings: str) -> str:
+    """The key of a part from the checksum of its file and that of its settings."""
+    return checksum(f"{content} {settings}".encode())

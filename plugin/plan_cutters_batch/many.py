@@ -85,7 +85,7 @@ def plan_many(
     """
     from plan_cutters.files.folder import refuse_memory
     from plan_cutters.report.folder import read_formats
-    from plan_cutters_batch import cluster
+    from plan_cutters_batch import run as cluster
     from plan_cutters_batch.run import Terms, outcomes
     from plan_cutters_batch.store import Store
 

@@ -13,10 +13,10 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from plan_cutters.errors import PlanError
-from plan_cutters_base.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
-from plan_cutters_base.workers.child import Child, can_supervise, compiler
+from plan_cutters_base.workers.child import INTERRUPTED, TIMED_OUT, Assignment, Child, JobInput, can_supervise, compiler
 from plan_cutters_base.workers.supervise import WRITING
-from plan_cutters_batch import keys, store
+from plan_cutters_batch import job as keys
+from plan_cutters_batch import store
 from plan_cutters_batch.job import UNREADABLE, USAGE, Content, Handed, content
 from plan_cutters_batch.row import PartRow, row_of
 

@@ -222,7 +222,8 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
 def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there; a PlanError where it cannot be planned."""
     from plan_cutters.plan_file.load import load_plan
-    from plan_cutters_batch import keys, work
+    from plan_cutters_batch import job as keys
+    from plan_cutters_batch import work
     from plan_cutters_batch.row import row_of
     from plan_cutters_batch.store import Store
 

@@ -4,7 +4,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import PlanError
-from plan_cutters_batch import cluster, keys
+from plan_cutters_batch import job as keys
+from plan_cutters_batch import run as cluster
 
 
 @pytest.fixture(scope="module")

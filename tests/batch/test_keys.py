@@ -10,7 +10,7 @@ import pytest
 
 from plan_cutters import Options
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters_batch import keys
+from plan_cutters_batch import job as keys
 from plan_cutters_batch.job import Settings, content, handed
 from tests.support.places import ROOT
 from tests.support.step_references import BALL, BOX, write_assembly

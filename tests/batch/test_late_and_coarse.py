@@ -14,15 +14,16 @@ from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch import cluster, keys, work
+from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_batch import command as of_many
-from plan_cutters_batch.index import write_index
+from plan_cutters_batch import job as keys
+from plan_cutters_batch import run as cluster
+from plan_cutters_batch import work
 from plan_cutters_batch.job import Settings, handed
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.run import Terms, foreseen
 from plan_cutters_batch.store import Store
-from plan_cutters_batch.summary import FAIL_ON, fault
+from plan_cutters_batch.summary import FAIL_ON, fault, write_index
 from tests.support.commands import in_lines
 from tests.support.places import ROOT
 

@@ -12,8 +12,9 @@ import pytest
 
 from plan_cutters import Options, plan_many
 from plan_cutters.errors import PlanError
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch import cluster, keys
+from plan_cutters_base.workers.child import TIMED_OUT
+from plan_cutters_batch import job as keys
+from plan_cutters_batch import run as cluster
 from plan_cutters_batch.job import Fault, Job, Settings
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.run import Terms, foreseen, handed_out, outcomes, run_batch

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import plan
-from plan_cutters_batch import shop
-from plan_cutters_batch.index import write_index
+from plan_cutters_batch import tools as shop
 from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, row_of
-from plan_cutters_batch.shop import fewest
+from plan_cutters_batch.summary import write_index
+from plan_cutters_batch.tools import fewest
 
 TOOLS = "ABCDE"
 

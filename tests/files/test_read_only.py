@@ -10,7 +10,7 @@ import pytest
 from plan_cutters.command import map as map_command
 from plan_cutters.errors import PlanError
 from plan_cutters.report.drawing import posture_map
-from plan_cutters_batch import cluster
+from plan_cutters_batch import run as cluster
 from plan_cutters_ci.changed import command as changed
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from plan_cutters import pipeline, plan
 from plan_cutters.outcome import Answers
-from plan_cutters_base import copies
+from plan_cutters_base import forks as copies
 from tests.support.places import SAMPLES
 
 WORDS = {"cutters": ["R2L30"], "machine": "trunnion-ac", "fixtures": "table", "holder": "er16", "feed": 1000.0,

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from plan_cutters_base.workers.assignment import is_child, report
+from plan_cutters_base.workers.child import is_child, report
 
 if TYPE_CHECKING:
     from plan_cutters.cases.case import Case

@@ -13,7 +13,7 @@ from plan_cutters.command.part_cases import PartCases
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.domain.figures import part_done
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import report
+from plan_cutters_base.workers.child import report
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {

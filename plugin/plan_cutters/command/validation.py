@@ -113,7 +113,7 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     """Let setups that are named behind `auto` take its place, as an option of advice that is typed behind the command does."""
     if not isinstance(value, tuple) or value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
         return value
-    from plan_cutters_base.workers.assignment import is_child
+    from plan_cutters_base.workers.child import is_child
 
     named = value[1:]
     ctx.meta[_NAMED] = named
@@ -136,7 +136,7 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
     from plan_cutters.domain.fixture import TABLE, Fixture
     from plan_cutters.errors import PlanError
     from plan_cutters.setups.files import read_setup
-    from plan_cutters_base.workers.assignment import is_child
+    from plan_cutters_base.workers.child import is_child
 
     try:
         first = Fixture.parse(value[0])
@@ -355,7 +355,7 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-    from plan_cutters_base.workers.assignment import job_input
+    from plan_cutters_base.workers.child import job_input
 
     errors: list[CadIoError] = []
     for part in () if job_input().part else parts:
@@ -419,7 +419,7 @@ def options_of(request: PlanningRequest) -> "Options":
     import pickle
 
     from plan_cutters.options import Options
-    from plan_cutters_base.workers.assignment import job_input
+    from plan_cutters_base.workers.child import job_input
 
     # A batch has looked at its words already, perhaps on another machine.
     handed = job_input().options

@@ -6,7 +6,7 @@ import numpy as np
 
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters_base.digest import digest
+from plan_cutters_base.values import digest
 
 #: Grounds whose checksums are remembered.
 _GROUNDS = 8
