@@ -12,9 +12,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from cad_io.surface.bends import Bends
 from cad_io.surface.bspline import Net, span, wrapped
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 
 @kernel

@@ -18,9 +18,7 @@ from cad_io.surface.bspline import evaluate as evaluate_net
 from cad_io.surface.forms import curve_lines, curve_net
 from cad_io.surface.net_bends import net_bends
 from cad_io.tessellate.bounds import evenly
-from plan_cutters_base.jit import decorators
-
-entry, kernel, maker = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel, maker
 
 #: Cells along a bent curve, at least; points of a curve that is replaced.
 _CELLS, _POINTS = 16, 257

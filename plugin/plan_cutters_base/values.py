@@ -27,17 +27,9 @@ def sources(*folders: Path) -> bytes | None:
 
 
 def digest(value: Any) -> bytes:
-    """SHA-256 of a value.
+    """SHA-256 of numbers, texts, bytes, arrays, and lists, sets, mappings and dataclasses of such.
 
-    Parameters
-    ----------
-    value : object
-        Numbers, texts, bytes, arrays, and lists, sets, mappings and dataclasses of such. Anything else counts by its pickle:
-        where that differs from run to run, something is done again, which is safe.
-
-    Returns
-    -------
-    bytes
+    Anything else counts by its pickle: where that differs from run to run, something is done again, which is safe.
     """
     state = hashlib.sha256()
     _feed(state, value)
@@ -81,18 +73,10 @@ _SERIES: dict[str, type] = {each.__name__: each for each in (tuple, list, set, f
 
 
 def packed(value: object) -> Iterator[bytes | memoryview]:
-    """Write a value, piece by piece.
+    """Write a value, piece by piece; a TypeError where it holds what cannot be written.
 
-    Parameters
-    ----------
-    value : object
-        Numbers, texts, bytes, arrays, and tuples, lists, sets, dicts and records (dataclasses, named tuples, models of pydantic)
-        of such. What is there twice is the same object again when it is read.
-
-    Raises
-    ------
-    TypeError
-        It holds something else.
+    Numbers, texts, bytes, arrays, and tuples, lists, sets, dicts and records (dataclasses, named tuples, models of pydantic) of
+    such can. What is there twice is the same object again when it is read.
     """
     packer = _Packer()
     text = json.dumps(packer.form(value)).encode()
@@ -106,10 +90,7 @@ def packed(value: object) -> Iterator[bytes | memoryview]:
 def unpacked(data: bytearray) -> Any:
     """Read what `packed` wrote; arrays share its memory.
 
-    Raises
-    ------
-    ValueError, TypeError, LookupError, AttributeError, ImportError
-        It is something else.
+    A ValueError, TypeError, LookupError, AttributeError or ImportError where it is something else.
     """
     begin = _LENGTH + int.from_bytes(data[:_LENGTH], "little")
     return _Unpacker(data, begin).value(json.loads(bytes(data[_LENGTH:begin])))

@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from filelock import BaseFileLock
 
+#: Errors that say that a file system has no locks of its own.
+_NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
+
 
 class FileError(Protocol):
     """The class of an error that names a file."""
@@ -43,16 +46,11 @@ def whole(path: str | Path, error: FileError | None = None, named: Callable[[Pat
 
     Parameters
     ----------
-    path : path
-    error : type of error, optional
-        Raised in place of an `OSError`.
-    named : callable, optional
+    path
+    error
+        Raised in place of an `OSError`: the folder cannot be written to, or the file cannot be written or take its place.
+    named
         Called with the path to write to before it exists, so that whoever ends this process can take it away.
-
-    Raises
-    ------
-    error or OSError
-        The folder cannot be written to, or the file cannot be written or take its place.
     """
     path = Path(path)
     temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
@@ -71,12 +69,8 @@ def whole(path: str | Path, error: FileError | None = None, named: Callable[[Pat
             temporary.unlink(missing_ok=True)
 
 
-#: Errors that say that a file system has no locks of its own.
-_NONE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
-
-
 def system_lock(file: Path) -> "BaseFileLock":
-    """Make the lock of a file; it is not taken yet."""
+    """Make the system's lock on a file, which ends with the process that has it, however that ends; it is not taken yet."""
     from filelock import FileLock  # most commands take none
 
     return FileLock(file, thread_local=False, fallback_to_soft=False)
@@ -91,7 +85,7 @@ def acquired(system: "BaseFileLock") -> bool | None:
     except TimeoutError:
         return False
     except OSError as error:
-        if error.errno in _NONE:
+        if error.errno in _NO_LOCKS:
             return None
         raise
     return True

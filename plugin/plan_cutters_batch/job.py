@@ -6,10 +6,10 @@ import functools
 import os
 import pickle
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from pathlib import Path, PurePath, PureWindowsPath
-from typing import Any
+from typing import Any, NamedTuple
 
 import plan_cutters
 from cad_io.read.references import followed
@@ -22,10 +22,6 @@ from plan_cutters_base import user_files
 from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
 from plan_cutters_base.user_files import checksum, checksums, fingerprint
 from plan_cutters_base.values import digest, sources
-from plan_cutters_batch.row import PartRow
-
-#: Exit codes of a batch: as of a single plan (`docs/command.md`).
-USAGE, UNREADABLE = 2, 3
 
 
 @dataclass(frozen=True)
@@ -41,19 +37,11 @@ class Content:
         """Checksum of all of it."""
         return fingerprint(checksum(self.data), checksums(self.references))
 
-    def write(self, file: Path) -> None:
-        """Write the file, and those that it refers to where they lie in or below its folder.
-
-        What lies elsewhere is missing there, or read where it lies if its whole path is given.
-        """
-        file.write_bytes(self.data)
-        for name, data in self.within():
-            there = file.parent / name
-            there.parent.mkdir(parents=True, exist_ok=True)
-            there.write_bytes(data)
-
     def within(self) -> Iterator[tuple[str, bytes]]:
-        """The files in or below its folder that it refers to, and that are there."""
+        """The files in or below its folder that it refers to, and that are there.
+
+        What lies elsewhere does not travel: it is missing there, or read where it lies if its whole path is given.
+        """
         return ((name, data) for name, data in self.references if data is not None and _is_within(name))
 
     def outside(self) -> tuple[tuple[str, str | None], ...]:
@@ -63,6 +51,13 @@ class Content:
 
 def _is_within(name: str) -> bool:
     return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
+
+
+def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write files below a folder, by their paths from there."""
+    for name, data in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(data)
 
 
 def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
@@ -82,9 +77,20 @@ def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
     return Content(data, tuple(followed(data, other)))
 
 
+class Handed(NamedTuple):
+    """Options, ready to travel."""
+
+    #: Pickled.
+    options: bytes
+    #: Of fixtures, by the names that these have there.
+    files: tuple[tuple[str, bytes], ...]
+    #: Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
+    outside: tuple[tuple[str, str | None], ...] = ()
+
+
 @dataclass(frozen=True)
 class Settings:
-    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
+    """How parts are planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
 
     options: Options
     #: Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
@@ -97,90 +103,83 @@ class Settings:
     #: Keep what stages make of a part in the cache folder of each worker's user.
     cache: bool = True
 
-
-@dataclass(frozen=True)
-class Job:
-    """A part to plan."""
-
-    #: Among all parts: its folder below the output is `<name>-plan`.
-    name: str
-    #: Path or URL.
-    file: str
-    settings: Settings
-    #: The pickled `cad_io.Part`, where it is no file.
-    part: bytes | None = None
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A part that cannot be planned, or a source that holds none: `why` is one line, with the place where it was requested."""
-
-    name: str
-    file: str
-    why: str
-    code: int = USAGE
-
     @property
-    def row(self) -> PartRow:
-        """Its line of the table."""
-        return PartRow(name=self.name, file=self.file, status="failed", code=self.code, error=self.why)
+    def words(self) -> tuple[str, ...]:
+        """Of the command line, for what is no option of the plan."""
+        return ("--formats", ",".join(self.formats), "--step-schema", self.step_schema, "--read-timeout", repr(self.read_timeout),
+                *([] if self.cache else ["--no-cache"]))  # fmt: skip
 
+    @functools.cached_property
+    def handed(self) -> Handed:
+        """The options as they travel, with the content of the files that fixtures are read from.
 
-@dataclass(frozen=True)
-class Handed:
-    """The settings of a part, ready to travel."""
+        An OptionError where one cannot be read, or where faces are given as objects, which belong to one process.
+        """
+        files: dict[str, bytes] = {}
+        names: dict[str, str] = {}
+        outside: list[tuple[str, str | None]] = []
 
-    #: Pickled.
-    options: bytes
-    #: Of fixtures, by the names that these have there.
-    files: tuple[tuple[str, bytes], ...]
-    #: Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
-    outside: tuple[tuple[str, str | None], ...] = ()
+        def moved(fixture: Fixture) -> Fixture:
+            if fixture.kind or not isinstance(fixture.source, str):
+                return fixture
+            if fixture.source not in names:
+                copied = content(fixture.source, _read)
+                name = PurePath(PureWindowsPath(fixture.source).name).name
+                # What it refers to is called as it is called there: it gets a folder of its own.
+                name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
+                while name in files:
+                    name = f"_{name}"
+                files[name] = copied.data
+                files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
+                outside.extend(copied.outside())
+                names[fixture.source] = name
+            # A copy past the checks: they looked at the same words.
+            return _with(fixture, source=names[fixture.source])
 
+        def placed(place: Placement | None) -> Placement | None:
+            return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
 
-def handed(options: Options) -> Handed:
-    """Pack options for another machine, with the content of the files that fixtures are read from.
+        there = _with(
+            self.options,
+            fixtures=tuple(map(moved, self.options.fixtures)),
+            placement=placed(self.options.placement),
+            other_placements=tuple(map(placed, self.options.other_placements)),
+        )
+        try:
+            packed = pickle.dumps(there, protocol=5)
+        except Exception as error:
+            raise OptionError(
+                f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
+                "give numbers, words or files"
+            ) from None
+        return Handed(packed, tuple(sorted(files.items())), tuple(outside))
 
-    An OptionError where one cannot be read, or where faces are given as objects, which belong to one process.
-    """
-    files: dict[str, bytes] = {}
-    names: dict[str, str] = {}
-    outside: list[tuple[str, str | None]] = []
+    @functools.cached_property
+    def key(self) -> str:
+        """Checksum of all but the part: effective options with tools, machine and fixtures, every file that was read for them,
+        what is written, versions.
 
-    def moved(fixture: Fixture) -> Fixture:
-        if fixture.kind or not isinstance(fixture.source, str):
-            return fixture
-        if fixture.source not in names:
-            copied = content(fixture.source, _read)
-            name = PurePath(PureWindowsPath(fixture.source).name).name
-            # What it refers to is called as it is called there: it gets a folder of its own.
-            name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
-            while name in files:
-                name = f"_{name}"
-            files[name] = copied.data
-            files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
-            outside.extend(copied.outside())
-            names[fixture.source] = name
-        # A copy past the checks: they looked at the same words.
-        return _with(fixture, source=names[fixture.source])
+        The number of threads and the limits of time change no result and do not count.
+        """
+        options = {each.name: getattr(self.options, each.name) for each in fields(self.options)}
+        del options["jobs"]
+        parts = [options, sorted(self.formats), sorted(self.read), self.step_schema, program()]
+        return digest([parts, self.handed.outside, *self.handed.files]).hex()
 
-    def placed(place: Placement | None) -> Placement | None:
-        return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
+    def faced(self, part: Any) -> "Settings":
+        """The same with faces by their numbers, for a part that is an object: its faces cannot be named in another process."""
+        from plan_cutters.scene.faces import face_numbers
 
-    there = _with(
-        options,
-        fixtures=tuple(map(moved, options.fixtures)),
-        placement=placed(options.placement),
-        other_placements=tuple(map(placed, options.other_placements)),
-    )
-    try:
-        packed = pickle.dumps(there, protocol=5)
-    except Exception as error:
-        raise OptionError(
-            f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
-            "give numbers, words or files"
-        ) from None
-    return Handed(packed, tuple(sorted(files.items())), tuple(outside))
+        changed: dict[str, Any] = {}
+        for word in ("faces", "ignore"):
+            value = getattr(self.options, word)
+            if value is None or isinstance(value, str) or not value:
+                continue
+            with contextlib.suppress(TypeError):
+                if all(isinstance(each, str | int) for each in value):
+                    continue
+            changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
+        return replace(self, options=_with(self.options, **changed)) if changed else self
 
 
 def _read(file: str) -> bytes:
@@ -197,21 +196,21 @@ def _with(record: Any, **values: Any) -> Any:
     return made
 
 
-def faced(job: Settings, part: Any) -> Settings:
-    """Settings whose faces are numbers, for a part that is an object: its faces cannot be named in another process."""
-    from plan_cutters.scene.faces import face_numbers
+@dataclass(frozen=True)
+class Job:
+    """A part to plan."""
 
-    options = job.options
-    changed: dict[str, Any] = {}
-    for word in ("faces", "ignore"):
-        value = getattr(options, word)
-        if value is None or isinstance(value, str) or not value:
-            continue
-        with contextlib.suppress(TypeError):
-            if all(isinstance(each, str | int) for each in value):
-                continue
-        changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
-    return replace(job, options=_with(options, **changed)) if changed else job
+    #: Among all parts: its folder below the output is `<name>-plan`.
+    name: str
+    #: Path or URL.
+    file: str
+    settings: Settings
+    #: The pickled `cad_io.Part`, where it is no file.
+    part: bytes | None = None
+
+    def content(self) -> Content:
+        """What is planned; a PlanError where it cannot be read."""
+        return Content(self.part) if self.part else content(self.file)
 
 
 @functools.cache
@@ -233,18 +232,6 @@ def versions() -> dict[str, str]:
     }
 
 
-def settings_key(settings: Settings, there: Handed) -> str:
-    """Checksum of all but the part: effective options with tools, machine and fixtures, every file that was read for them, what
-    is written, versions.
-
-    The number of threads and the limits of time change no result and do not count.
-    """
-    options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
-    del options["jobs"]
-    parts = [options, sorted(settings.formats), sorted(settings.read), settings.step_schema, program()]
-    return digest([parts, there.outside, *there.files]).hex()
-
-
-def key(content: str, settings: str) -> str:
-    """The key of a part from the checksum of its file and that of its settings."""
+def key_of(content: str, settings: str) -> str:
+    """The key of a part, from the checksum of its file and that of its settings: two runs that have one give the same files."""
     return checksum(f"{content} {settings}".encode())

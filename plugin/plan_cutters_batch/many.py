@@ -12,8 +12,8 @@ from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options, PlanOptions
 from plan_cutters_base.user_files import noted
-from plan_cutters_batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
-from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.job import Job, Settings
+from plan_cutters_batch.row import UNREADABLE, PartRow, failed
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
@@ -108,19 +108,13 @@ def plan_many(
         if client is None:
             count, memory = cluster.workers_of(None, memory, settings.options.jobs)
             client = stack.enter_context(cluster.opened(None, count))
-        faults: list[PartRow] = []
         terms = Terms(force, timeout_part, memory)
-        jobs = _jobs(parts, settings, faults)
-        for outcome in outcomes(jobs, client, terms, out=store, token=token):
+        for outcome in outcomes(_jobs(parts, settings), client, terms, out=store, token=token):
             yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)
-            while faults:
-                yield Planned(faults.pop(0))
-        for row in faults:
-            yield Planned(row)
 
 
-def _jobs(parts: Iterable[Any], settings: Settings, faults: list[PartRow]) -> Iterator[Job]:
-    """Jobs of parts as they are requested; those that cannot be planned are put aside."""
+def _jobs(parts: Iterable[Any], settings: Settings) -> Iterator[Job | PartRow]:
+    """Jobs of parts as they are requested, and rows of those that cannot be planned."""
     from cad_io import read_part
 
     names: set[str] = set()
@@ -139,8 +133,8 @@ def _jobs(parts: Iterable[Any], settings: Settings, faults: list[PartRow]) -> It
                 yield Job(name, file, settings)
             else:
                 result = read_part(part, settings.options.unit)
-                yield Job(name, file, faced(settings, result), pickle.dumps(result, protocol=5))
+                yield Job(name, file, settings.faced(result), pickle.dumps(result, protocol=5))
         except PlanError as error:
-            faults.append(Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row)
+            yield failed(f"{name} ({number})" if name.casefold() in names else name, file, str(error))
         except Exception as error:
-            faults.append(Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row)
+            yield failed(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE)

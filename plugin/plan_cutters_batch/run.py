@@ -5,22 +5,22 @@ import itertools
 import logging
 import os
 import queue
-import secrets
 import signal
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from plan_cutters.errors import PlanError, extra_hint
-from plan_cutters.files.folder import read, refuse_memory
+from plan_cutters.files.folder import refuse_memory
 from plan_cutters.files.lock import require_temporary
-from plan_cutters_batch import job as keys
-from plan_cutters_batch import run as clusters
-from plan_cutters_batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
-from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.job import Job, key_of, versions
+from plan_cutters_batch.row import UNREADABLE, PartRow, failed
 from plan_cutters_batch.store import Store
-from plan_cutters_batch.work import Outcome, Task, cached, content_of, work
+from plan_cutters_batch.work import Outcome, Task, cached, work
+
+if TYPE_CHECKING:
+    from plan_cutters_batch.progress import Board
 
 #: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.
 LEAST_MEMORY, _SHARE = 4_000_000_000, 0.75
@@ -73,11 +73,8 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
 def _quiet() -> Iterator[None]:
     """Keep the lines and tracebacks of dask from people: what goes wrong is said here, once."""
     # Dask gives some of its loggers levels of their own.
-    loggers = [
-        logging.getLogger(name)
-        for name in ("distributed", *logging.root.manager.loggerDict)
-        if name.partition(".")[0] == "distributed"
-    ]
+    names = ("distributed", *logging.root.manager.loggerDict)
+    loggers = [logging.getLogger(name) for name in names if name.partition(".")[0] == "distributed"]
     before = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)
@@ -104,36 +101,33 @@ def _deaf() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _reached(distributed: Any, address: str) -> Iterator[Any]:
+    def fault(why: str) -> PlanError:
+        return PlanError(why, file=f"--cluster {address}")
+
     words: dict[str, Any] = {"address": address}
     if os.path.isfile(address):
         words = {"scheduler_file": address}
     elif "://" not in address:
-        raise PlanError("no such file, and no address as tcp://HOST:8786", file=f"--cluster {address}")
+        raise fault("no such file, and no address as tcp://HOST:8786")
     try:
         client = distributed.Client(**words, timeout=_ANSWER)
     except (OSError, ValueError, TypeError) as error:
         why = "it did not answer" if isinstance(error, TimeoutError) or not str(error) else "it cannot be reached"
-        raise PlanError(
-            f"{why} within {_ANSWER} s: does the scheduler run, and can this machine reach it?", file=f"--cluster {address}"
-        ) from None
+        raise fault(f"{why} within {_ANSWER} s: does the scheduler run, and can this machine reach it?") from None
     except Exception as error:
-        raise PlanError(f"no scheduler ({type(error).__name__})", file=f"--cluster {address}") from None
-    try:
+        raise fault(f"no scheduler ({type(error).__name__})") from None
+    with contextlib.closing(client):
         try:
             client.wait_for_workers(1, timeout=_JOIN)
         except TimeoutError:
-            raise PlanError(
-                f"the scheduler has no worker, and none joined within {_JOIN} s: start some", file=f"--cluster {address}"
-            ) from None
+            raise fault(f"the scheduler has no worker, and none joined within {_JOIN} s: start some") from None
         yield client
-    finally:
-        client.close()
 
 
 def _same(client: Any) -> None:
     """An error where a worker has other versions than this process."""
-    here = keys.versions()
-    for where, there in client.run(keys.versions, on_error="return").items():
+    here = versions()
+    for where, there in client.run(versions, on_error="return").items():
         if isinstance(there, BaseException):
             raise PlanError(f"worker {where} cannot load plan-cutters ({type(there).__name__}): install it there, as it is here")
         for name, version in here.items():
@@ -156,39 +150,20 @@ def facts(client: Any) -> dict[str, object]:
 _QUEUED, _LEAST = 2, 8
 #: How often a quiet run looks around, s, and how long its scheduler may be gone before it is given up.
 _LOOK, _GONE = 1.0, 20.0
+_BROKE = "the connection to the scheduler broke: run the same command again, what is done is reused"
 
 
-class ProgressListener(Protocol):
-    """Who is told how far a run is: `progress.Board`."""
-
-    def progress(self, done: int, running: int, total: int | None) -> None:
-        """So many parts are done and so many are with workers, of all."""
-
-    def say(self, text: str) -> None:
-        """A line for people."""
-
-
-@dataclass
+@dataclass(frozen=True)
 class Terms:
     """On what terms parts are planned: `force` what is done, too; seconds and bytes for a part."""
 
     force: bool = False
     timeout: float | None = None
     memory: float | None = None
-    packed: dict[int, tuple[Settings, Handed, str]] = field(default_factory=dict)
-
-    def of(self, settings: Settings) -> tuple[Handed, str]:
-        """Settings as they travel, and their key: made once for all parts that share them."""
-        packed = self.packed.get(id(settings))
-        if packed is None:
-            there = handed(settings.options)
-            # The settings are kept with it, so that no other ones get their number.
-            packed = self.packed[id(settings)] = (settings, there, keys.settings_key(settings, there))
-        return packed[1], packed[2]
 
 
 def run_batch(
-    parts: Sequence[Job | Fault], client: Any, out: Store, terms: Terms, *, board: ProgressListener | None = None,
+    parts: Sequence[Job | PartRow], client: Any, out: Store, terms: Terms, *, board: "Board | None" = None,
     title: str = "plan-cutters batch",
 ) -> Iterator[PartRow]:  # fmt: skip
     """Plan parts on a cluster (`distributed.Client`), and write the table of all when the last one is done.
@@ -198,64 +173,67 @@ def run_batch(
     from plan_cutters_batch.summary import write_index
 
     began = time.monotonic()
-    token = out.begin()
     rows: list[PartRow] = []
     try:
-        facts = clusters.facts(client)
-        faults = [part for part in parts if isinstance(part, Fault)]
-        jobs = [part for part in parts if isinstance(part, Job)]
-        for fault in faults:
-            rows.append(fault.row)
-            yield fault.row
-        for outcome in outcomes(jobs, client, terms, out=out, token=token, board=board):
-            rows.append(outcome.row)
-            yield outcome.row
-        rows.sort(key=lambda row: row.name)
-        write_index(rows, out.put, title=title, seconds=time.monotonic() - began, cluster=facts)
+        token, where = out.begin(), facts(client)
+        planned = outcomes([part for part in parts if isinstance(part, Job)], client, terms, out=out, token=token, board=board)
+        for row in itertools.chain((part for part in parts if isinstance(part, PartRow)), (each.row for each in planned)):
+            rows.append(row)
+            yield row
+        write_index(rows, out.put, title=title, seconds=time.monotonic() - began, cluster=where)
     finally:
         out.end()
 
 
 def outcomes(
-    jobs: Iterable[Job], client: Any, terms: Terms, *, out: Store | None = None, token: str = "",
-    board: ProgressListener | None = None, total: int | None = None,
+    parts: Iterable[Job | PartRow], client: Any, terms: Terms, *, out: Store | None = None, token: str = "",
+    board: "Board | None" = None,
 ) -> Iterator[Outcome]:  # fmt: skip
-    """Plan parts on a cluster; outcomes as they come. Without `out`, the files come with them."""
-    if total is None and isinstance(jobs, Sequence):
-        total = len(jobs)
-    versions = keys.versions()
-    where = None if out is None else out.root_url
-    faulty: list[Outcome] = []
+    """Plan parts on a cluster; outcomes as they come, those of parts that cannot be planned among them.
+
+    Without `out`, the files come with them.
+    """
+    here, store = versions(), None if out is None else out.root_url
+    more = () if terms.memory is None else ("--memory", repr(terms.memory / 1e9))
+    faulty: list[PartRow] = []
 
     def tasks() -> Iterator[Task]:
-        for job in jobs:
+        for job in parts:
+            if isinstance(job, PartRow):
+                faulty.append(job)
+                continue
             try:
                 refuse_memory(job.file)
-                there, key = terms.of(job.settings)
+                handed, key = job.settings.handed, job.settings.key
             except PlanError as error:
-                faulty.append(Outcome(_failed(job, str(error), USAGE), {}))
+                faulty.append(failed(job.name, job.file, str(error)))
                 continue
-            settings = job.settings
-            words = ["--formats", ",".join(settings.formats), "--step-schema", settings.step_schema,
-                     "--read-timeout", repr(settings.read_timeout), *([] if settings.cache else ["--no-cache"]),
-                     *([] if terms.memory is None else ["--memory", repr(terms.memory / 1e9)])]  # fmt: skip
-            yield Task(job.name, job.file, job.part, there, tuple(words), key, where, token, terms.force, terms.timeout,
-                       versions, job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
+            source = job.file if "://" in job.file else os.path.abspath(job.file)
+            yield Task(job.name, job.file, job.part, handed, (*job.settings.words, *more), key, store, token, terms.force,
+                       terms.timeout, here, source)  # fmt: skip
 
-    for task, outcome in handed_out(client, tasks(), work, board=board, total=total):
+    for task, outcome in handed_out(client, tasks(), work, board=board):
         if isinstance(outcome, BaseException):
-            yield Outcome(_failed(task, _lost_worker(task, outcome), UNREADABLE), {})
+            yield Outcome(failed(task.name, task.file, f"{task.file}: {_why(outcome)}", UNREADABLE))
         else:
             yield outcome
         while faulty:
-            yield faulty.pop()
-    yield from faulty
+            yield Outcome(faulty.pop(0))
+    yield from map(Outcome, faulty)
+
+
+def _why(error: BaseException) -> str:
+    name = type(error).__name__
+    if name == "KilledWorker":
+        return "the worker ended at this part, and others after it (killed, or out of memory): it is left out"
+    if name in ("CancelledError", "FutureCancelledError"):
+        return _BROKE
+    return " ".join(str(error).split()) or name
 
 
 def handed_out(
-    client: Any, tasks: Iterator[Any], function: Callable[[Any], Any], *, board: ProgressListener | None = None,
-    total: int | None = None,
-) -> Iterator[tuple[Any, Any]]:  # fmt: skip
+    client: Any, tasks: Iterator[Any], function: Callable[[Any], Any], *, board: "Board | None" = None
+) -> Iterator[tuple[Any, Any]]:
     """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
 
     What is asked of dask never grows with the number of tasks, so that neither this process nor the scheduler does. A task
@@ -267,7 +245,7 @@ def handed_out(
         while not flight.gone():
             flight.fill()
             if board is not None:
-                board.progress(done, len(flight.tasks), total)
+                board.progress(done, len(flight.tasks))
             if not flight.tasks:
                 return
             answer = flight.answer()
@@ -282,10 +260,11 @@ def handed_out(
             done += 1
             yield task, outcome
         for task in itertools.chain(flight.tasks.values(), tasks):
-            why = "the connection to the scheduler broke: run the same command again, what is done is reused"
-            yield task, ConnectionError(why)
+            yield task, ConnectionError(_BROKE)
     finally:
-        flight.cancel()
+        # What has not begun is not begun.
+        if flight.tasks and client.status == "running":
+            client.cancel(list(flight.tasks))
 
 
 class _Flight:
@@ -294,18 +273,16 @@ class _Flight:
     def __init__(self, client: Any, tasks: Iterator[Any], function: Callable[[Any], Any]) -> None:
         self.tasks: dict[Any, Any] = {}
         self._client, self._more, self._function = client, tasks, function
-        self._run, self._count = secrets.token_hex(4), itertools.count()
         self._ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._threads: dict[str, int] = {}
         self._unfit: set[str] = set()
         self._looked = self._gone = 0.0
-        self._most, self._begun_all = _LEAST, False
+        self._most = _LEAST
 
     def hand(self, task: Any) -> None:
         """Begin a task."""
         fit = [each for each in self._threads if each not in self._unfit] if self._unfit else None
-        future = self._client.submit(self._function, task, key=f"plan-{self._run}-{next(self._count)}", pure=False, retries=0,
-                                     workers=fit or None, allow_other_workers=bool(fit))  # fmt: skip
+        future = self._client.submit(self._function, task, pure=False, workers=fit or None, allow_other_workers=bool(fit))
         self.tasks[future] = task
         future.add_done_callback(self._ready.put)
 
@@ -316,12 +293,8 @@ class _Flight:
         if time.monotonic() - self._looked > _LOOK:
             self._threads, self._looked = _threads(self._client), time.monotonic()
             self._most = max(_LEAST, _QUEUED * sum(self._threads.values()))
-        while not self._begun_all and len(self.tasks) < self._most:
-            task = next(self._more, None)
-            if task is None:
-                self._begun_all = True
-            else:
-                self.hand(task)
+        while len(self.tasks) < self._most and (task := next(self._more, None)) is not None:
+            self.hand(task)
 
     def answer(self) -> tuple[Any, Any] | None:
         """A task that has ended, with its result or the exception that it ended in; None where it is quiet for a while."""
@@ -353,11 +326,6 @@ class _Flight:
         self._threads = _threads(self._client)
         return any(each not in self._unfit for each in self._threads)
 
-    def cancel(self) -> None:
-        """Begin none of what has not begun."""
-        if self.tasks and self._client.status == "running":
-            self._client.cancel(list(self.tasks))
-
 
 def _threads(client: Any) -> dict[str, int]:
     """How many threads each worker has."""
@@ -367,32 +335,15 @@ def _threads(client: Any) -> dict[str, int]:
         return {}
 
 
-def _lost_worker(task: Task, error: BaseException) -> str:
-    name = type(error).__name__
-    if name == "KilledWorker":
-        return f"{task.file}: the worker ended at this part, and others after it (killed, or out of memory): it is left out"
-    if name in ("CancelledError", "FutureCancelledError"):
-        return f"{task.file}: the connection to the scheduler broke: run the same command again, what is done is reused"
-    return f"{task.file}: {' '.join(str(error).split()) or name}"
-
-
-def _failed(job: Job | Task, why: str, code: int) -> PartRow:
-    return PartRow(name=job.name, file=job.file, status="failed", code=code, error=why)
-
-
-def foreseen(parts: Iterable[Job | Fault], out: Store, terms: Terms) -> Iterator[PartRow]:
+def foreseen(parts: Iterable[Job | PartRow], out: Store, terms: Terms) -> Iterator[PartRow]:
     """Say of each part what a run would do, and do nothing: `planned` with no verdict yet, `kept` or `failed`."""
     for part in parts:
-        if isinstance(part, Fault):
-            yield part.row
+        if isinstance(part, PartRow):
+            yield part
             continue
         try:
-            there, key = terms.of(part.settings)
-            task = Task(part.name, part.file, part.part, there, (), key, out.url, "", False, None, {})
-            key = keys.key(content_of(task).key, task.settings)
-            row = None if terms.force else cached(out, task.folder, key, task.name, task.file)
-            if row is None:
-                read(part.file) if part.part is None and terms.force else None
+            key = key_of(part.content().key, part.settings.key)
+            row = None if terms.force else cached(out, f"{part.name}-plan", key, part.name, part.file)
             yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)
         except PlanError as error:
-            yield _failed(part, str(error), UNREADABLE)
+            yield failed(part.name, part.file, str(error), UNREADABLE)

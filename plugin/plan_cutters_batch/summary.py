@@ -10,98 +10,24 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 from urllib.parse import quote
 
 from markupsafe import Markup
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import to_jsonable_python
 
-from plan_cutters.cases import case
-from plan_cutters.cases.case import Case
 from plan_cutters.document.build import versions
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.figures import percent
-from plan_cutters.files.markup import finite, plain, policy, template
+from plan_cutters.files.markup import embedded, finite, plain, policy, template
 from plan_cutters.plan_file.words.cutters import reason
-from plan_cutters_base.workers.child import TIMED_OUT
-from plan_cutters_batch.row import PartRow, PartTools
+from plan_cutters_batch.row import OUTCOMES, PartRow, cause, code_of, fault, outcome
 from plan_cutters_batch.tools import fewest
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.
 NAMED = 100
-
-#: What came of a part, from worst to best.
-Outcome = Literal["failed", "not_finished", "not_sure", "finished"]
-#: The same in words for people.
-OUTCOMES: dict[Outcome, str] = {word: word.replace("_", " ") for word in get_args(Outcome)}
-#: What is not sure is neither reached nor known not to be.
-_AS_CASES: dict[Outcome, case.Outcome] = {
-    "failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"
-}  # fmt: skip
-#: By the exit code of a single plan; every other code is a failure.
-_OF_CODES: dict[int, Outcome] = {0: "finished", 1: "not_finished", 4: "not_sure"}
-
-
-def outcome(row: PartRow) -> Outcome:
-    """Sum up a part in a word.
-
-    >>> outcome(PartRow(name="a", file="a.step", status="kept", code=4))
-    'not_sure'
-    >>> outcome(PartRow(name="a", file="a.step", status="planned", code=139))
-    'failed'
-    """
-    return "failed" if row.status == "failed" else _OF_CODES.get(row.code, "failed")
-
-
-def code_of(row: PartRow) -> int:
-    """The exit code of a part: a failure has never that of an answer.
-
-    >>> code_of(PartRow(name="a", file="a.step", status="failed", code=0))
-    3
-    """
-    return row.code if outcome(row) != "failed" or row.code > 1 else 3
-
-
-#: What may end a batch with a code that is not zero, as `--fail-on` names it.
-FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
-
-
-def fault(row: PartRow) -> str:
-    """Name what is wrong with a part, as `--fail-on` does; empty where it is finished.
-
-    >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
-    'late'
-    >>> fault(PartRow(name="a", file="a.step", status="failed", code=139))
-    'unreadable'
-    >>> fault(PartRow(name="a", file="a.step", status="kept", code=0))
-    ''
-    """
-    result = outcome(row)
-    if result == "failed":
-        return {2: "refused", TIMED_OUT: "late"}.get(code_of(row), "unreadable")
-    return {"not_finished": "unfinished", "not_sure": "unsure", "finished": ""}[result]
-
-
-def cause(row: PartRow) -> str:
-    """Why a part failed: never empty."""
-    return row.error or f"no cause was reported (exit code {row.code})"
-
-
-def part_case(row: PartRow) -> Case:
-    """The case of a part: an error without an answer or where the answer is not sure, a failure where it is not finished.
-
-    >>> part_case(PartRow(name="a", file="in/a.step", status="failed", code=124, error="not done within 9 s")).outcome
-    'error'
-    """
-    result = outcome(row)
-    if result == "finished":
-        return Case(row.file, row.name, seconds=row.seconds)
-    text = cause(row) if result == "failed" else row.verdict
-    kind = f"exit_code_{row.code}" if result == "failed" else row.reason or result
-    details = row.error or "" if result != "failed" else ""
-    return Case(row.file, row.name, _AS_CASES[result], kind, text, details, row.seconds)
 
 
 class _Entry(BaseModel):
@@ -220,38 +146,44 @@ def summary_of(
     rows: Sequence[PartRow], *, title: str, files: Mapping[str, Table], versions: Mapping[str, str], run: BatchRun
 ) -> Summary:
     """Sum up the rows."""
-    outcomes = [outcome(row) for row in rows]
     cutters: dict[str, Counter[str]] = {}
-    for row, result in zip(rows, outcomes, strict=True):
+    for row in rows:
         if row.cutter is not None:
-            cutters.setdefault(row.cutter, Counter())[result] += 1
-    failed = [row for row, result in zip(rows, outcomes, strict=True) if result == "failed"]
-    reasons = Counter(row.reason for row, result in zip(rows, outcomes, strict=True) if row.reason and result != "finished")
+            cutters.setdefault(row.cutter, Counter())[outcome(row)] += 1
+    failed = [row for row in rows if outcome(row) == "failed"]
+    reasons = Counter(row.reason for row in rows if row.reason and outcome(row) != "finished")
     made = Counter(row.status for row in rows)
     return Summary(
         title=title,
         code=max(map(code_of, rows), default=0),
-        parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **_counts(Counter(outcomes))),
-        by_cutter=[CutterParts(cutter=name, **_counts(cutters[name]))
+        parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **Counter(str(outcome(row)) for row in rows)),
+        by_cutter=[CutterParts(cutter=name, **cutters[name])
                    for name in sorted(cutters, key=lambda name: (-cutters[name].total(), name))],
         by_reason=[ReasonParts(reason=code, parts=reasons[code])
                    for code in sorted(reasons, key=lambda code: (-reasons[code], code))],
-        shop=_shop(rows, outcomes),
+        shop=_shop(rows),
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
         files=dict(files), versions=dict(versions), run=run,
     )  # fmt: skip
 
 
-def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
+def _shop(rows: Sequence[PartRow]) -> ShopTools:
     """Sum up the tools of all parts."""
     parts = [row.tools for row in rows if row.tools is not None and row.status != "failed"]
-    names = _names(parts)
+    # How each tool is called: as most plans call it, each otherwise.
+    calls: dict[str, Counter[str]] = {}
+    for part in parts:
+        for tool, name in part.names.items():
+            calls.setdefault(tool, Counter())[name] += 1
+    names = {tool: min(call, key=lambda name: (-call[name], name)) for tool, call in calls.items()}
+    taken = Counter(names.values())
+    names = {tool: name if taken[name] == 1 else f"{name} ({tool})" for tool, name in names.items()}
     judged = Counter(tool for part in parts for tool in part.names)
     alone = Counter(tool for part in parts for tool in part.alone)
     used = Counter(tool for part in parts for tool in part.used)
     order = sorted(judged, key=lambda tool: (-alone[tool], -used[tool], names[tool], tool))
     best = fewest(parts)
-    unfinished = [row for row, result in zip(rows, outcomes, strict=True) if result == "not_finished"]
+    unfinished = [row for row in rows if outcome(row) == "not_finished"]
     return ShopTools(
         tools=[ToolParts(tool=names[tool], id=tool, judged=judged[tool], alone=alone[tool], used=used[tool]) for tool in order],
         least=None if not best.tools else
@@ -264,21 +196,6 @@ def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
         ],
         unfinished_count=len(unfinished), not_known=len(rows) - len(parts),
     )  # fmt: skip
-
-
-def _names(parts: Sequence[PartTools]) -> dict[str, str]:
-    """How each tool is called, by its id: as most plans call it, each otherwise."""
-    ways: dict[str, Counter[str]] = {}
-    for part in parts:
-        for tool, name in part.names.items():
-            ways.setdefault(tool, Counter())[name] += 1
-    names = {tool: min(way, key=lambda name: (-way[name], name)) for tool, way in ways.items()}
-    taken = Counter(names.values())
-    return {tool: name if taken[name] == 1 else f"{name} ({tool})" for tool, name in names.items()}
-
-
-def _counts(counts: Mapping[str, int]) -> dict[str, int]:
-    return {word: counts.get(word, 0) for word in OUTCOMES}
 
 
 def schema() -> dict[str, Any]:
@@ -294,10 +211,6 @@ PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"
 _HERE = Path(__file__).parent
 #: What a spreadsheet takes for the beginning of a formula (the wide forms too), or drops before one; and our own mark.
 _FORMULA = re.compile(r"[=+\-@＝＋－＠'\s\x00-\x1f\x7f]")
-#: Outcome first, as it sums up status and code; then the fields of a row in their order. New ones are appended.
-_FIRST = ("name", "file", "outcome")
-#: What no cell holds: the summary counts it.
-_NESTED = frozenset({"tools"})
 #: Tools that a sentence names.
 _NAMED = 8
 
@@ -307,19 +220,10 @@ def write_index(
 ) -> None:
     """Write the index of all parts; all is made before anything is written, and the summary comes last.
 
-    Parameters
-    ----------
-    rows : sequence of PartRow
-        In any order: the table has them by name, the page with failures on top.
-    put : callable
-        Called with the name of a file and its content; it lets the file appear whole or not at all, or raises.
-    title : str
-    seconds : float
-        By the clock, of the whole run.
-    cluster : mapping
-        Where it ran, as words and numbers: what is no JSON is told by its `str`.
+    Rows come in any order: the table has them by name, the page with failures on top. `put` lets a file of a name and a content
+    appear whole or not at all, or raises. `seconds` by the clock, of the whole run. `cluster` says where it ran.
     """
-    rows = sorted((_clean(row) for row in rows), key=lambda row: (row.name, row.file, row.key))
+    rows = sorted(map(_clean, rows), key=lambda row: (row.name, row.file, row.key))
     tables = {CSV: csv_of(rows)}
     facts = to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants")
     summary = summary_of(
@@ -331,7 +235,7 @@ def write_index(
             time=datetime.now(UTC).isoformat(timespec="seconds"),
             seconds=finite(float(seconds)),
             seconds_of_parts=sum(row.seconds for row in rows if row.status != "kept" and math.isfinite(row.seconds)),
-            cluster={plain(str(name)): plain(value) for name, value in finite(facts).items()},
+            cluster=json.loads(embedded(facts)),
         ),
     )
     tables[PAGE] = page(rows, summary)
@@ -401,32 +305,20 @@ def _link(path: str | None) -> str:
 
 def _clean(row: PartRow) -> PartRow:
     """The row without what has no place in a text file; links keep their bytes."""
-    texts = {name: plain(value) for name, value in row if name not in ("page", "picture", "tools")}
-    tools = None if row.tools is None else PartTools.model_validate(_plain(row.tools.model_dump()))
-    return row.model_copy(update={**texts, "tools": tools})
-
-
-def _plain(value: Any) -> Any:
-    """The same value with `plain` texts, and no number that is not finite."""
-    if isinstance(value, Mapping):
-        return {plain(name): _plain(each) for name, each in value.items()}
-    if isinstance(value, list | tuple):
-        return tuple(map(_plain, value))
-    return finite(plain(value))
+    same = {"page": row.page, "picture": row.picture, "seconds": row.seconds}
+    return PartRow.model_validate(json.loads(embedded(row.model_dump())) | same)
 
 
 def columns() -> list[str]:
-    """The columns in their order."""
-    return list(dict.fromkeys((*_FIRST, *(name for name in PartRow.model_fields if name not in _NESTED))))
+    """The columns in their order: the outcome first, as it sums up status and code; then the fields of a row."""
+    return list(dict.fromkeys(("name", "file", "outcome", *(name for name in PartRow.model_fields if name != "tools"))))
 
 
 def values(row: PartRow) -> dict[str, Any]:
     """The cells of a row; None for what is not known. A part that failed always says why."""
     result = outcome(row)
-    cells = {**row.model_dump(exclude=set(_NESTED)), "outcome": result, "error": cause(row) if result == "failed" else row.error}
-    return {
-        name: None if isinstance(cells[name], float) and not math.isfinite(cells[name]) else cells[name] for name in columns()
-    }
+    cells = row.model_dump() | {"outcome": result, "error": cause(row) if result == "failed" else row.error}
+    return {name: finite(cells[name]) for name in columns()}
 
 
 def csv_of(rows: Sequence[PartRow]) -> bytes:

@@ -1,14 +1,122 @@
-"""The tools of a whole shop: which ones finish how many parts, the fewest for all parts, and those that no plan uses."""
+"""The tools of a shop: which of them finish a part, by its plan, and the fewest that finish all parts together."""
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from plan_cutters_batch.row import PartTools
+from pydantic import BaseModel, ConfigDict
 
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+
+#: Needs of a part that its row names.
+_NEEDS = 3
 #: Seconds that each of the two searches may take; then the best set so far is reported, with the bound that is proved by then.
 _SECONDS = 10.0
+
+
+class FaceTools(BaseModel):
+    """The tools that reach a face whole, and those that reach some of it."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    whole: tuple[str, ...]
+    partly: tuple[str, ...] = ()
+
+
+class PartTools(BaseModel):
+    """The part of a plan from which the tools of many parts are chosen: sets that finish the part beyond doubt."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    #: How people call each tool that was judged, by its id: the same dimensions, the same id.
+    names: dict[str, str]
+    #: Whether the tools finish the part beyond doubt (exit code 0). All but `used`, `share` and `needs` is empty where not.
+    finished: bool = False
+    #: Ids of the tools each of which reaches every judged sample.
+    alone: tuple[str, ...] = ()
+    #: Sets that the plan states to finish the part: its process, its least set.
+    together: tuple[tuple[str, ...], ...] = ()
+    #: What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
+    #: setups, for the plan counts the samples of a face in the first one alone.
+    faces: tuple[FaceTools, ...] = ()
+    #: Tools of the steps of the plan, whatever it finishes.
+    used: tuple[str, ...] = ()
+    #: Of what is requested, that all tools finish together, 0 to 1.
+    share: float | None = None
+    #: What would finish more, the best first.
+    needs: tuple[str, ...] = ()
+
+    def finished_by(self, tools: Iterable[str]) -> bool:
+        """Whether the plan states that some tools finish the part together."""
+        there = set(tools)
+        if not self.finished:
+            return False
+        if there & set(self.alone) or any(there.issuperset(each) for each in self.together):
+            return True
+        return bool(self.faces) and all(there & set(face.whole) for face in self.faces)
+
+
+def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
+    """Read from a plan with an exit code which tools finish its part; `names`: how its tools are called in a line, by id."""
+    process = plan.process
+    used = {step.cutter: None for step in process.steps} if process else {}
+    if not used and (taken := plan.selected or plan.selected_over_setups):
+        used = {taken: None}
+    needs: list[str] = []
+    if process is not None and process.left:
+        # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
+        tries = [each.words for each in process.next if "--answers" not in each.argv]
+        needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
+    share = process.finished_share if process else None
+    made = PartTools(names=names, used=tuple(used), share=share, needs=tuple(needs))
+    if code != 0:
+        return made
+    # What may lie between its samples is a doubt: such a tool finishes nothing beyond doubt.
+    sure = [c for c in plan.cutters if c.seen or plan.effective.sampled_by != "default"]
+    ids = {c.id for c in sure}
+    sets = [tuple(used)] if used else []
+    if plan.least_set is not None and not plan.least_set.left and not plan.least_set.doubtful and plan.least_set.runs:
+        sets.append(tuple(dict.fromkeys(run.cutter for run in plan.least_set.runs)))
+    several = bool(plan.effective.other_setups) or any(len(c.setups) > 1 for c in plan.cutters)
+    return made.model_copy(
+        update={
+            "finished": True,
+            "alone": tuple(c.id for c in sure if c.feasible or (several and c.lost_in_all == 0)),
+            "together": tuple(dict.fromkeys(tuple(sorted(each)) for each in sets if ids.issuperset(each))),
+            "faces": () if several else _faces(plan.faces, sure),
+        }
+    )
+
+
+def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
+    """The ways in which the tools reach the faces that are to be machined."""
+    ways: dict[FaceTools, None] = {}
+    for face in faces:
+        counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
+        # Without a sample of the finished part's surface there is nothing to reach.
+        if not face.target or not any(each.reached + each.not_reached + each.unjudged for each in counts.values()):
+            continue
+        whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
+        partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
+        ways[FaceTools(whole=whole, partly=partly)] = None
+    return essential(tuple(ways))
+
+
+def essential(ways: Sequence[FaceTools]) -> tuple[FaceTools, ...]:
+    """Keep the ways that say more than others do, so that a part of many faces has a short row.
+
+    A way follows from another one if whatever tools do that face whole do this one, and those that do some of it as well.
+
+    >>> essential([FaceTools(whole=("D6",)), FaceTools(whole=("D6", "D8"))])
+    (FaceTools(whole=('D6',), partly=()),)
+    """
+    stays: list[FaceTools] = []
+    for way in sorted(dict.fromkeys(ways), key=lambda each: (len(each.whole), len(each.partly))):
+        whole, some = set(way.whole), {*way.whole, *way.partly}
+        if not any(whole.issuperset(one.whole) and some.issuperset(one.partly) for one in stays):
+            stays.append(way)
+    return tuple(stays)
 
 
 class Fewest(NamedTuple):
@@ -49,9 +157,9 @@ def fewest(parts: Sequence[PartTools]) -> Fewest:
     >>> fewest([])
     Fewest(tools=(), at_least=0)
     """
-    different = list(
-        {_key(part): part for part in parts if part.finished and (part.alone or part.together or part.faces)}.values()
-    )
+    stated = (part for part in parts if part.finished and (part.alone or part.together or part.faces))
+    different = list({(*map(frozenset, (part.names, part.alone, part.faces)), frozenset(map(frozenset, part.together))): part
+                      for part in stated}.values())  # fmt: skip
     if not different:
         return Fewest((), 0)
     alone = Counter(name for part in parts for name in part.alone)
@@ -66,12 +174,13 @@ def fewest(parts: Sequence[PartTools]) -> Fewest:
     chosen = None if values is None else {name for name, k in place.items() if values[k] > 0.5}
     if chosen is None or not all(part.finished_by(chosen) for part in different):
         chosen = _greedy(different)
-    _, bound = _least([1.0] * len(tools), [row for part in different for row in _bounding(part, place)])
+    bounding = [
+        _Row({place[name]: 2.0 if name in whole else 1.0 for name in sorted(whole | partly)}, 2.0)
+        for part in different
+        for whole, partly in ((set(part.alone), _names(part)), *((set(face.whole), set(face.partly)) for face in part.faces))
+    ]
+    _, bound = _least([1.0] * len(tools), bounding)
     return Fewest(tuple(sorted(chosen, key=place.__getitem__)), max(1, math.ceil(bound - 1e-6)))
-
-
-def _key(part: PartTools) -> tuple[object, ...]:
-    return frozenset(part.names), frozenset(part.alone), frozenset(map(frozenset, part.together)), frozenset(part.faces)
 
 
 def _names(part: PartTools) -> set[str]:
@@ -101,12 +210,6 @@ def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Ro
         for whole in {face.whole for face in part.faces} or {()}:
             add(_Row(dict.fromkeys(mine | {place[name] for name in whole}, 1.0), 1.0))
     return list(rows.values()), columns
-
-
-def _bounding(part: PartTools, place: dict[str, int]) -> list[_Row]:
-    """Conditions that hold for whatever finishes a part: one tool that does all of it, or two that do some."""
-    pairs = [(set(part.alone), _names(part)), *((set(face.whole), set(face.partly)) for face in part.faces)]
-    return [_Row({place[name]: 2.0 if name in whole else 1.0 for name in sorted(whole | partly)}, 2.0) for whole, partly in pairs]
 
 
 def _greedy(parts: Sequence[PartTools]) -> set[str]:

@@ -4,8 +4,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import PlanError
-from plan_cutters_batch import job as keys
 from plan_cutters_batch import run as cluster
+from plan_cutters_batch.job import versions
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_a_scheduler_without_workers_is_one_line(monkeypatch):
 def test_workers_with_other_versions_are_refused_with_both_named(running, monkeypatch):
     with cluster.opened(running):
         pass
-    here = keys.versions()
+    here = versions()
     for there, said in (
         ({**here, "numba": "0.1"}, rf"has numba 0\.1, this machine {here['numba']}: install the same"),
         ({**here, "plan-cutters": "0.0.9+a"}, r"has plan-cutters 0\.0\.9\+a, this machine 0\.1"),

@@ -15,8 +15,8 @@ from plan_cutters.errors import PlanError
 from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_batch import job as keys
 from plan_cutters_batch import run as cluster
-from plan_cutters_batch.job import Fault, Job, Settings
-from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.job import Job, Settings
+from plan_cutters_batch.row import PartRow, failed
 from plan_cutters_batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters_batch.store import Store
 from plan_cutters_batch.work import Outcome
@@ -87,7 +87,7 @@ def test_rows_come_what_is_done_is_kept_and_a_broken_part_costs_itself(client, t
     out = Store(str(tmp_path / "out"))
     parts = jobs(tmp_path, "a", "deep")
     (tmp_path / "broken.step").write_text("no part")
-    parts += [*jobs(tmp_path, "broken"), Fault("twice", "twice.step", "twice.step: told")]
+    parts += [*jobs(tmp_path, "broken"), failed("twice", "twice.step", "twice.step: told")]
     rows = ran(parts, client, out)
     assert {name: (row.status, row.code) for name, row in rows.items()} == {
         "a": ("planned", 0), "deep": ("planned", 0), "broken": ("failed", 3), "twice": ("failed", 2)}  # fmt: skip
@@ -167,7 +167,7 @@ def test_plan_many_gives_plans_of_shapes_and_paths(client):
 
 
 def test_versions_that_differ_are_refused_with_both_named(client, tmp_path, monkeypatch):
-    monkeypatch.setattr(keys, "versions", lambda: {"numba": "0.1"})
+    monkeypatch.setattr(cluster, "versions", lambda: {"numba": "0.1"})
     (found,) = outcomes(jobs(tmp_path, "a"), client, Terms())
     assert found.row.code == 2
     assert "numba 0." in found.row.error
@@ -192,7 +192,7 @@ def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
     class Counted:
         most = 0
 
-        def progress(self, done, running, total):
+        def progress(self, done, running):
             self.most = max(self.most, running)
 
     board, drawn = Counted(), []
@@ -275,13 +275,12 @@ def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
 
     out = Store(str(tmp_path / "out"))
     (job,) = parts = jobs(tmp_path, "a")
-    there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, job.settings.handed, (), job.settings.key, out.root_url, out.begin())
     monkeypatch.setattr(works, "_ready", lambda: "")
     assert works.work(task).row.status == "planned"
     assert [row.status for row in foreseen(parts, out, Terms())] == ["kept"]
     monkeypatch.setattr(keys, "made_by", lambda: b"another program")
-    assert [row.status for row in foreseen(parts, out, Terms())] == ["planned"]
+    assert [row.status for row in foreseen(jobs(tmp_path, "a"), out, Terms())] == ["planned"]
 
 
 @pytest.mark.parametrize("name", ["made_by", "_own"])
@@ -303,8 +302,7 @@ def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
 
     out = Store(str(tmp_path / "out"))
     (job,) = jobs(tmp_path, "a")
-    there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, job.settings.handed, (), job.settings.key, out.root_url, out.begin())
     monkeypatch.setattr(works, "_ready", lambda: "")
     monkeypatch.setattr(Path, "write_bytes", full)
     row = works.work(task).row

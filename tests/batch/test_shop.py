@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from plan_cutters import plan
 from plan_cutters_batch import tools as shop
-from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, row_of
+from plan_cutters_batch.row import PartRow, row_of
 from plan_cutters_batch.summary import write_index
-from plan_cutters_batch.tools import fewest
+from plan_cutters_batch.tools import FaceTools, PartTools, essential, fewest
 
 TOOLS = "ABCDE"
 

@@ -13,7 +13,6 @@ import yaml
 
 from plan_cutters.cases.case import Case
 from plan_cutters.errors import PlanError
-from plan_cutters_batch import job as keys
 from plan_cutters_ci.changed import RULES, PartRequest, Row
 from plan_cutters_ci.changed_report import annotations, requested
 from plan_cutters_ci.repository import Changed, changed, content
@@ -264,7 +263,7 @@ def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch)
 
     def key():
         request = PartRequest.of(words)
-        return keys.settings_key(request.settings, request.handed)
+        return request.settings.key
 
     first = key()
     assert key() == first

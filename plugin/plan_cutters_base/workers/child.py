@@ -13,7 +13,9 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+from plan_cutters_base.forks import end_with, process_status
 
 #: Environment variable with the record, as JSON.
 VARIABLE = "PLAN_CUTTERS_ASSIGNMENT"
@@ -27,35 +29,23 @@ TIMED_OUT = 124
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """An assignment says to a process what it is to know.
+    """An assignment says to a process what it is to know."""
 
-    Attributes
-    ----------
-    parent : int, optional
-        The process with which it is to end.
-    report : int, optional
-        Number of the pipe to report on: only a worker of the command has one.
-    go : int, optional
-        Number of the pipe on which it is told that its words are in order, where it began before they were looked at.
-    memory : int, optional
-        Bytes of address space that it may use.
-    began : float, optional
-        When the command began (`time.monotonic`).
-    done : int
-        Parts that are done.
-    excluded : mapping
-        Of the next one, by face number, why nothing more is to be asked about a face.
-    job : str, optional
-        The file with a job of a batch (`job_input`).
-    """
-
+    #: The process with which it is to end.
     parent: int | None = None
+    #: Number of the pipe to report on: only a worker of the command has one.
     report: int | None = None
+    #: Number of the pipe on which it is told that its words are in order, where it began before they were looked at.
     go: int | None = None
+    #: Bytes of address space that it may use.
     memory: int | None = None
+    #: When the command began (`time.monotonic`).
     began: float | None = None
+    #: Parts that are done.
     done: int = 0
+    #: Of the next one, by face number, why nothing more is to be asked about a face.
     excluded: Mapping[int, str] = field(default_factory=dict)
+    #: The file with a job of a batch (`job_input`).
     job: str | None = None
 
     def __str__(self) -> str:
@@ -74,16 +64,11 @@ def assignment() -> Assignment:
     return _decoded(text) if text else Assignment()
 
 
-@dataclass(frozen=True)
-class JobInput:
+class JobInput(NamedTuple):
     """Options and a part of a batch, for the process that plans it; in a file, for the words of a command cannot hold them.
 
-    Only the `Assignment` names the file: a pickle must come from nobody but ourselves.
-
-    Attributes
-    ----------
-    options, part : bytes, optional
-        Pickled; None where the words of the command have them. To unpickle a part loads the CAD kernel.
+    Both are pickled; None where the words have them. To unpickle a part loads the CAD kernel. Only the `Assignment` names the
+    file: a pickle must come from nobody but ourselves.
     """
 
     options: bytes | None = None
@@ -96,8 +81,7 @@ def job_input() -> JobInput:
         return JobInput()
     import pickle
 
-    result: JobInput = pickle.loads(Path(file).read_bytes())
-    return result
+    return JobInput(*pickle.loads(Path(file).read_bytes()))
 
 
 def is_child() -> bool:
@@ -142,16 +126,13 @@ def began() -> float:
         return stated
     age = time.process_time()
     with contextlib.suppress(OSError, ValueError, AttributeError, IndexError):  # only Linux has all of it
-        ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
-        age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - ticks / os.sysconf("SC_CLK_TCK"))
+        age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - int(process_status("self")[19]) / os.sysconf("SC_CLK_TCK"))
     return time.monotonic() - age
 
 
 def follow_parent() -> None:
     """End when the parent does, however it ends: nobody else would wait for what this process makes."""
     if (parent := assignment().parent) is not None:
-        from plan_cutters_base.forks import end_with
-
         end_with(parent)
 
 
@@ -188,20 +169,9 @@ def can_supervise() -> bool:
 class Child:
     """A child process in a session of its own: an interrupt from the terminal reaches it through us alone.
 
-    It does not find modules in the folder that it works in, where users keep files of any name.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Of the interpreter.
-    there : Assignment
-        What it is to know.
-    session : bool
-        Whether it has a session of its own; without, it ends with the session of this process.
-    environment : mapping, optional
-        In place of that of this process.
-    streams
-        More words of `subprocess.Popen`.
+    It does not find modules in the folder that it works in, where users keep files of any name. `words` are of the interpreter,
+    `there` is what it is to know. Without a `session` of its own, it ends with that of this process. `environment` stands in
+    place of that of this process; `streams` are more words of `subprocess.Popen`.
     """
 
     def __init__(
@@ -255,19 +225,7 @@ def compiler(maps: bool) -> Child:
 
 
 class Worker(Child):
-    """The child that does the whole job of a command, and reports on a pipe.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Of the command.
-    name : str
-        Its name.
-    memory, done, excluded
-        As of `Assignment`.
-    waits : bool
-        Whether it waits for `begin`.
-    """
+    """The child that does the whole job of a command of a name, and reports on a pipe; `waits`: for `begin`."""
 
     def __init__(
         self, words: Sequence[str], name: str, memory: int | None = None, *, waits: bool = False, done: int = 0,
