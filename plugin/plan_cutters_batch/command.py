@@ -304,6 +304,4 @@ def _settings(request: BatchRequest) -> "Settings":
     look_at(requested)
     formats = _formats() if request.formats is None else read_formats(request.formats)
     read = tuple(filter(None, files.values()))
-    return Settings(
-        requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout, read, request.cache
-    )
+    return Settings(requested, formats, request.step_schema, request.read_timeout, read, request.cache)

@@ -93,7 +93,7 @@ class Settings:
     """How parts are planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
 
     options: Options
-    #: Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
+    #: Of `report.folder.FORMATS`; `json` is always among them, for the table is made from it.
     formats: tuple[str, ...] = ("json",)
     step_schema: str = "ap242"
     #: Seconds that reading may take.
@@ -102,6 +102,9 @@ class Settings:
     read: tuple[str, ...] = ()
     #: Keep what stages make of a part in the cache folder of each worker's user.
     cache: bool = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "formats", tuple(dict.fromkeys(("json", *self.formats))))
 
     @property
     def words(self) -> tuple[str, ...]:

@@ -96,20 +96,18 @@ def plan_many(
         raise OptionError("parts: the list is empty")
     with noted() as files:
         base = Options.of({"jobs": 1, **options})
-    settings = Settings(
-        base, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))), read=tuple(filter(None, files.values()))
-    )
+    settings = Settings(base, read_formats(",".join(formats)), read=tuple(filter(None, files.values())))
     store = None if out is None else Store(os.fspath(out))
-    token = store.begin() if store else ""
     with contextlib.ExitStack() as stack:
         if store:
+            store.begin()  # what is wrong with it is said before any worker is started
             stack.callback(store.end)
         memory = None if limit_memory is None else limit_memory * 1e9
         if client is None:
             count, memory = cluster.workers_of(None, memory, settings.options.jobs)
             client = stack.enter_context(cluster.opened(None, count))
         terms = Terms(force, timeout_part, memory)
-        for outcome in outcomes(_jobs(parts, settings), client, terms, out=store, token=token):
+        for outcome in outcomes(_jobs(parts, settings), client, terms, out=store):
             yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)
 
 

@@ -175,8 +175,8 @@ def run_batch(
     began = time.monotonic()
     rows: list[PartRow] = []
     try:
-        token, where = out.begin(), facts(client)
-        planned = outcomes([part for part in parts if isinstance(part, Job)], client, terms, out=out, token=token, board=board)
+        where = facts(client)
+        planned = outcomes([part for part in parts if isinstance(part, Job)], client, terms, out=out, board=board)
         for row in itertools.chain((part for part in parts if isinstance(part, PartRow)), (each.row for each in planned)):
             rows.append(row)
             yield row
@@ -186,14 +186,15 @@ def run_batch(
 
 
 def outcomes(
-    parts: Iterable[Job | PartRow], client: Any, terms: Terms, *, out: Store | None = None, token: str = "",
+    parts: Iterable[Job | PartRow], client: Any, terms: Terms, *, out: Store | None = None,
     board: "Board | None" = None,
 ) -> Iterator[Outcome]:  # fmt: skip
     """Plan parts on a cluster; outcomes as they come, those of parts that cannot be planned among them.
 
     Without `out`, the files come with them.
     """
-    here, store = versions(), None if out is None else out.root_url
+    here = versions()
+    store, token = (None, "") if out is None else (out.root_url, out.begin())
     more = () if terms.memory is None else ("--memory", repr(terms.memory / 1e9))
     faulty: list[PartRow] = []
 

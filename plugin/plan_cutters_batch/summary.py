@@ -142,10 +142,8 @@ class Summary(_Entry):
     run: BatchRun
 
 
-def summary_of(
-    rows: Sequence[PartRow], *, title: str, files: Mapping[str, Table], versions: Mapping[str, str], run: BatchRun
-) -> Summary:
-    """Sum up the rows."""
+def summary_of(rows: Sequence[PartRow], table: bytes, *, title: str, seconds: float, cluster: Mapping[str, object]) -> Summary:
+    """Sum up the rows, and the table that they make."""
     cutters: dict[str, Counter[str]] = {}
     for row in rows:
         if row.cutter is not None:
@@ -154,7 +152,7 @@ def summary_of(
     reasons = Counter(row.reason for row in rows if row.reason and outcome(row) != "finished")
     made = Counter(row.status for row in rows)
     return Summary(
-        title=title,
+        title=plain(title),
         code=max(map(code_of, rows), default=0),
         parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **Counter(str(outcome(row)) for row in rows)),
         by_cutter=[CutterParts(cutter=name, **cutters[name])
@@ -163,7 +161,14 @@ def summary_of(
                    for code in sorted(reasons, key=lambda code: (-reasons[code], code))],
         shop=_shop(rows),
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
-        files=dict(files), versions=dict(versions), run=run,
+        files={"csv": Table(name=CSV, sha256=hashlib.sha256(table).hexdigest())},
+        versions=versions(),
+        run=BatchRun(
+            time=datetime.now(UTC).isoformat(timespec="seconds"),
+            seconds=finite(float(seconds)),
+            seconds_of_parts=sum(row.seconds for row in rows if row.status != "kept" and math.isfinite(row.seconds)),
+            cluster=json.loads(embedded(to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants"))),
+        ),
     )  # fmt: skip
 
 
@@ -224,23 +229,10 @@ def write_index(
     appear whole or not at all, or raises. `seconds` by the clock, of the whole run. `cluster` says where it ran.
     """
     rows = sorted(map(_clean, rows), key=lambda row: (row.name, row.file, row.key))
-    tables = {CSV: csv_of(rows)}
-    facts = to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants")
-    summary = summary_of(
-        rows,
-        title=plain(title),
-        files={"csv": Table(name=CSV, sha256=hashlib.sha256(tables[CSV]).hexdigest())},
-        versions=versions(),
-        run=BatchRun(
-            time=datetime.now(UTC).isoformat(timespec="seconds"),
-            seconds=finite(float(seconds)),
-            seconds_of_parts=sum(row.seconds for row in rows if row.status != "kept" and math.isfinite(row.seconds)),
-            cluster=json.loads(embedded(facts)),
-        ),
-    )
-    tables[PAGE] = page(rows, summary)
-    tables[SUMMARY] = (summary.model_dump_json(indent=2) + "\n").encode()
-    for name, data in tables.items():
+    table = csv_of(rows)
+    summary = summary_of(rows, table, title=title, seconds=seconds, cluster=cluster)
+    text = (summary.model_dump_json(indent=2) + "\n").encode()
+    for name, data in ((CSV, table), (PAGE, page(rows, summary)), (SUMMARY, text)):
         put(name, data)
 
 
