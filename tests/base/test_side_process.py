@@ -16,7 +16,6 @@ from plan_cutters import pipeline, plan
 from plan_cutters.report import folder, models
 from plan_cutters.report.folder import write_all
 from plan_cutters_base import forks
-from plan_cutters_base import forks as copies
 from plan_cutters_base.forks import SideProcess, TimeLimit, each, limited
 from tests.support.places import ROOT
 
@@ -70,7 +69,7 @@ def test_whatever_becomes_of_the_copy_the_result_is_made_here(fault):
 
 @pytest.mark.parametrize("part", [b"", b"\0", struct.pack("<q", 9) + b"half"])
 def test_half_an_answer_is_none(monkeypatch, part):
-    monkeypatch.setattr(copies, "tell", lambda pipe, answer: pipe.write(part))
+    monkeypatch.setattr(forks, "tell", lambda pipe, answer: pipe.write(part))
     with SideProcess(lambda: "here", 5.0) as copy:
         assert copy.result() == "here"
 

@@ -16,7 +16,7 @@ from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
 from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_batch import command as of_many
-from plan_cutters_batch import run as cluster
+from plan_cutters_batch import run as runs
 from plan_cutters_batch import work
 from plan_cutters_batch.job import Settings, versions
 from plan_cutters_batch.row import FAIL_ON, PartRow, fault
@@ -172,8 +172,8 @@ def test_each_outcome_has_a_word():
 def test_the_code_is_the_largest_of_what_the_batch_fails_on(monkeypatch, capsys, tmp_path, words, codes, expected):
     rows = [row_with(f"p{k}", code) for k, code in enumerate(codes)]
     facts = {"address": "here", "workers": 1, "threads": 1, "dashboard": None}
-    monkeypatch.setattr(cluster, "opened", lambda *_: contextlib.nullcontext(SimpleNamespace()))
-    monkeypatch.setattr(cluster, "facts", lambda client: facts)
+    monkeypatch.setattr(runs, "opened", lambda *_: contextlib.nullcontext(SimpleNamespace()))
+    monkeypatch.setattr(runs, "facts", lambda client: facts)
     monkeypatch.setattr("plan_cutters_batch.run.run_batch", lambda *_, **__: iter(rows))
     args = (GROOVE, "--out", str(tmp_path / "out"), "--cutter", "R6L80", "--formats", "json", *words)
     code, line = guarded(lambda: (invoked(of_many.command, "plan-cutters batch", args), ""), False)
