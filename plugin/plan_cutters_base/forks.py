@@ -346,8 +346,8 @@ def outlive() -> None:
     _killed_by_the_system(0)
 
 
-def _killed_by_the_system(number: int = signal.SIGKILL) -> bool:
-    """Ask Linux to end this process by a signal, 0 for none; False where it cannot be asked."""
+def _killed_by_the_system(number: int = 9) -> bool:
+    """Ask Linux to end this process by a signal (9, SIGKILL, has no name on Windows), 0 for none; False where it cannot be."""
     if sys.platform != "linux":
         return False
     none = ctypes.c_ulong(0)
