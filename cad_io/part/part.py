@@ -32,7 +32,7 @@ from cad_io.part.edges import blends
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
-from plan_cutters_base.copies import SideProcess
+from plan_cutters_base.forks import SideProcess
 from plan_cutters_base.user_files import fingerprint
 
 #: Reasons that others look at.

@@ -20,7 +20,7 @@ from cad_io.face.trim import Trim
 from cad_io.kernel import translated
 from cad_io.kernel.shapes import compound
 from cad_io.part import Part
-from plan_cutters_base.copies import Ended, each
+from plan_cutters_base.forks import Ended, each
 
 _PRECISION = 1e-9  # mm, asked of the projection
 #: Processor seconds that a projection may take, and a distance more for each face: they take milliseconds.

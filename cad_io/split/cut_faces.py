@@ -4,7 +4,7 @@ Boundaries of labels are drawn on faces in the parameter plane, with the first f
 put together again and checked: whether what was built can be trusted.
 
 Cost is linear in the length of the curves. Time decides nothing but whether a call of the kernel is endless, in processor
-seconds (`plan_cutters_base.copies`): what comes out does not depend on how busy the machine is.
+seconds (`plan_cutters_base.forks`): what comes out does not depend on how busy the machine is.
 """
 
 import mmap
@@ -32,8 +32,7 @@ from cad_io.split.build import pieces, placed, rewired
 from cad_io.split.contour import Line, curves, label_grid, smoothed
 from cad_io.split.net import Net, repair, valid
 from cad_io.surface import Surface
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
-from plan_cutters_base.forks import end_within
+from plan_cutters_base.forks import ChildDied, TimeLimit, end_within, limited
 
 #: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
 FITS = (0.1, 0.05, 0.02)

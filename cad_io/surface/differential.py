@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 
 @kernel

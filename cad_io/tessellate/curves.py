@@ -17,9 +17,7 @@ from cad_io.surface.bspline import DEGREE, Net, basis, net_bends, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
 from cad_io.surface.surface import curve_lines, curve_net
 from cad_io.tessellate.bounds import evenly
-from plan_cutters_base.jit import decorators
-
-entry, kernel, maker = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel, maker
 
 #: Cells along a bent curve, at least; points of a curve that is replaced.
 _CELLS, _POINTS = 16, 257

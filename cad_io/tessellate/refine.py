@@ -10,9 +10,7 @@ import numpy as np
 
 from cad_io.tessellate.bounds import TORN, bend, most_inside, twist_share, window
 from cad_io.tessellate.curves import point, strays, workspace
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 #: No triangle is cut more often.
 _DEEPEST = 60

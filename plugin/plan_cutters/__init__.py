@@ -19,7 +19,7 @@ _HOME = {
     "Scene": ".scene.scene",
     "PostureRange": ".domain.posture",
     "plan": ".pipeline",
-    "plan_many": "_batch.many",  # a package of its own
+    "plan_many": "_batch.run",  # a package of its own
     "Result": ".result",
     "posture_map": ".point",
     "PostureMap": ".judging.posture_maps",

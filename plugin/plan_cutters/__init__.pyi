@@ -14,7 +14,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.point import posture_map
 from plan_cutters.result import Result
 from plan_cutters.scene.scene import Scene
-from plan_cutters_batch.many import plan_many
+from plan_cutters_batch.run import plan_many
 
 __version__: str
 __all__ = [

@@ -19,8 +19,7 @@ from plan_cutters_agents.access import CallError, Limits, Permissions
 from plan_cutters_agents.outputs import tools_in
 from plan_cutters_agents.requests import MapQuestion
 from plan_cutters_base.user_files import WITHIN
-from plan_cutters_base.workers.assignment import Assignment
-from plan_cutters_base.workers.child import Child, command
+from plan_cutters_base.workers.child import Assignment, Child, command
 
 
 class ProgressListener(Protocol):

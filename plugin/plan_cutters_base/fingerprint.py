@@ -14,8 +14,11 @@ import json
 import os
 import sys
 from collections.abc import Iterator
+from importlib.machinery import PathFinder
 from pathlib import Path
-from typing import NamedTuple
+from zipimport import zipimporter
+
+from plan_cutters_base.user_cache import read_entry, write_entry
 
 #: Packages whose sources decide what is judged.
 PROGRAM = ("cad_io", "plan_cutters", "plan_cutters_base")
@@ -23,26 +26,13 @@ PROGRAM = ("cad_io", "plan_cutters", "plan_cutters_base")
 Import = tuple[int, str, str]
 
 
-class Parsed(NamedTuple):
-    """The meaning of a source: the digest of its syntax tree, and what it imports."""
-
-    digest: str
-    imports: tuple[Import, ...]
-
-
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def parsed(source: bytes) -> Parsed:
-    """Parse a source.
-
-    Raises
-    ------
-    SyntaxError
-        It is none of this version of Python.
-    """
-    tree, imports = ast.parse(source), set()
+def _parsed(source: bytes) -> tuple[str, list[Import]]:
+    """The meaning of a source: the digest of its syntax tree, and what it imports."""
+    tree, imports = ast.parse(source), set[Import]()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             imports |= {(0, each.name, "") for each in node.names}
@@ -50,40 +40,29 @@ def parsed(source: bytes) -> Parsed:
             imports |= {(node.level, node.module or "", each.name) for each in node.names}
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node):
             del node.body[0]
-    return Parsed(_digest(ast.dump(tree).encode()), tuple(sorted(imports)))
+    return _digest(ast.dump(tree).encode()), sorted(imports)
 
 
 @functools.cache
-def _dialect() -> str:
+def _dialect() -> bytes:
     """What a note holds for: how this module parses, and the version of Python."""
-    return _digest((_content(__file__) or b"") + sys.version.encode())
+    return (_content(__file__) or b"") + sys.version.encode()
 
 
 @functools.cache
-def _noted(source: bytes, notes: Path | None) -> Parsed:
-    """Parse a source, or take what an earlier process noted: notes lie by the bytes of sources, so that none is ever out of date.
-
-    A note begins with its own checksum: one that is damaged, or cannot be written, costs time alone.
-    """
+def _noted(source: bytes, notes: Path | None) -> tuple[str, list[Import]]:
+    """Parse a source, or take what an earlier process noted: notes lie by the bytes of sources, so that none is out of date."""
     if notes is None:
-        return parsed(source)
-    note = notes / _digest(_dialect().encode() + source)[:32]
-    try:
-        checksum, text = note.read_text("ascii").split("\n", 1)
-        if checksum == _digest(text.encode()):
-            digest, imports = json.loads(text)
-            return Parsed(digest, tuple((level, module, name) for level, module, name in imports))
-    except (OSError, ValueError):
-        pass
-    result = parsed(source)
-    text, unfinished = json.dumps(result), note.with_name(f"{note.name}.{os.urandom(4).hex()}")
+        return _parsed(source)
+    note = notes / _digest(_dialect() + source)[:32]
+    with contextlib.suppress(OSError, ValueError):
+        if (content := read_entry(note)) is not None:
+            digest, imports = json.loads(content)
+            return digest, imports
+    result = _parsed(source)
     with contextlib.suppress(OSError):
         notes.mkdir(parents=True, exist_ok=True)
-        try:
-            unfinished.write_text(f"{_digest(text.encode())}\n{text}", "ascii")
-            unfinished.replace(note)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        write_entry(note, [json.dumps(result).encode()])
     return result
 
 
@@ -93,35 +72,29 @@ def _content(path: str) -> bytes | None:
         with open(path, "rb") as file:
             return file.read()
     except OSError:
-        above = os.path.dirname(path)
-    while not os.path.isdir(above) and above != os.path.dirname(above):
-        archive = sys.path_importer_cache.get(above)
-        if archive is not None and hasattr(archive, "get_data"):
-            with contextlib.suppress(OSError):
-                return bytes(archive.get_data(path))
-        above = os.path.dirname(above)
+        with contextlib.suppress(ImportError, OSError):
+            return zipimporter(os.path.dirname(path)).get_data(path)
     return None
 
 
 @functools.cache
 def _source(name: str) -> tuple[bytes, str] | None:
     """Source of a module, and the package that its relative imports begin in; None where there is none. Nothing is imported."""
-    top, *rest = name.split(".")
+    names = name.split(".")
     try:
-        spec = importlib.util.find_spec(top)
+        spec = importlib.util.find_spec(names[0])
     except ValueError:  # the module that Python was started with
         return None
-    if spec is None:
+    for k in range(1, len(names)):
+        if spec is None or spec.submodule_search_locations is None:
+            return None
+        spec = PathFinder.find_spec(".".join(names[: k + 1]), spec.submodule_search_locations)
+    if spec is None or not (spec.origin or "").endswith(".py") or (source := _content(str(spec.origin))) is None:
         return None
-    for folder in spec.submodule_search_locations or ():
-        stem = os.path.join(folder, *rest)
-        for path, package in ((os.path.join(stem, "__init__.py"), name), (f"{stem}.py", name.rpartition(".")[0])):
-            if (source := _content(path)) is not None:
-                return source, package
-    return None
+    return source, spec.parent or ""
 
 
-def _meant(package: str, imports: tuple[Import, ...], ours: frozenset[str]) -> Iterator[str]:
+def _meant(package: str, imports: list[Import], ours: frozenset[str]) -> Iterator[str]:
     """Modules of our packages that imports in a package bring: a name taken from a package may be a module of its own."""
     for level, module, name in imports:
         above = package.split(".")[: package.count(".") + 2 - level] if level else []
@@ -147,19 +120,9 @@ def _direct(name: str, ours: frozenset[str], notes: Path | None) -> tuple[str, t
 def fingerprint(name: str, package: str, file: str, ours: frozenset[str], notes: Path | None = None) -> str | None:
     """Fingerprint of a module and of all modules that it imports, at any distance; None where its source cannot be read.
 
-    Parameters
-    ----------
-    name, package, file : str
-        The module's `__name__`, `__package__` and `__file__`.
-    ours : frozenset of str
-        Top-level packages: imports of others are not followed.
-    notes : Path or None
-        Folder where parsed sources are noted for later processes.
-
-    Raises
-    ------
-    SyntaxError
-        One of the sources is none of this version of Python.
+    The first three are the module's `__name__`, `__package__` and `__file__`; imports of packages that are not `ours` are not
+    followed. `notes`: the folder where parsed sources are noted for later processes. A SyntaxError where one of the sources is
+    none of this version of Python.
     """
     source = _content(file)
     if source is None:

@@ -1,7 +1,12 @@
 """Forked copies of this process, and processes that end with the one that started them.
 
-Whatever ended that one, and whatever they are doing themselves: Linux kills them at once. Elsewhere a copy of each looks after
-its parent: a thread could not, for the CAD kernel does not let go of the interpreter while it works.
+Calls of the CAD kernel are made in copies: what hangs or crashes is ended, and costs that call alone. A copy makes one call
+(`limited`), one after another (`each`), or one while this process does other work (`SideProcess`). Calls must use nothing but
+Python and the kernel, for threads of this process do not exist in a copy; results are pickled. Where the system cannot fork
+(Windows), calls are made here, without a limit.
+
+Copies end with the process that made them, whatever ended it and whatever they are doing: Linux kills them at once. Elsewhere a
+copy of each looks after its parent: a thread could not, for the CAD kernel does not let go of the interpreter while it works.
 """
 
 import contextlib
@@ -17,8 +22,12 @@ import struct
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO, Self
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any, BinaryIO, Generic, Self, TypeVar, cast
+
+Item = TypeVar("Item")
+Done = TypeVar("Done")
 
 _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG
 #: Seconds between two looks at a parent, where the system itself does not look.
@@ -30,26 +39,24 @@ _LENGTH = struct.Struct("<q")
 _COUNTS = struct.Struct("<qq")
 
 
+class TimeLimit(Exception):
+    """The call did not end in time."""
+
+
+class ChildDied(Exception):
+    """The call ended without an answer: it crashed the process, or raised what its text says."""
+
+
+class Ended(Exception):
+    """There is no answer about an item: `str` says why, as the end of a sentence about it."""
+
+
 class Copy:
     """A copy of this process that does some work, without clean-up at its end. It ends with the block of `with`.
 
-    Parameters
-    ----------
-    work : callable
-        Gets a pipe to answer on. What it raises is lost.
-    seconds : float
-        Of processor time, after which the system ends the copy, by SIGXCPU.
-
-    Attributes
-    ----------
-    status : int
-        How it ended, once it has; 0, as if by itself, where someone else has waited for it: a program that ignores SIGCHLD, or
-        waits for whatever ends.
-
-    Raises
-    ------
-    OSError
-        There is no room for another process.
+    `work` gets a pipe to `tell` answers on; what it raises is lost. After so many `seconds` of processor time the system ends the
+    copy, by SIGXCPU. An OSError where there is no room for another process. `status` says how it ended, once it has; 0, as if by
+    itself, where someone else has waited for it: a program that ignores SIGCHLD, or waits for whatever ends.
     """
 
     def __init__(self, work: Callable[[BinaryIO], None], seconds: float) -> None:
@@ -95,62 +102,171 @@ class Copy:
         """Whether it was ended for its processor time."""
         return os.WIFSIGNALED(self.status) and os.WTERMSIG(self.status) in (signal.SIGPROF, signal.SIGXCPU)
 
-    @property
-    def speaks(self) -> bool:
-        """Whether it has said something that is not read, or has ended."""
-        ready = select.poll()
-        ready.register(self._end, select.POLLIN)
-        return bool(ready.poll(0))
-
-    def parts(self, late: Callable[[], float] | None = None) -> Iterator[bytes]:
-        """Yield all that it says, as it comes, until its side closes; `late` gives the seconds to wait before it is asked again.
-
-        By default it is waited for as long as it does not sleep without end.
-
-        Raises
-        ------
-        TimeoutError
-            There is nothing left to wait.
-        """
-        late = late or _stuck(self._child)
+    def speaks(self, seconds: float = 0.0) -> bool:
+        """Whether it has said something that is not read, or has ended; waited for, at most so long."""
         ready = select.poll()  # `select` itself knows no numbers above 1023
         ready.register(self._end, select.POLLIN)
-        while (wait := late()) > 0:
-            if ready.poll(1000.0 * min(wait, _LOOK)):
-                part = os.read(self._end, 1 << 20)
-                if not part:
-                    return
-                yield part
-        raise TimeoutError
+        return bool(ready.poll(1000.0 * seconds))
 
-    def answers(self, waiting: Callable[[], None] | None = None) -> Iterator[Any]:
+    def answers(self, waiting: Callable[[], None] = lambda: None, until: float = math.inf) -> Iterator[Any]:
         """Yield what it tells by `tell`, as it comes, until it ends: half an answer is none.
 
-        Parameters
-        ----------
-        waiting : callable, optional
-            Called about once a second for as long as the copy works.
-
-        Raises
-        ------
-        TimeoutError
-            It sleeps and does nothing.
+        `waiting` is called about once a second for as long as the copy works. A TimeoutError where it is given up: at `until`, as
+        `time.monotonic` counts, or, without that, once it sleeps and does nothing.
         """
-        data, late = bytearray(), _stuck(self._child)
-
-        def looked() -> float:
-            if waiting is not None:
-                waiting()
-            return late()
-
-        for part in self.parts(looked):
+        data, stuck = bytearray(), _stuck(self._child)
+        while (wait := min(_LOOK, until - time.monotonic())) > 0.0:
+            waiting()
+            if math.isinf(until) and stuck():
+                break
+            if not self.speaks(wait):
+                continue
+            part = os.read(self._end, 1 << 20)
+            if not part:
+                return
             data += part
-            while len(data) >= _LENGTH.size:
-                whole = _LENGTH.size + _LENGTH.unpack_from(data)[0]
-                if len(data) < whole:
-                    break
+            while len(data) >= _LENGTH.size and len(data) >= (whole := _LENGTH.size + _LENGTH.unpack_from(data)[0]):
                 yield pickle.loads(bytes(data[_LENGTH.size : whole]))
                 del data[:whole]
+        raise TimeoutError
+
+
+def tell(pipe: BinaryIO, answer: object) -> None:
+    """Write an answer for `Copy.answers` to read."""
+    data = pickle.dumps(answer)
+    pipe.write(_LENGTH.pack(len(data)) + data)
+    pipe.flush()
+
+
+def limited(call: Callable[[], Done], seconds: float, *, processor: bool = False) -> Done:
+    """Result of `call()`, made in a copy for at most `seconds`, which also survives a crash of the kernel.
+
+    By the clock a busy machine may get another result than an idle one; by processor time (`processor`) it gets the same, later.
+    A copy that does nothing at all for a minute, waiting for a lock for one, is ended then, too (only on Linux: elsewhere nothing
+    tells). Where `seconds` are not positive, nothing is run. A TimeLimit or ChildDied where there is no result.
+    """
+    if seconds <= 0:
+        raise TimeLimit
+    if not hasattr(os, "fork"):
+        return call()
+
+    def work(pipe: BinaryIO) -> None:
+        try:
+            tell(pipe, call())
+        except Exception as error:
+            tell(pipe, ChildDied(f"{type(error).__name__} {error}"))
+
+    # By the clock this side ends it.
+    until = math.inf if processor else time.monotonic() + seconds
+    with Copy(work, seconds if processor else seconds + 2) as copy:
+        try:
+            for answer in copy.answers(until=until):
+                if isinstance(answer, ChildDied):
+                    raise answer
+                return cast(Done, answer)
+        except TimeoutError:
+            raise TimeLimit from None
+    raise TimeLimit if copy.out_of_time else ChildDied(f"the kernel crashed (status {copy.status})")
+
+
+def each(call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float, hangs: int = 2) -> Iterator[Done | Ended]:
+    """Yield the result of `call` for each item, in their order, or an `Ended` for an item that has no answer.
+
+    They are made in a copy, which is made again behind an item that ends it. What `call` raises is raised here. An item may take
+    so many `seconds` of processor time; so many items, `hangs`, may take longer or crash the copy: behind the last of them,
+    nothing is tried any more.
+    """
+    if not hasattr(os, "fork"):
+        yield from map(call, items)
+        return
+    first, remaining = 0, hangs
+    while first < len(items):
+        if remaining <= 0:
+            yield from (Ended("was not tried, for others before it did not come to an end") for _ in items[first:])
+            return
+        why = ""
+        with Copy(partial(_work, call, items[first:], seconds), seconds * (len(items) - first + 1)) as copy:
+            try:
+                for answer in copy.answers():
+                    first += 1
+                    if isinstance(answer, Exception):
+                        raise answer
+                    yield cast(Done, answer)
+            except TimeoutError:
+                why = "waits for ever"
+        if first < len(items):
+            remaining -= 1
+            first += 1
+            ended = f"does not come to an end within {seconds:g} s" if copy.out_of_time else f"crashes (status {copy.status})"
+            yield Ended(why or ended)
+
+
+def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, pipe: BinaryIO) -> None:
+    """The copy's side: an answer for each item, up to the first that raises."""
+    for item in items:
+        end_within(seconds)
+        try:
+            answer: object = call(item)
+        except Exception as error:
+            answer = error
+        end_within(0.0)
+        tell(pipe, answer)
+        if isinstance(answer, Exception):
+            break
+
+
+class SideProcess(Generic[Done]):
+    """A call that may be under way in a copy of this process, while the process itself does other work.
+
+    Nothing depends on the copy, which ends with the block of `with`: where it crashes, raises, hangs or cannot be made, the call
+    is made here, with all the care that is taken here; so it repeats all that it does when called again. The copy is given up
+    after so many `seconds` of processor time. `worth`: whether to make one at all: that takes some hundredths of a second.
+    """
+
+    def __init__(self, call: Callable[[], Done], seconds: float, *, worth: bool = True) -> None:
+        self._call, self._seconds = call, seconds
+        self._worth = worth and hasattr(os, "fork")
+        self._copy: Copy | None = None
+
+    def __enter__(self) -> Self:
+        if self._worth:
+            with contextlib.suppress(OSError):
+                self._copy = Copy(lambda pipe: tell(pipe, self._call()), self._seconds)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._copy is not None:
+            copy, self._copy = self._copy, None
+            copy.__exit__()
+
+    @property
+    def works(self) -> bool:
+        """Whether there is a copy: then this process should do something else before it asks for the result."""
+        return self._copy is not None
+
+    def ended(self) -> Done | None:
+        """Return the result if the call has ended in the copy; None otherwise: nothing is waited for, and nothing done here."""
+        if self._copy is not None and self._copy.speaks():
+            with contextlib.suppress(TimeoutError):
+                for answer in self._copy.answers():
+                    return cast(Done, answer)
+        return None
+
+    def result(self, here: Callable[[], Done] | None = None, waiting: Callable[[], None] = lambda: None) -> Done:
+        """Return the result of the call.
+
+        Where the copy gives none, this process makes the call itself: `here` in its place, if that is given, which may
+        report its progress. `waiting` is called about once a second for as long as the copy is waited for.
+        """
+        if self._copy is not None:
+            try:
+                for answer in self._copy.answers(waiting):
+                    return cast(Done, answer)
+            except TimeoutError:
+                pass
+            finally:
+                self.__exit__()
+        return (here or self._call)()
 
 
 class Gauge:
@@ -177,34 +293,28 @@ def end_within(seconds: float) -> None:
     signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
-def tell(pipe: BinaryIO, answer: object) -> None:
-    """Write an answer for `Copy.answers` to read."""
-    data = pickle.dumps(answer)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-    pipe.flush()
+def process_status(number: int | str | None) -> list[str]:
+    """What Linux says of a process, from its state on (`man proc_pid_stat`, field 3); empty where the system does not tell."""
+    try:
+        with open(f"/proc/{number}/stat", encoding="ascii", errors="replace") as file:
+            return file.read().rpartition(")")[2].split()
+    except OSError:
+        return []
 
 
-def _stuck(child: int) -> Callable[[], float]:
-    """Seconds to wait until it is asked again; none once the copy has slept at so many looks. Never while it works."""
-    idle, before, looked = 0, "", -math.inf
+def _stuck(child: int) -> Callable[[], bool]:
+    """Whether a copy has slept at so many looks, whoever asks how often: a copy sleeps while its words are taken, too."""
+    idle, before, looked = 0, [""], -math.inf
 
-    def late() -> float:
+    def stuck() -> bool:
         nonlocal idle, before, looked
-        # Asked after each part of a long answer, too: a copy sleeps while its words are taken.
-        if time.monotonic() - looked < _LOOK:
-            return _LOOK
-        looked = time.monotonic()
-        try:
-            with open(f"/proc/{child}/stat", encoding="ascii", errors="replace") as file:
-                state, *fields = file.read().rpartition(")")[2].split()
-        except OSError:
-            return _LOOK
-        spent = " ".join(fields[10:12])
-        idle = idle + 1 if state in "SDT" and spent == before else 0
-        before = spent
-        return _LOOK if idle < _ASLEEP else 0.0
+        if time.monotonic() - looked >= _LOOK and (fields := process_status(child)):
+            looked = time.monotonic()
+            idle = idle + 1 if fields[0] in "SDT" and fields[11:13] == before else 0
+            before = fields[11:13]
+        return idle >= _ASLEEP
 
-    return late
+    return stuck
 
 
 def _end_alone(seconds: float) -> None:
@@ -218,15 +328,10 @@ def _end_alone(seconds: float) -> None:
 
 
 def end_with(parent: int) -> None:
-    """Have this process killed as soon as its parent has ended.
+    """Have this process killed as soon as its parent has ended; where there is no fork (Windows), nothing is done.
 
-    On Linux the end of the thread that started it counts, too: it must be one that waits. Where there is no fork (Windows),
-    nothing is done.
-
-    Parameters
-    ----------
-    parent : int
-        Its process number, asked for before this process began: it may have ended meanwhile.
+    On Linux the end of the thread that started it counts, too: it must be one that waits. `parent`: its process number, asked for
+    before this process began, for it may have ended meanwhile.
     """
     if not hasattr(os, "fork"):
         return
@@ -241,8 +346,8 @@ def outlive() -> None:
     _killed_by_the_system(0)
 
 
-def _killed_by_the_system(number: int = signal.SIGKILL) -> bool:
-    """Ask Linux to end this process by a signal, 0 for none; False where it cannot be asked."""
+def _killed_by_the_system(number: int = 9) -> bool:
+    """Ask Linux to end this process by a signal (9, SIGKILL, has no name on Windows), 0 for none; False where it cannot be."""
     if sys.platform != "linux":
         return False
     none = ctypes.c_ulong(0)

@@ -34,9 +34,8 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.fingerprint import PROGRAM, fingerprint
-from plan_cutters_base.user_cache import roots, writable
+from plan_cutters_base.user_cache import CacheWarning, roots, writable
 
 VERSION: str = numba.__version__
 
@@ -55,8 +54,6 @@ _CHECKSUM = 32
 #: only, where there are any: what names one is not kept on disk.
 _NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
 
-Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-
 
 @functools.cache
 def _of_this_process() -> str | None:
@@ -68,20 +65,13 @@ def _of_this_process() -> str | None:
 
 
 @functools.cache
-def cache_folder(name: str, package: str, file: str, ours: frozenset[str] = frozenset()) -> tuple[str, bool]:
+def cache_folder(name: str, package: str, file: str) -> tuple[str, bool]:
     """Folder of the machine code of just a module as it is, and of all that it imports; made if need be; whether it lasts.
 
-    It is that of the module's name and of its fingerprint. One for this process alone does not last: no other one can be
-    written, or the source cannot be read. Where not even that can be written, it is not there.
-
-    Parameters
-    ----------
-    name, package, file : str
-        The module's `__name__`, `__package__` and `__file__`.
-    ours : frozenset of str
-        Top-level packages that count where they are imported, beside that of the module and those of this program.
+    It is that of the module's name and of its fingerprint, whose arguments these are. A folder for this process alone does not
+    last: no other one can be written, or the source cannot be read. Where not even that can be written, it is not there.
     """
-    ours |= {name.partition(".")[0], *PROGRAM}
+    ours = frozenset({name.partition(".")[0], *PROGRAM})
     folders = [each for each in roots() if writable(each)]
     made_of = fingerprint(name, package, file, ours, folders[0] / "sources" if folders else None)
     if made_of is not None:
@@ -205,9 +195,9 @@ def _checked(compiled: Any) -> Any:
 
 
 @contextlib.contextmanager
-def _our_cache(function: Callable[..., Any], ours: frozenset[str], *beneath: str) -> Iterator[None]:
+def _our_cache(function: Callable[..., Any], *beneath: str) -> Iterator[None]:
     module = function.__globals__
-    folder, _ = cache_folder(module["__name__"], module.get("__package__") or "", module["__file__"], ours)
+    folder, _ = cache_folder(module["__name__"], module.get("__package__") or "", module["__file__"])
     before = numba.config.CACHE_DIR, _Impl._locator_classes
     numba.config.CACHE_DIR = os.path.join(folder, *beneath)
     _Impl._locator_classes = [_ByContent]
@@ -283,36 +273,37 @@ def _uncollected(entry: Any) -> Any:
     return entry
 
 
-def _also_from_python(kernel: Any, ours: frozenset[str], nrt: bool) -> Any:
-    """Let Python call a kernel too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache."""
+def entry(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile what Python calls, which may make arrays: on its first call. Machine code is kept on disk; it releases the GIL."""
+    with _our_cache(function):
+        return _uncollected(_once(_checked(numba.njit(**_ENTRY)(function))))
 
+
+def _linked(function: Callable[..., Any], nrt: bool) -> Callable[..., Any]:
+    with _our_cache(function):
+        made = numba.njit(**_ENTRY, _nrt=nrt, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
+    made = _once(_checked(made))
+
+    # Python calls it, too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache.
     @functools.cache
-    def compiled() -> Any:
-        with _our_cache(kernel.py_func, ours, "called"):
-            return _uncollected(_checked(numba.njit(**_ENTRY, _nrt=nrt)(kernel.py_func)))
+    def called() -> Any:
+        with _our_cache(function, "called"):
+            return _uncollected(_checked(numba.njit(**_ENTRY, _nrt=nrt)(function)))
 
-    kernel._insert = lambda *overload: None
-    kernel._compile_for_args = lambda *args, **kws: compiled()
-    return kernel
+    made._insert = lambda *overload: None
+    made._compile_for_args = lambda *args, **kws: called()
+    return made
 
 
-def decorators(name: str) -> tuple[Decorator, Decorator, Decorator]:
-    """`entry`, `kernel` and `maker` for the module of a name, and for those that take them from it.
+def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile what entries call, and what makes no array: it has no machine code of its own.
 
-    An entry is called by Python, and may make arrays. It is compiled on its first call, its machine code is kept on disk, and
-    it releases the GIL. A kernel is called by entries, and makes no array itself: it works without the counting of references,
-    two atomic instructions for every array at every call, which took a third of all time. The entry keeps the arrays alive. A
-    kernel has no machine code of its own. A maker is called by entries, too, and has none, either, but makes arrays for them.
+    It works without the counting of references, two atomic instructions for every array at every call, which took a third of all
+    time. The entry keeps the arrays alive.
     """
-    ours = frozenset({name.partition(".")[0]})
+    return _linked(function, nrt=False)
 
-    def entry(function: Callable[..., Any]) -> Callable[..., Any]:
-        with _our_cache(function, ours):
-            return _uncollected(_once(_checked(numba.njit(**_ENTRY)(function))))
 
-    def linked(function: Callable[..., Any], nrt: bool) -> Callable[..., Any]:
-        with _our_cache(function, ours):
-            made = numba.njit(**_ENTRY, _nrt=nrt, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
-        return _also_from_python(_once(_checked(made)), ours, nrt)
-
-    return entry, functools.partial(linked, nrt=False), functools.partial(linked, nrt=True)
+def maker(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile what entries call, and what makes arrays for them: it has no machine code of its own, either."""
+    return _linked(function, nrt=True)

@@ -8,7 +8,6 @@ Only what lies in a folder of this user, which nobody else may write to, is read
 
 import contextlib
 import functools
-import hashlib
 import importlib.util
 import os
 import time
@@ -20,12 +19,9 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
-from plan_cutters_base.digest import digest, sources
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.fingerprint import PROGRAM
-from plan_cutters_base.packed import packed, unpacked
-from plan_cutters_base.user_cache import own, roots, writable
-from plan_cutters_base.whole import whole
+from plan_cutters_base.user_cache import CacheWarning, own, read_entry, roots, writable, write_entry
+from plan_cutters_base.values import digest, packed, sources, unpacked
 
 Made = TypeVar("Made")
 
@@ -33,8 +29,8 @@ Made = TypeVar("Made")
 FOLDER, SIZE, MOST = "PLAN_CUTTERS_CACHE", "PLAN_CUTTERS_CACHE_MB", 2 << 30
 #: What takes less, s, is made again: reading it would take as long.
 _WORTH = 0.15
-#: Bytes of the checksum at the beginning of an entry; the end of its name.
-_CHECKSUM, _SUFFIX = 32, ".stage"
+#: The end of the name of an entry.
+_SUFFIX = ".stage"
 #: What was begun so long ago, s, and is not done, never will be.
 _ABANDONED = 3600.0
 #: Packages whose results may differ from version to version.
@@ -43,16 +39,10 @@ PACKAGES = ("cadquery-ocp-proxy", "numba", "numpy", "scipy", "shapely")
 
 @dataclass(frozen=True, slots=True)
 class StageCache:
-    """A folder of results of stages.
+    """A folder of results of stages; without one, nothing is kept, and nothing was."""
 
-    Attributes
-    ----------
-    folder : Path
-    most : int
-        Bytes that are kept: what was used least lately goes first.
-    """
-
-    folder: Path
+    folder: Path | None
+    #: Bytes that are kept: what was used least lately goes first.
     most: int = MOST
 
     @classmethod
@@ -81,19 +71,15 @@ class StageCache:
     ) -> Made:
         """Return what a stage makes: read, where it was made before, or made and written.
 
-        Parameters
-        ----------
-        stage : str
-        follows_from : object
-            All that the result depends on, as `digest` takes it.
-        make : callable
-        keep : callable, optional
-            Whether a result may be kept: not what a limit of time ended.
+        `follows_from`: all that the result depends on, as `digest` takes it. `keep`: whether a result may be kept: not what a
+        limit of time ended.
         """
-        path = self._place(stage, follows_from)
-        made = _read(path)
-        if made is not None:
-            return cast(Made, made[0])
+        if (path := self._place(stage, follows_from)) is None:
+            return make()
+        # Whatever is wrong with an entry, it is made again.
+        with contextlib.suppress(Exception):
+            if (content := read_entry(path)) is not None:
+                return cast(Made, unpacked(content))
         began = time.perf_counter()
         result = make()
         if time.perf_counter() - began >= _WORTH and (keep is None or keep(result)):
@@ -102,25 +88,18 @@ class StageCache:
 
     def holds(self, stage: str, follows_from: object) -> bool:
         """Whether there is an entry, be it damaged."""
-        return self._place(stage, follows_from).exists()
+        path = self._place(stage, follows_from)
+        return path is not None and path.exists()
 
-    def _place(self, stage: str, follows_from: object) -> Path:
+    def _place(self, stage: str, follows_from: object) -> Path | None:
+        if self.folder is None:
+            return None
         return self.folder / f"{stage}-{digest([stage, follows_from, made_by()]).hex()[:40]}{_SUFFIX}"
 
     def _write(self, path: Path, result: object) -> None:
         # Whatever keeps it from being written, the work goes on.
-        with contextlib.suppress(Exception), whole(path) as temporary, temporary.open("r+b") as file:
-            # By its owner alone.
-            os.chmod(temporary, 0o600)
-            state = hashlib.sha256(path.name.encode())
-            file.write(bytes(_CHECKSUM))
-            for piece in packed(result):
-                state.update(piece)
-                file.write(piece)
-            if file.tell() > self.most:
-                raise OSError("an entry larger than the cache")
-            file.seek(0)
-            file.write(state.digest())
+        with contextlib.suppress(Exception):
+            write_entry(path, packed(result), self.most)
         self._trim()
 
     def _trim(self) -> None:
@@ -144,34 +123,17 @@ class StageCache:
                 size -= mine
 
 
-class NoStageCache:
-    """Nothing is kept, and nothing was."""
-
-    def holds(self, stage: str, follows_from: object) -> bool:
-        """As of a `StageCache`: there is no entry."""
-        return False
-
-    def cached(
-        self, stage: str, follows_from: object, make: Callable[[], Made], keep: Callable[[Made], bool] | None = None
-    ) -> Made:
-        """Return what a stage makes."""
-        return make()
-
-
 #: The cache of those who keep nothing.
-NO_CACHE = NoStageCache()
+NO_CACHE = StageCache(None)
 
 
 class RunCache:
     """A run keeps what its stages made: a part that is prepared twice, for setups that are proposed and in them, is sampled once.
 
-    Parameters
-    ----------
-    lasting : StageCache or NoStageCache
-        What is asked of what was not made in this run.
+    `lasting` is asked for what was not made in this run.
     """
 
-    def __init__(self, lasting: StageCache | NoStageCache) -> None:
+    def __init__(self, lasting: StageCache) -> None:
         self._lasting, self._made = lasting, dict[bytes, Any]()
 
     def holds(self, stage: str, follows_from: object) -> bool:
@@ -189,7 +151,7 @@ class RunCache:
 
 
 #: Of these a stage does not know which it has.
-Cache = StageCache | NoStageCache | RunCache
+Cache = StageCache | RunCache
 
 
 @functools.cache
@@ -206,27 +168,6 @@ if hasattr(os, "register_at_fork"):
 def settle() -> None:
     """Wait until all that is to be kept is written."""
     _writer().submit(lambda: None).result()
-
-
-def _read(path: Path) -> tuple[Any] | None:
-    """An entry as it was written, in a tuple of its own; None where there is none, or it is damaged."""
-    try:
-        with path.open("rb") as file:
-            status = os.fstat(file.fileno())
-            if not own(status):
-                return None
-            checksum, content = file.read(_CHECKSUM), bytearray(max(0, status.st_size - _CHECKSUM))
-            file.readinto(content)
-        state = hashlib.sha256(path.name.encode())
-        state.update(content)
-        if state.digest() != checksum:
-            path.unlink(missing_ok=True)
-            return None
-        os.utime(path)
-        return (unpacked(content),)
-    except Exception:
-        # Whatever is wrong with it, it is made again.
-        return None
 
 
 @functools.cache

@@ -1,11 +1,22 @@
-"""Where this user's caches lie: folders that nobody else can have written to."""
+"""Where this user's caches lie, folders that nobody else can have written to; entries there are read as they were written."""
 
 import contextlib
+import hashlib
+import math
 import os
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+
+from plan_cutters_base.whole import whole
+
+#: Bytes of the checksum at the beginning of an entry.
+_CHECKSUM = 32
+
+
+class CacheWarning(UserWarning):
+    """Machine code in the compiler's cache is damaged, or cannot be read or written: compiling it anew takes time alone."""
 
 
 def roots() -> Iterator[Path]:
@@ -33,3 +44,38 @@ def writable(folder: Path) -> bool:
         folder.mkdir(parents=True, exist_ok=True)
         return os.access(folder, os.W_OK)
     return False
+
+
+def write_entry(path: Path, pieces: Iterable[bytes | memoryview], most: float = math.inf) -> None:
+    """Write an entry whole, for its owner alone, behind a checksum of its name and content; an OSError where it cannot be."""
+    with whole(path) as temporary, temporary.open("r+b") as file:
+        os.chmod(temporary, 0o600)
+        state = hashlib.sha256(path.name.encode())
+        file.write(bytes(_CHECKSUM))
+        for piece in pieces:
+            state.update(piece)
+            file.write(piece)
+        if file.tell() > most:
+            raise OSError("an entry larger than the cache")
+        file.seek(0)
+        file.write(state.digest())
+
+
+def read_entry(path: Path) -> bytearray | None:
+    """The content of an entry as it was written; None where another user might have written it, or it is damaged.
+
+    By a full disk, a power cut or another name: then it is removed. An OSError where it cannot be read.
+    """
+    with path.open("rb") as file:
+        status = os.fstat(file.fileno())
+        if not own(status):
+            return None
+        checksum, content = file.read(_CHECKSUM), bytearray(max(0, status.st_size - _CHECKSUM))
+        file.readinto(content)
+    state = hashlib.sha256(path.name.encode())
+    state.update(content)
+    if state.digest() != checksum:
+        path.unlink(missing_ok=True)
+        return None
+    os.utime(path)
+    return content

@@ -30,13 +30,7 @@ class OutsideError(PermissionError):
 
 
 def permitted(path: str | os.PathLike[str]) -> str:
-    """Where a path leads, past all links, if that may be read.
-
-    Raises
-    ------
-    OutsideError
-        It leads out of the folders of `WITHIN`.
-    """
+    """Where a path leads, past all links; an OutsideError where that is out of the folders of `WITHIN`."""
     name, within = os.fspath(path), os.environ.get(WITHIN)
     if within is None:
         return name
@@ -49,14 +43,7 @@ def permitted(path: str | os.PathLike[str]) -> str:
 def open_regular(path: str | os.PathLike[str]) -> BufferedReader:
     """Open a regular file, or a link to one, to read its bytes; nothing else is waited for.
 
-    Raises
-    ------
-    IrregularError
-        It is something else.
-    OSError
-        It cannot be opened.
-    ValueError
-        It cannot be the name of a file.
+    An IrregularError where it is something else, an OSError where it cannot be opened, a ValueError where that is no file's name.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
     # Some devices act when they are opened; what takes the place of the file meanwhile is looked at, too.
@@ -71,13 +58,7 @@ def open_regular(path: str | os.PathLike[str]) -> BufferedReader:
 
 
 def content(path: str | os.PathLike[str], most: int = -1) -> bytes:
-    """Read what a user's file holds, at most so many bytes of it, and note it.
-
-    Raises
-    ------
-    OutsideError, IrregularError, OSError, ValueError
-        It may not be read, is no regular file, cannot be read, or cannot be the name of a file.
-    """
+    """Read what a user's file holds, at most so many bytes of it, and note it; it raises as `permitted` and `open_regular`."""
     there = permitted(path)
     try:
         with open_regular(there) as opened:
@@ -108,15 +89,8 @@ def note(path: str | os.PathLike[str], data: bytes | None) -> None:
 
 @contextmanager
 def noted() -> Iterator[dict[str, str | None]]:
-    """Note what is read meanwhile in this process.
+    """Note what is read meanwhile in this process: by path, as it was opened, the SHA-256 of it; None: there was none.
 
-    Yields
-    ------
-    dict
-        Path, as it was opened -> SHA-256 of what was read; None: it was looked for, and there was none.
-
-    Examples
-    --------
     >>> with noted() as files:
     ...     is_there("nowhere.fctb")
     False

@@ -1,11 +1,18 @@
-"""Files appear whole or not at all: written under another name, then renamed."""
+"""Files appear whole or not at all, written under another name, then renamed; and locks of the system on files."""
 
 import contextlib
+import errno
 import os
 import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
+
+#: Errors that say that a file system has no locks of its own.
+_NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
 
 
 class FileError(Protocol):
@@ -39,16 +46,11 @@ def whole(path: str | Path, error: FileError | None = None, named: Callable[[Pat
 
     Parameters
     ----------
-    path : path
-    error : type of error, optional
-        Raised in place of an `OSError`.
-    named : callable, optional
+    path
+    error
+        Raised in place of an `OSError`: the folder cannot be written to, or the file cannot be written or take its place.
+    named
         Called with the path to write to before it exists, so that whoever ends this process can take it away.
-
-    Raises
-    ------
-    error or OSError
-        The folder cannot be written to, or the file cannot be written or take its place.
     """
     path = Path(path)
     temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
@@ -65,3 +67,34 @@ def whole(path: str | Path, error: FileError | None = None, named: Callable[[Pat
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
+
+
+def system_lock(file: Path) -> "BaseFileLock":
+    """Make the system's lock on a file, which ends with the process that has it, however that ends; it is not taken yet."""
+    from filelock import FileLock  # most commands take none
+
+    return FileLock(file, thread_local=False, fallback_to_soft=False)
+
+
+def acquired(system: "BaseFileLock") -> bool | None:
+    """Whether the system's lock on a file is ours now; None where there are none, and on Windows, where nobody could read it."""
+    if os.name == "nt":
+        return None
+    try:
+        system.acquire(timeout=0)
+    except TimeoutError:
+        return False
+    except OSError as error:
+        if error.errno in _NO_LOCKS:
+            return None
+        raise
+    return True
+
+
+def sweep(file: Path) -> None:
+    """Remove a lock's file that a process which was ended left behind, unless another one has it by now."""
+    with contextlib.suppress(OSError):
+        system = system_lock(file)
+        if file.exists() and acquired(system) is not False:
+            file.unlink()
+            system.release()

@@ -21,8 +21,7 @@ from plan_cutters.report.folder import DEFAULT_FORMATS
 from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
-    from plan_cutters.cases.files import CaseFiles
-    from plan_cutters_batch.job import Fault, Job, Settings
+    from plan_cutters_batch.job import Job, Settings
     from plan_cutters_batch.row import PartRow
     from plan_cutters_batch.run import Terms
     from plan_cutters_batch.sources import Source
@@ -99,8 +98,9 @@ def command(request: BatchRequest) -> int:
     Each part is planned in a process of its own on a Dask cluster. What is done is not done again: not after an interrupt, nor
     after parts are added. A part that fails is a row of the table, with its cause.
     """
+    from plan_cutters.domain.figures import count as counted
     from plan_cutters.errors import OptionError
-    from plan_cutters_batch.job import Fault
+    from plan_cutters_batch.row import OUTCOMES, PartRow, code_of, fault, outcome, part_case
     from plan_cutters_batch.run import Terms
     from plan_cutters_batch.store import Store
 
@@ -112,12 +112,19 @@ def command(request: BatchRequest) -> int:
         raise OptionError(f"--dry-run plans nothing, and --{word} is about what was planned: leave one of them out")
     fail_on = _fail_on(request.fail_on)
     parts = _parts(request)
-    faults = [part.row for part in parts if isinstance(part, Fault)]
+
+    def reported(rows: Sequence[PartRow]) -> int:
+        """Write the test cases of the parts, where a file for them is named; the largest exit code of what the batch fails on."""
+        if files is not None:
+            files.write(_SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
+        return max((code_of(row) for row in rows if fault(row) in fail_on), default=FEASIBLE)
+
+    faults = [part for part in parts if isinstance(part, PartRow)]
     if len(faults) == len(parts):
-        _report(files, faults)
+        code = reported(faults)
         for row in faults:
             terminal.error(f"{_SELF}: {row.error or ''}")
-        return max(_code(row, fail_on) for row in faults)
+        return code
     memory = None if request.limit_memory is None else request.limit_memory * 1e9
     for word in ("timeout_part", "limit_memory", "read_timeout"):
         value = getattr(request, word)
@@ -131,7 +138,14 @@ def command(request: BatchRequest) -> int:
     terms = Terms(request.force, request.timeout_part, memory)
     if request.dry_run:
         return _foreseen(parts, out, terms)
-    return _all(parts, out, terms, request, fail_on)
+    rows = _planned(parts, out, terms, request)
+    code = reported(rows)
+    if not request.quiet:
+        totals = Counter(map(outcome, rows))
+        many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
+        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out))
+        terminal.all_shown()
+    return code
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
@@ -152,83 +166,7 @@ def _seen_by_workers(request: BatchRequest) -> None:
         writable(Path(os.path.expanduser(request.out)))
 
 
-def _fail_on(words: str | None) -> frozenset[str]:
-    """What gives an exit code other than 0."""
-    from plan_cutters.errors import OptionError
-    from plan_cutters_batch.summary import FAIL_ON
-
-    if words is None:
-        return frozenset(FAIL_ON)
-    chosen = [word.strip() for word in words.split(",")]
-    if chosen == ["none"]:
-        return frozenset()
-    for word in chosen:
-        if word not in FAIL_ON:
-            raise OptionError(f"--fail-on takes some of {','.join(FAIL_ON)}, or none, not {word!r}")
-    return frozenset(chosen)
-
-
-def _code(row: "PartRow", fail_on: frozenset[str]) -> int:
-    """The exit code that a part gives the batch."""
-    from plan_cutters_batch.summary import code_of, fault
-
-    return code_of(row) if fault(row) in fail_on else FEASIBLE
-
-
-def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]) -> int:
-    """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
-    from plan_cutters.domain.figures import count as counted
-    from plan_cutters_batch import cluster
-    from plan_cutters_batch.index import PAGE
-    from plan_cutters_batch.progress import Board
-    from plan_cutters_batch.run import run_batch
-    from plan_cutters_batch.summary import OUTCOMES, outcome
-
-    out.begin()  # what is wrong with it is said before any worker is started
-    board = Board(request.quiet, len(parts))
-    code, totals = FEASIBLE, Counter[str]()
-    rows: list[PartRow] = []
-    try:
-        count, share = cluster.workers_of(request.workers, terms.memory, request.jobs or 1)
-        if request.cluster is None:
-            terms.memory = share
-        with cluster.opened(request.cluster, count) as client:
-            facts = cluster.facts(client)
-            board.say(f"{counted(len(parts), 'part')} on {counted(int(str(facts['workers'])), 'worker')} of {facts['address']}")
-            board.say(f"Dashboard: {facts['dashboard'] or 'none here; pip install bokeh gives one'}")
-            for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
-                code = max(code, _code(row, fail_on))
-                totals[outcome(row)] += 1
-                rows.append(row)
-                board.row(row)
-    finally:
-        board.close()
-        out.end()
-    _report(request.case_files, rows)
-    if not request.quiet:
-        many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
-        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out, PAGE))
-        terminal.all_shown()
-    return code
-
-
-def _where(out: "Store", page: str) -> str:
-    """Say how to look at the table: no browser opens an address on object storage."""
-    if out.local:
-        return f"Look at them in a browser: {out.root_url}/{page}"
-    return f"The table is {out.root_url}/{page}: copy the folder to this machine to open it, or give --out a folder."
-
-
-def _report(files: "CaseFiles | None", rows: "Sequence[PartRow]") -> None:
-    """Write the test cases of the parts, where a file for them is named."""
-    if files is None:
-        return
-    from plan_cutters_batch.summary import part_case
-
-    files.write(_SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
-
-
-def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:
+def _foreseen(parts: "Sequence[Job | PartRow]", out: "Store", terms: "Terms") -> int:
     from plan_cutters_batch.run import foreseen
 
     code = FEASIBLE
@@ -239,26 +177,76 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
     return code
 
 
-def _parts(request: BatchRequest) -> "list[Job | Fault]":
+def _fail_on(words: str | None) -> frozenset[str]:
+    """What gives an exit code other than 0."""
+    from plan_cutters.errors import OptionError
+    from plan_cutters_batch.row import FAIL_ON
+
+    chosen = list(FAIL_ON) if words is None else [word.strip() for word in words.split(",")]
+    if chosen == ["none"]:
+        return frozenset()
+    for word in chosen:
+        if word not in FAIL_ON:
+            raise OptionError(f"--fail-on takes some of {','.join(FAIL_ON)}, or none, not {word!r}")
+    return frozenset(chosen)
+
+
+def _planned(parts: "Sequence[Job | PartRow]", out: "Store", terms: "Terms", request: BatchRequest) -> "list[PartRow]":
+    """Plan them under the eyes of a board."""
+    from plan_cutters.domain.figures import count as counted
+    from plan_cutters_batch import run as runs
+    from plan_cutters_batch.progress import Board
+
+    out.begin()  # what is wrong with it is said before any worker is started
+    board = Board(request.quiet, len(parts))
+    rows: list[PartRow] = []
+    try:
+        count, share = runs.workers_of(request.workers, terms.memory, request.jobs or 1)
+        if request.cluster is None:
+            terms = replace(terms, memory=share)
+        with runs.opened(request.cluster, count) as client:
+            facts = runs.facts(client)
+            board.say(f"{counted(len(parts), 'part')} on {counted(int(str(facts['workers'])), 'worker')} of {facts['address']}")
+            board.say(f"Dashboard: {facts['dashboard'] or 'none here; pip install bokeh gives one'}")
+            for row in runs.run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
+                rows.append(row)
+                board.row(row)
+    finally:
+        board.close()
+        out.end()
+    return rows
+
+
+def _where(out: "Store") -> str:
+    """Say how to look at the table: no browser opens an address on object storage."""
+    from plan_cutters_batch.summary import PAGE
+
+    if out.local:
+        return f"Look at them in a browser: {out.root_url}/{PAGE}"
+    return f"The table is {out.root_url}/{PAGE}: copy the folder to this machine to open it, or give --out a folder."
+
+
+def _parts(request: BatchRequest) -> "list[Job | PartRow]":
     """Jobs of all that is meant, with the settings of each."""
     from plan_cutters.command.cli import listed
     from plan_cutters.errors import PlanError
-    from plan_cutters_batch.job import Fault, Job
+    from plan_cutters_batch.job import Job
+    from plan_cutters_batch.row import PartRow, failed
     from plan_cutters_batch.sources import manifest, sources
 
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
     settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
     settled(())
-    jobs: list[Job | Fault] = []
+    jobs: list[Job | PartRow] = []
     for each in sources(listed(request.sources), request.out, lambda file: manifest(file, sorted(own))):
-        if isinstance(each, Fault):
+        if isinstance(each, PartRow):
             jobs.append(each)
             continue
         try:
             jobs.append(Job(each.name, each.file, settled(_values(each, own))))
         except (PlanError, click.BadParameter) as error:
             why = error.format_message() if isinstance(error, click.BadParameter) else str(error)
-            jobs.append(Fault(each.name, each.file, f"{each.place}: {why}"))
+            jobs.append(failed(each.name, each.file, f"{each.place}: {why}"))
     return jobs
 
 
@@ -310,6 +298,4 @@ def _settings(request: BatchRequest) -> "Settings":
     look_at(requested)
     formats = _formats() if request.formats is None else read_formats(request.formats)
     read = tuple(filter(None, files.values()))
-    return Settings(
-        requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout, read, request.cache
-    )
+    return Settings(requested, formats, request.step_schema, request.read_timeout, read, request.cache)

@@ -1,26 +1,27 @@
-"""A part of a batch and what travels for it: the content of its files, and its settings, or why it cannot be planned."""
+"""A part of a batch and what travels for it: the content of its files, its settings, and the key of both."""
 
 import contextlib
 import copy
+import functools
 import os
 import pickle
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+import platform
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, fields, replace
 from pathlib import Path, PurePath, PureWindowsPath
-from typing import Any
+from typing import Any, NamedTuple
 
-from cad_io.read.step_text import followed
+import plan_cutters
+from cad_io.read.references import followed
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files import folder as folders
 from plan_cutters.options import Options
 from plan_cutters_base import user_files
+from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
 from plan_cutters_base.user_files import checksum, checksums, fingerprint
-from plan_cutters_batch.row import PartRow
-
-#: Exit codes of a batch: as of a single plan (`docs/command.md`).
-USAGE, UNREADABLE = 2, 3
+from plan_cutters_base.values import digest, sources
 
 
 @dataclass(frozen=True)
@@ -36,19 +37,11 @@ class Content:
         """Checksum of all of it."""
         return fingerprint(checksum(self.data), checksums(self.references))
 
-    def write(self, file: Path) -> None:
-        """Write the file, and those that it refers to where they lie in or below its folder.
-
-        What lies elsewhere is missing there, or read where it lies if its whole path is given.
-        """
-        file.write_bytes(self.data)
-        for name, data in self.within():
-            there = file.parent / name
-            there.parent.mkdir(parents=True, exist_ok=True)
-            there.write_bytes(data)
-
     def within(self) -> Iterator[tuple[str, bytes]]:
-        """The files in or below its folder that it refers to, and that are there."""
+        """The files in or below its folder that it refers to, and that are there.
+
+        What lies elsewhere does not travel: it is missing there, or read where it lies if its whole path is given.
+        """
         return ((name, data) for name, data in self.references if data is not None and _is_within(name))
 
     def outside(self) -> tuple[tuple[str, str | None], ...]:
@@ -58,6 +51,13 @@ class Content:
 
 def _is_within(name: str) -> bool:
     return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
+
+
+def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
+    """Write files below a folder, by their paths from there."""
+    for name, data in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(data)
 
 
 def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
@@ -77,53 +77,8 @@ def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
     return Content(data, tuple(followed(data, other)))
 
 
-@dataclass(frozen=True)
-class Settings:
-    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
-
-    options: Options
-    #: Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
-    formats: tuple[str, ...] = ("json",)
-    step_schema: str = "ap242"
-    #: Seconds that reading may take.
-    read_timeout: float = 120.0
-    #: SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
-    read: tuple[str, ...] = ()
-    #: Keep what stages make of a part in the cache folder of each worker's user.
-    cache: bool = True
-
-
-@dataclass(frozen=True)
-class Job:
-    """A part to plan."""
-
-    #: Among all parts: its folder below the output is `<name>-plan`.
-    name: str
-    #: Path or URL.
-    file: str
-    settings: Settings
-    #: The pickled `cad_io.Part`, where it is no file.
-    part: bytes | None = None
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A part that cannot be planned, or a source that holds none: `why` is one line, with the place where it was requested."""
-
-    name: str
-    file: str
-    why: str
-    code: int = USAGE
-
-    @property
-    def row(self) -> PartRow:
-        """Its line of the table."""
-        return PartRow(name=self.name, file=self.file, status="failed", code=self.code, error=self.why)
-
-
-@dataclass(frozen=True)
-class Handed:
-    """The settings of a part, ready to travel."""
+class Handed(NamedTuple):
+    """Options, ready to travel."""
 
     #: Pickled.
     options: bytes
@@ -133,49 +88,101 @@ class Handed:
     outside: tuple[tuple[str, str | None], ...] = ()
 
 
-def handed(options: Options) -> Handed:
-    """Pack options for another machine, with the content of the files that fixtures are read from.
+@dataclass(frozen=True)
+class Settings:
+    """How parts are planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file."""
 
-    An OptionError where one cannot be read, or where faces are given as objects, which belong to one process.
-    """
-    files: dict[str, bytes] = {}
-    names: dict[str, str] = {}
-    outside: list[tuple[str, str | None]] = []
+    options: Options
+    #: Of `report.folder.FORMATS`; `json` is always among them, for the table is made from it.
+    formats: tuple[str, ...] = ("json",)
+    step_schema: str = "ap242"
+    #: Seconds that reading may take.
+    read_timeout: float = 120.0
+    #: SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
+    read: tuple[str, ...] = ()
+    #: Keep what stages make of a part in the cache folder of each worker's user.
+    cache: bool = True
 
-    def moved(fixture: Fixture) -> Fixture:
-        if fixture.kind or not isinstance(fixture.source, str):
-            return fixture
-        if fixture.source not in names:
-            copied = content(fixture.source, _read)
-            name = PurePath(PureWindowsPath(fixture.source).name).name
-            # What it refers to is called as it is called there: it gets a folder of its own.
-            name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
-            while name in files:
-                name = f"_{name}"
-            files[name] = copied.data
-            files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
-            outside.extend(copied.outside())
-            names[fixture.source] = name
-        # A copy past the checks: they looked at the same words.
-        return _with(fixture, source=names[fixture.source])
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "formats", tuple(dict.fromkeys(("json", *self.formats))))
 
-    def placed(place: Placement | None) -> Placement | None:
-        return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Of the command line, for what is no option of the plan."""
+        return ("--formats", ",".join(self.formats), "--step-schema", self.step_schema, "--read-timeout", repr(self.read_timeout),
+                *([] if self.cache else ["--no-cache"]))  # fmt: skip
 
-    there = _with(
-        options,
-        fixtures=tuple(map(moved, options.fixtures)),
-        placement=placed(options.placement),
-        other_placements=tuple(map(placed, options.other_placements)),
-    )
-    try:
-        packed = pickle.dumps(there, protocol=5)
-    except Exception as error:
-        raise OptionError(
-            f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
-            "give numbers, words or files"
-        ) from None
-    return Handed(packed, tuple(sorted(files.items())), tuple(outside))
+    @functools.cached_property
+    def handed(self) -> Handed:
+        """The options as they travel, with the content of the files that fixtures are read from.
+
+        An OptionError where one cannot be read, or where faces are given as objects, which belong to one process.
+        """
+        files: dict[str, bytes] = {}
+        names: dict[str, str] = {}
+        outside: list[tuple[str, str | None]] = []
+
+        def moved(fixture: Fixture) -> Fixture:
+            if fixture.kind or not isinstance(fixture.source, str):
+                return fixture
+            if fixture.source not in names:
+                copied = content(fixture.source, _read)
+                name = PurePath(PureWindowsPath(fixture.source).name).name
+                # What it refers to is called as it is called there: it gets a folder of its own.
+                name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
+                while name in files:
+                    name = f"_{name}"
+                files[name] = copied.data
+                files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
+                outside.extend(copied.outside())
+                names[fixture.source] = name
+            # A copy past the checks: they looked at the same words.
+            return _with(fixture, source=names[fixture.source])
+
+        def placed(place: Placement | None) -> Placement | None:
+            return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
+
+        there = _with(
+            self.options,
+            fixtures=tuple(map(moved, self.options.fixtures)),
+            placement=placed(self.options.placement),
+            other_placements=tuple(map(placed, self.options.other_placements)),
+        )
+        try:
+            packed = pickle.dumps(there, protocol=5)
+        except Exception as error:
+            raise OptionError(
+                f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
+                "give numbers, words or files"
+            ) from None
+        return Handed(packed, tuple(sorted(files.items())), tuple(outside))
+
+    @functools.cached_property
+    def key(self) -> str:
+        """Checksum of all but the part: effective options with tools, machine and fixtures, every file that was read for them,
+        what is written, versions.
+
+        The number of threads and the limits of time change no result and do not count.
+        """
+        options = {each.name: getattr(self.options, each.name) for each in fields(self.options)}
+        del options["jobs"]
+        parts = [options, sorted(self.formats), sorted(self.read), self.step_schema, program()]
+        return digest([parts, self.handed.outside, *self.handed.files]).hex()
+
+    def faced(self, part: Any) -> "Settings":
+        """The same with faces by their numbers, for a part that is an object: its faces cannot be named in another process."""
+        from plan_cutters.scene.faces import face_numbers
+
+        changed: dict[str, Any] = {}
+        for word in ("faces", "ignore"):
+            value = getattr(self.options, word)
+            if value is None or isinstance(value, str) or not value:
+                continue
+            with contextlib.suppress(TypeError):
+                if all(isinstance(each, str | int) for each in value):
+                    continue
+            changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
+        return replace(self, options=_with(self.options, **changed)) if changed else self
 
 
 def _read(file: str) -> bytes:
@@ -192,18 +199,42 @@ def _with(record: Any, **values: Any) -> Any:
     return made
 
 
-def faced(job: Settings, part: Any) -> Settings:
-    """Settings whose faces are numbers, for a part that is an object: its faces cannot be named in another process."""
-    from plan_cutters.scene.faces import face_numbers
+@dataclass(frozen=True)
+class Job:
+    """A part to plan."""
 
-    options = job.options
-    changed: dict[str, Any] = {}
-    for word in ("faces", "ignore"):
-        value = getattr(options, word)
-        if value is None or isinstance(value, str) or not value:
-            continue
-        with contextlib.suppress(TypeError):
-            if all(isinstance(each, str | int) for each in value):
-                continue
-        changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
-    return replace(job, options=_with(options, **changed)) if changed else job
+    #: Among all parts: its folder below the output is `<name>-plan`.
+    name: str
+    #: Path or URL.
+    file: str
+    settings: Settings
+    #: The pickled `cad_io.Part`, where it is no file.
+    part: bytes | None = None
+
+    def content(self) -> Content:
+        """What is planned; a PlanError where it cannot be read."""
+        return Content(self.part) if self.part else content(self.file)
+
+
+@functools.cache
+def _own() -> bytes | None:
+    return sources(Path(__file__).parent)
+
+
+def program() -> bytes:
+    """A checksum of what makes plans, and of this package, which makes rows of them."""
+    return digest([made_by(), _own()])
+
+
+def versions() -> dict[str, str]:
+    """The versions that must be the same on all machines of a batch: of this program with its checksum, for an edit counts."""
+    return {
+        "python": platform.python_version(),
+        **{name: installed(name) for name in (*PACKAGES, "dask", "distributed")},
+        "plan-cutters": f"{plan_cutters.__version__}+{program().hex()[:12]}",
+    }
+
+
+def key_of(content: str, settings: str) -> str:
+    """The key of a part, from the checksum of its file and that of its settings: two runs that have one give the same files."""
+    return checksum(f"{content} {settings}".encode())

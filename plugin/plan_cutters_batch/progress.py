@@ -2,9 +2,8 @@
 
 import contextlib
 import textwrap
-import threading
 import time
-from typing import Any, Self
+from typing import Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -12,8 +11,7 @@ from rich.text import Text
 
 from plan_cutters.domain.figures import duration
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_batch.row import PartRow
-from plan_cutters_batch.summary import OUTCOMES, cause, outcome
+from plan_cutters_batch.row import OUTCOMES, PartRow, cause, outcome
 
 #: Where there is no terminal, up to so many parts have a line each; of more, counts are told now and then.
 EACH = 200
@@ -31,10 +29,10 @@ class Screen(Console):
 
 
 class Board:
-    """A board shows what came of parts, and how many there still are; several threads may use it.
+    """A board shows what came of parts, and how many there still are.
 
     Failures are always told, each in a line with its cause; `quiet`: nothing else is. `total`: parts there are; None where that
-    is not known yet. It never raises for a stream that cannot be written to: the files and the exit code say all.
+    is not known. It never raises for a stream that cannot be written to: the files and the exit code say all.
     """
 
     def __init__(self, quiet: bool, total: int | None, *, console: Screen | None = None) -> None:
@@ -44,11 +42,16 @@ class Board:
         self._rows = self._planned = 0
         self._said: set[str] = set()
         self._began = self._spoke = time.monotonic()
-        self._lock = threading.RLock()
-        self._bar: Any = None
-        self._task: Any = None
+        self._bar: Progress | None = None
         if not quiet and self.console.is_terminal and not self.console.is_dumb_terminal:
-            self._draw()
+            words = TextColumn("{task.description}", markup=False)
+            self._bar = Progress(
+                words, BarColumn(bar_width=20), TimeElapsedColumn(), TimeRemainingColumn(), console=self.console, transient=True
+            )
+            with contextlib.suppress(OSError, ValueError):
+                self._bar.start()
+            self._bar.add_task("", total=total)
+            self._update()
 
     def __enter__(self) -> Self:
         return self
@@ -58,48 +61,41 @@ class Board:
 
     def row(self, row: PartRow) -> None:
         """Show what came of a part."""
-        with self._lock:
-            self._rows += 1
-            self.done = max(self.done, self._rows)
-            result = outcome(row)
-            failed = result == "failed"
-            self.failed += failed
-            self._planned += row.status != "kept" and row.seconds > 0.0
-            if failed:
-                self._print(f"{self._front}{row.name}: failed: {cause(row)}")
-            elif not self.quiet and self._bar is None and self._each:
-                note = "; reused from an earlier run" if row.status == "kept" else ""
-                wrong = f"; {row.error}" if row.error else ""
-                rest = f": {OUTCOMES[result]}{'; coarser than requested' * bool(row.coarser)}: {row.verdict}{note}{wrong}"
-                self._print(f"{self._front}{row.name}{rest}")
-            self._update()
+        self._rows += 1
+        self.done = max(self.done, self._rows)
+        result = outcome(row)
+        self.failed += result == "failed"
+        self._planned += row.status != "kept" and row.seconds > 0.0
+        if result == "failed":
+            self._print(f"{self._front}{row.name}: failed: {cause(row)}")
+        elif not self.quiet and self._bar is None and self._each:
+            note = "; reused from an earlier run" if row.status == "kept" else ""
+            wrong = f"; {row.error}" if row.error else ""
+            rest = f": {OUTCOMES[result]}{'; coarser than requested' * bool(row.coarser)}: {row.verdict}{note}{wrong}"
+            self._print(f"{self._front}{row.name}{rest}")
+        self._update()
 
-    def progress(self, done: int, running: int, total: int | None) -> None:
-        """Take over counts from whoever knows them better: parts done, in work, and in all."""
-        with self._lock:
-            # It may be told of a part before its row comes, or after.
-            self.done, self.running = max(done, self._rows), running
-            self.total = self.total if total is None else total
-            self._update()
+    def progress(self, done: int, running: int) -> None:
+        """Take over counts from whoever knows them better, which may be before a row comes: parts done, and in work."""
+        self.done, self.running = max(done, self._rows), running
+        self._update()
 
     def say(self, text: str) -> None:
         """Tell a line, once however often it is said: such as the address of the dashboard."""
-        with self._lock:
-            if not self.quiet and text not in self._said:
-                self._said.add(text)
-                self._print(text)
+        if not self.quiet and text not in self._said:
+            self._said.add(text)
+            self._print(text)
 
     def close(self) -> None:
         """Take the bar away, and tell the counts a last time where there is none."""
-        with self._lock:
-            bar, self._bar, quiet = self._bar, None, self.quiet
-            # What failed is told even later; counts are not.
-            self.quiet = True
-            if bar is not None:
-                with contextlib.suppress(OSError, ValueError):
-                    bar.stop()
-            elif not quiet:
-                self._print(f"{self._front}{self._so_far}")
+        bar, self._bar, quiet = self._bar, None, self.quiet
+        # What failed is told even later; counts are not.
+        self.quiet = True
+        if bar is not None:
+            with contextlib.suppress(OSError, ValueError):
+                bar.stop()
+        elif not quiet:
+            self._print(f"{self._front}{self._so_far}")
 
     @property
     def _front(self) -> str:
@@ -124,14 +120,14 @@ class Board:
         return ", ".join(["parts done", *rest])
 
     def _update(self) -> None:
+        now = time.monotonic()
         if self.quiet:
             return
         if self._bar is not None:
+            of = f" of {self.total:,}" if self.total is not None else ""
             with contextlib.suppress(OSError, ValueError):
-                self._bar.update(self._task, completed=self.done, total=self.total, description=self._counts())
-            return
-        now = time.monotonic()
-        if not self._each and now - self._spoke > (_SOON if now - self._began < 60.0 else _LATER):
+                self._bar.update(self._bar.task_ids[0], completed=self.done, description=f"{self.done:,}{of} {self._so_far}")
+        elif not self._each and now - self._spoke > (_SOON if now - self._began < 60.0 else _LATER):
             self._spoke = now
             self._print(f"{self._front}{self._so_far}")
 
@@ -141,16 +137,3 @@ class Board:
         with contextlib.suppress(OSError, ValueError, AttributeError):
             for each in lines:
                 self.console.print(Text(each), soft_wrap=True)
-
-    def _draw(self) -> None:
-        words = TextColumn("{task.description}", markup=False)
-        self._bar = Progress(
-            words, BarColumn(bar_width=20), TimeElapsedColumn(), TimeRemainingColumn(), console=self.console, transient=True
-        )
-        with contextlib.suppress(OSError, ValueError):
-            self._bar.start()
-        self._task = self._bar.add_task(self._counts(), total=self.total)
-
-    def _counts(self) -> str:
-        of = f" of {self.total:,}" if self.total is not None else ""
-        return f"{self.done:,}{of} {self._so_far}"

@@ -1,59 +1,31 @@
-"""A line of the table of all parts, and what of a plan it is made of: its answer, and the tools that finish the part."""
+"""A line of the table of all parts: what a plan says of its part in a line, and what that means for many."""
 
-from collections.abc import Iterable, Sequence
-from typing import Literal
+from collections import Counter
+from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict
 
-from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.cases import case
+from plan_cutters.cases.case import Case
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import reached_share
+from plan_cutters_base.workers.child import TIMED_OUT
+from plan_cutters_batch.tools import PartTools, part_tools
 
+#: Exit codes of a batch: as of a single plan (`docs/command.md`).
+USAGE, UNREADABLE = 2, 3
 #: `planned` in this run, `kept` from an earlier one, or `failed`: then `error` says why.
 Status = Literal["planned", "kept", "failed"]
-#: Needs of a part that its row names.
-_NEEDS = 3
-
-
-class FaceTools(BaseModel):
-    """The tools that reach a face whole, and those that reach some of it."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    whole: tuple[str, ...]
-    partly: tuple[str, ...] = ()
-
-
-class PartTools(BaseModel):
-    """The part of a plan from which the tools of many parts are chosen: sets that finish the part beyond doubt."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    #: How people call each tool that was judged, by its id: the same dimensions, the same id.
-    names: dict[str, str]
-    #: Whether the tools finish the part beyond doubt (exit code 0). All but `used`, `share` and `needs` is empty where not.
-    finished: bool = False
-    #: Ids of the tools each of which reaches every judged sample.
-    alone: tuple[str, ...] = ()
-    #: Sets that the plan states to finish the part: its process, its least set.
-    together: tuple[tuple[str, ...], ...] = ()
-    #: What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
-    #: setups, for the plan counts the samples of a face in the first one alone.
-    faces: tuple[FaceTools, ...] = ()
-    #: Tools of the steps of the plan, whatever it finishes.
-    used: tuple[str, ...] = ()
-    #: Of what is requested, that all tools finish together, 0 to 1.
-    share: float | None = None
-    #: What would finish more, the best first.
-    needs: tuple[str, ...] = ()
-
-    def finished_by(self, tools: Iterable[str]) -> bool:
-        """Whether the plan states that some tools finish the part together."""
-        there = set(tools)
-        if not self.finished:
-            return False
-        if there & set(self.alone) or any(there.issuperset(each) for each in self.together):
-            return True
-        return bool(self.faces) and all(there & set(face.whole) for face in self.faces)
+#: What came of a part, from worst to best.
+Outcome = Literal["failed", "not_finished", "not_sure", "finished"]
+#: The same in words for people.
+OUTCOMES: dict[Outcome, str] = {word: word.replace("_", " ") for word in get_args(Outcome)}
+#: What is not sure is neither reached nor known not to be.
+_AS_CASES: dict[Outcome, case.Outcome] = {
+    "failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"
+}  # fmt: skip
+#: By the exit code of a single plan; every other code is a failure.
+_OF_CODES: dict[int, Outcome] = {0: "finished", 1: "not_finished", 4: "not_sure"}
 
 
 class PartRow(BaseModel):
@@ -118,10 +90,12 @@ def row_of(
         # The code by which most of the area is not reached; by samples where these stand for no area.
         reason = main_reason(cutter.area_share) or None
         if not reason and cutter.not_reached:
-            both = (cutter.by_reason, cutter.undecided_by_reason)
-            samples = {code: sum(each.get(code, 0) for each in both) for each in both for code in each}
+            samples = Counter(cutter.by_reason) + Counter(cutter.undecided_by_reason)
             reason = max(samples, key=lambda code: samples[code], default=None)
     written = {form: f"{folder}/{file_name(form)}" for form in plan.files} if folder else {}
+    # Sampled more coarsely than requested: that would have taken too many samples.
+    coarser = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
+    missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return PartRow(
         name=name, file=file, key=key, status=status, code=code,
         verdict=headline(plan, names).title if cutter else "No cutter was judged",
@@ -131,69 +105,73 @@ def row_of(
         cutters=len(plan.cutters), samples=plan.samples.judged,
         faces=sum(face.target and face.samples > 0 for face in plan.faces),
         seconds=plan.run.total if seconds is None else seconds,
-        folder=folder, page=written.get("html"), picture=written.get("png"), tools=part_tools(plan, code, names),
+        folder=folder, page=written.get("html"), picture=written.get("png"),
+        error=f"not written: {missing}" if missing else None,
+        coarser=None if coarser is None else f"{coarser[:1].lower()}{coarser[1:].removesuffix('.')}",
+        tools=part_tools(plan, code, names),
     )  # fmt: skip
 
 
-def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
-    """Read from a plan with an exit code which tools finish its part; `names`: how its tools are called in a line, by id."""
-    process = plan.process
-    used = {step.cutter: None for step in process.steps} if process else {}
-    if not used and (taken := plan.selected or plan.selected_over_setups):
-        used = {taken: None}
-    needs: list[str] = []
-    if process is not None and process.left:
-        # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
-        tries = [each.words for each in process.next if "--answers" not in each.argv]
-        needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
-    share = process.finished_share if process else None
-    made = PartTools(names=names, used=tuple(used), share=share, needs=tuple(needs))
-    if code != 0:
-        return made
-    # What may lie between its samples is a doubt: such a tool finishes nothing beyond doubt.
-    sure = [c for c in plan.cutters if c.seen or plan.effective.sampled_by != "default"]
-    ids = {c.id for c in sure}
-    sets = [tuple(used)] if used else []
-    if plan.least_set is not None and not plan.least_set.left and not plan.least_set.doubtful and plan.least_set.runs:
-        sets.append(tuple(dict.fromkeys(run.cutter for run in plan.least_set.runs)))
-    several = bool(plan.effective.other_setups) or any(len(c.setups) > 1 for c in plan.cutters)
-    return made.model_copy(
-        update={
-            "finished": True,
-            "alone": tuple(c.id for c in sure if c.feasible or (several and c.lost_in_all == 0)),
-            "together": tuple(dict.fromkeys(tuple(sorted(each)) for each in sets if ids.issuperset(each))),
-            "faces": () if several else _faces(plan.faces, sure),
-        }
-    )
+def failed(name: str, file: str, why: str, code: int = USAGE, *, key: str = "", seconds: float = 0.0) -> PartRow:
+    """The row of a part that cannot be planned, or of a source that holds none: `why` is one line, with the place."""
+    return PartRow(name=name, file=file, key=key, status="failed", code=code, error=why, seconds=seconds)
 
 
-def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
-    """The ways in which the tools reach the faces that are to be machined."""
-    ways: dict[FaceTools, None] = {}
-    for face in faces:
-        counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
-        # Without a sample of the finished part's surface there is nothing to reach.
-        if not face.target or not any(each.reached + each.not_reached + each.unjudged for each in counts.values()):
-            continue
-        whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
-        partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
-        ways[FaceTools(whole=whole, partly=partly)] = None
-    return essential(tuple(ways))
+def outcome(row: PartRow) -> Outcome:
+    """Sum up a part in a word.
 
-
-def essential(ways: Sequence[FaceTools]) -> tuple[FaceTools, ...]:
-    """Keep the ways that say more than others do, so that a part of many faces has a short row.
-
-    A way follows from another one if whatever tools do that face whole do this one, and those that do some of it as well.
-
-    >>> essential([FaceTools(whole=("D6",)), FaceTools(whole=("D6", "D8"))])
-    (FaceTools(whole=('D6',), partly=()),)
+    >>> outcome(PartRow(name="a", file="a.step", status="kept", code=4))
+    'not_sure'
+    >>> outcome(PartRow(name="a", file="a.step", status="planned", code=139))
+    'failed'
     """
-    names = {name: 1 << k for k, name in enumerate(dict.fromkeys(name for way in ways for name in (*way.whole, *way.partly)))}
-    masks = {way: (sum(names[name] for name in way.whole), sum(names[name] for name in way.partly)) for way in ways}
-    stays: dict[FaceTools, tuple[int, int]] = {}
-    for way in sorted(masks, key=lambda each: (len(each.whole), len(each.partly))):
-        whole, partly = masks[way]
-        if not any(not (w & ~whole) and not (p & ~(whole | partly)) for w, p in stays.values()):
-            stays[way] = whole, partly
-    return tuple(stays)
+    return "failed" if row.status == "failed" else _OF_CODES.get(row.code, "failed")
+
+
+def code_of(row: PartRow) -> int:
+    """The exit code of a part: a failure has never that of an answer.
+
+    >>> code_of(PartRow(name="a", file="a.step", status="failed", code=0))
+    3
+    """
+    return row.code if outcome(row) != "failed" or row.code > 1 else 3
+
+
+#: What may end a batch with a code that is not zero, as `--fail-on` names it.
+FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
+
+
+def fault(row: PartRow) -> str:
+    """Name what is wrong with a part, as `--fail-on` does; empty where it is finished.
+
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
+    'late'
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=139))
+    'unreadable'
+    >>> fault(PartRow(name="a", file="a.step", status="kept", code=0))
+    ''
+    """
+    result = outcome(row)
+    if result == "failed":
+        return {2: "refused", TIMED_OUT: "late"}.get(code_of(row), "unreadable")
+    return {"not_finished": "unfinished", "not_sure": "unsure", "finished": ""}[result]
+
+
+def cause(row: PartRow) -> str:
+    """Why a part failed: never empty."""
+    return row.error or f"no cause was reported (exit code {row.code})"
+
+
+def part_case(row: PartRow) -> Case:
+    """The case of a part: an error without an answer or where the answer is not sure, a failure where it is not finished.
+
+    >>> part_case(PartRow(name="a", file="in/a.step", status="failed", code=124, error="not done within 9 s")).outcome
+    'error'
+    """
+    result = outcome(row)
+    if result == "finished":
+        return Case(row.file, row.name, seconds=row.seconds)
+    text = cause(row) if result == "failed" else row.verdict
+    kind = f"exit_code_{row.code}" if result == "failed" else row.reason or result
+    details = row.error or "" if result != "failed" else ""
+    return Case(row.file, row.name, _AS_CASES[result], kind, text, details, row.seconds)

@@ -9,7 +9,7 @@ import itertools
 import posixpath
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import PurePosixPath
@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import cause, file_system, read
-from plan_cutters_batch.job import UNREADABLE, USAGE, Fault
+from plan_cutters_batch.row import UNREADABLE, PartRow, failed
 
 #: What files of parts are called.
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -43,89 +43,77 @@ class Source:
     place: str = ""
 
 
-def sources(words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> list[Source | Fault]:
-    """The parts that are meant, in the order of the words and, within each, of the names.
+def sources(words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | PartRow]]) -> list[Source | PartRow]:
+    """The parts that are meant, in the order of the words and, within each, of the names; rows of those that cannot be planned.
 
-    Parameters
-    ----------
-    words : sequence of str
-        Files, folders, globs, manifests and lists of files, as paths or URLs.
-    out : str
-        The output: what lies below it is no part.
-    manifest : callable
-        Reads a manifest.
+    Words are files, folders, globs, manifests (which `manifest` reads) and lists of files, as paths or URLs. What lies below the
+    output is no part.
     """
-    jobs: list[Source | Fault] = []
+    jobs: list[Source | PartRow] = []
     for word in words:
         try:
             jobs += _of(word, out, manifest)
         except PlanError as error:
-            jobs.append(Fault(word, word, str(error), UNREADABLE))
+            jobs.append(failed(word, word, str(error), UNREADABLE))
     return _named_once(jobs)
 
 
-def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> Sequence[Source | Fault]:
+def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | PartRow]]) -> Sequence[Source | PartRow]:
     if not word:
-        return [Fault("?", word, "SRC: a file has no name")]
+        return [failed("?", word, "SRC: a file has no name")]
     fs, path = file_system(word)
     try:
         if _MAGIC & set(word) and not fs.exists(path):
             # The folders of a glob before the first that is none.
             plain = itertools.takewhile(lambda part: not _MAGIC & set(part), PurePosixPath(path).parts[:-1])
-            files = [each for each in sorted(fs.glob(path)) if _is_part(each)]
-            return _listed(word, PurePosixPath(*plain).as_posix(), files, fs, "no STEP, IGES or BREP file matches it")
-        if word.lower().endswith(MANIFESTS):
+            base, files = PurePosixPath(*plain).as_posix(), fs.glob(path)
+            nothing = "no STEP, IGES or BREP file matches it"
+        elif word.lower().endswith(MANIFESTS):
             try:
                 return manifest(word)
             except PlanError as error:
                 # A mistake of the command, not a part that cannot be read.
-                return [Fault(word, word, str(error))]
-        if fs.isdir(path):
-            base = path.rstrip("/")
+                return [failed(word, word, str(error))]
+        elif fs.isdir(path):
+            base, nothing = path.rstrip("/"), "the folder holds no STEP, IGES or BREP file"
             there, own = file_system(out)
-            files = [each for each in sorted(fs.find(path)) if _is_part(each) and not _ours(each[len(base) :])]
-            files = [each for each in files if type(there) is not type(fs) or not each.startswith(f"{own.rstrip('/')}/")]
-            return _listed(word, base, files, fs, "the folder holds no STEP, IGES or BREP file")
-        if not fs.exists(path):
+            mine = f"{own.rstrip('/')}/" if type(there) is type(fs) else None
+            # What lies in the folder of a plan, in a hidden one, or below the output is none.
+            files = [
+                each
+                for each in fs.find(path)
+                if not any(part.startswith(".") or part.endswith("-plan") for part in PurePosixPath(each[len(base) :]).parts[:-1])
+                and not (mine and each.startswith(mine))
+            ]
+        elif not fs.exists(path):
             raise PlanError(f"no such file{', folder or bucket' if '://' in word else ' or folder'}", file=word)
+        else:
+            return [Source(PurePosixPath(path).stem, word)]
+        files = sorted(each for each in files if each.lower().endswith(SUFFIXES))
     except PlanError:
         raise
     except Exception as error:
         raise PlanError(cause(error, "read"), file=word) from None
-    return [Source(PurePosixPath(path).stem, word)]
-
-
-def _listed(word: str, base: str, files: Sequence[str], fs: Any, nothing: str) -> list[Source | Fault]:
     if not files:
-        return [Fault(word, word, f"{word}: {nothing}")]
+        return [failed(word, word, f"{word}: {nothing}")]
     stems = [PurePosixPath(file[len(base) :].lstrip("/")).with_suffix("").as_posix() for file in files]
-    whole = "://" in word
-    return [Source(stem, fs.unstrip_protocol(file) if whole else file) for stem, file in zip(stems, files, strict=True)]
+    return [Source(stem, fs.unstrip_protocol(file) if "://" in word else file) for stem, file in zip(stems, files, strict=True)]
 
 
-def _is_part(path: str) -> bool:
-    return path.lower().endswith(SUFFIXES)
-
-
-def _ours(path: str) -> bool:
-    """Whether a file lies in the folder of a plan, or in a hidden one."""
-    return any(part.startswith(".") or part.endswith("-plan") for part in PurePosixPath(path).parts[:-1])
-
-
-def _named_once(sources: Sequence[Source | Fault]) -> list[Source | Fault]:
+def _named_once(sources: Sequence[Source | PartRow]) -> list[Source | PartRow]:
     """Names that are folders, each once; parts that share one are not planned, for neither has a right to the folder."""
     names: dict[str, list[str]] = {}
     for each in sources:
         if isinstance(each, Source):
             names.setdefault(each.name.casefold(), []).append(each.file)
-    taken: set[str] = {each.name for each in sources if isinstance(each, Fault)}
-    checked: list[Source | Fault] = []
+    taken: set[str] = {each.name for each in sources if isinstance(each, PartRow)}
+    checked: list[Source | PartRow] = []
     for each in sources:
         if isinstance(each, Source) and (why := _unusable(each, names[each.name.casefold()])):
             short = each.name if len(names[each.name.casefold()]) == 1 else PurePosixPath(each.file).name
             tried = (short, each.file, *(f"{each.file} ({n})" for n in range(2, len(sources) + 2)))
             name = next(name for name in tried if name not in taken)
-            each = Fault(name, each.file, f"{each.place or each.file}: {why}", USAGE)
+            each = failed(name, each.file, f"{each.place or each.file}: {why}")
             taken.add(name)
         checked.append(each)
     return checked
@@ -164,7 +152,11 @@ class Whole(BaseModel):
     part: list[dict[str, Any]] = Field(min_length=1)
 
 
-def manifest(file: str, known: Sequence[str]) -> list[Source | Fault]:
+#: A part of a manifest: its line, its fields or why it has none, and the lines of the fields, where they are not in that.
+_Line = tuple[int, dict[str, Any] | str, dict[str, int]]
+
+
+def manifest(file: str, known: Sequence[str]) -> list[Source | PartRow]:
     """The parts of a manifest (path or URL; by its suffix TOML, CSV, or a list of files), and what is wrong with some of them.
 
     `known`: options that a part may have. A PlanError where it cannot be read, or is no manifest: none of its parts is known.
@@ -177,22 +169,25 @@ def manifest(file: str, known: Sequence[str]) -> list[Source | Fault]:
     except UnicodeDecodeError as error:
         raise PlanError(f"is no text in UTF-8 (byte {error.start}): save it so", file=file) from None
     kind = PurePosixPath(file.lower()).suffix
-    entries = _toml(file, text, known) if kind == ".toml" else (_csv if kind == ".csv" else _list)(file, text)
-    parts = [_part(file, line, fields, known) for line, fields in entries]
+    listed = ((number, line.strip()) for number, line in enumerate(text.splitlines(), 1))
+    entries: Iterable[_Line] = ((number, {"file": word}, {}) for number, word in listed if word and not word.startswith("#"))
+    if kind in (".toml", ".csv"):
+        entries = _toml(file, text, known) if kind == ".toml" else _csv(file, text)
+    parts = [_part(file, *each, known) for each in entries]
     if not parts:
         raise PlanError("names no part", file=file)
     return parts
 
 
-def _part(file: str, line: int, fields: dict[str, Any] | str, known: Sequence[str]) -> Source | Fault:
+def _part(file: str, line: int, fields: dict[str, Any] | str, lines: dict[str, int], known: Sequence[str]) -> Source | PartRow:
     place = f"{file}:{line}"
     if isinstance(fields, str):
-        return Fault(place, "", f"{place}: {fields}", USAGE)
+        return failed(place, "", f"{place}: {fields}")
     shown = str(fields.get("name") or fields.get("file") or place)
     try:
         entry = Entry.model_validate(fields)
     except ValidationError as error:
-        return Fault(f"{shown} (line {line})", str(fields.get("file", "")), f"{place}: {_why(error)}", USAGE)
+        return failed(f"{shown} (line {line})", str(fields.get("file", "")), f"{place}: {_why(error)}")
     path = entry.file if "://" in entry.file or posixpath.isabs(entry.file) else "".join(file.rpartition("/")[:2]) + entry.file
     named = PurePosixPath(entry.file)
     inside = "://" not in entry.file and not named.is_absolute() and ".." not in named.parts
@@ -201,15 +196,14 @@ def _part(file: str, line: int, fields: dict[str, Any] | str, known: Sequence[st
     options = dict(entry.model_extra or {})
     for word in options:
         if why := _unknown(word, known):
-            there = getattr(line, "fields", {}).get(word, line)
-            return Fault(name, path, f"{file}:{there}: {why}", USAGE)
+            return failed(name, path, f"{file}:{lines.get(word, line)}: {why}")
     try:
         fs, there = file_system(path)
         # Elsewhere this would be a question over the network for each part: there it is asked when the part is read.
         if type(fs).__name__ == "LocalFileSystem" and not fs.isfile(there):
-            return Fault(name, path, f"{place}: no such file: {path}", UNREADABLE)
+            return failed(name, path, f"{place}: no such file: {path}", UNREADABLE)
     except PlanError as error:
-        return Fault(name, path, f"{place}: {error}", UNREADABLE)
+        return failed(name, path, f"{place}: {error}", UNREADABLE)
     return Source(name, path, options, place)
 
 
@@ -221,7 +215,7 @@ def _unknown(word: str, known: Sequence[str]) -> str:
     return f"no option of a part is called {word}{f'; {near[0]}?' if near else ''}"
 
 
-def _toml(file: str, text: str, known: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+def _toml(file: str, text: str, known: Sequence[str]) -> Iterator[_Line]:
     try:
         whole = Whole.model_validate(tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
@@ -232,28 +226,18 @@ def _toml(file: str, text: str, known: Sequence[str]) -> Iterator[tuple[int, dic
     for word in whole.options:
         if why := _unknown(word, known):
             raise PlanError(why, file=f"{file}:{_line(text, word)}")
-    starts = [m for m in _TABLE.finditer(text) if m[1] == "part"]
-    line, seen = 1, 0
+    starts = [m.start() for m in _TABLE.finditer(text) if m[1] == "part"]
+    ends, line, seen = [*starts[1:], len(text)], 1, 0
     for number, fields in enumerate(whole.part):
+        lines: dict[str, int] = {}
         if len(starts) == len(whole.part):
-            begin = starts[number].start()
+            begin, end = starts[number], ends[number]
             line, seen = line + text.count("\n", seen, begin), begin
-            end = next((each.start() for each in starts[number + 1 : number + 2]), len(text))
-            at = _Lines(line)
-            at.fields = {}
             for name in fields:
                 key = re.compile(rf"^[ \t]*[\"']?{re.escape(name)}[\"']?[ \t]*=", re.MULTILINE).search(text, begin, end)
                 if key:
-                    at.fields[name] = line + text.count("\n", begin, key.start())
-            yield at, {**whole.options, **fields}
-        else:
-            yield line, {**whole.options, **fields}
-
-
-class _Lines(int):
-    """The line of a part, and those of its fields."""
-
-    fields: dict[str, int]
+                    lines[name] = line + text.count("\n", begin, key.start())
+        yield line, {**whole.options, **fields}, lines
 
 
 def _line(text: str, word: str) -> int:
@@ -262,7 +246,7 @@ def _line(text: str, word: str) -> int:
     return text.count("\n", 0, match.start()) + 1 if match else 1
 
 
-def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
+def _csv(file: str, text: str) -> Iterator[_Line]:
     head = text.partition("\n")[0]
     # Where a comma parts decimals, tables are written with semicolons.
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in head and "," not in head else ",", strict=True)
@@ -280,21 +264,15 @@ def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
                     )
                 continue
             if len(cells) > len(names):
-                yield (rows.line_num, f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes")
+                yield rows.line_num, f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes", {}
                 continue
             fields: dict[str, Any] = {name: cell for name, cell in zip(names, cells, strict=False) if cell}
             for name, cell in fields.items():
                 if name not in ("file", "name") and "|" in cell:
                     fields[name] = [each.strip() for each in cell.split("|")]
-            yield rows.line_num, fields
+            yield rows.line_num, fields, {}
     except csv.Error as error:
         raise PlanError(f"is no CSV: {error}", file=f"{file}:{rows.line_num}") from None
-
-
-def _list(file: str, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
-    for number, line in enumerate(text.splitlines(), 1):
-        if (word := line.strip()) and not word.startswith("#"):
-            yield number, {"file": word}
 
 
 def _why(error: ValidationError) -> str:

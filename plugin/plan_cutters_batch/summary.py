@@ -1,93 +1,33 @@
-"""All parts summed up in numbers: `summary.json`, and its schema."""
+"""All parts summed up: `summary.json` and its schema, a page for people and a table for programs, in the folder above theirs."""
 
+import csv
+import hashlib
+import io
 import json
+import math
+import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any, Literal, get_args
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path, PurePosixPath
+from typing import Any, Literal
+from urllib.parse import quote
 
+from markupsafe import Markup
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import to_jsonable_python
 
-from plan_cutters.cases import files as case
-from plan_cutters.cases.files import Case
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch.row import PartRow, PartTools
-from plan_cutters_batch.shop import fewest
+from plan_cutters.document.build import versions
+from plan_cutters.domain import figures as numbers
+from plan_cutters.domain.figures import percent
+from plan_cutters.files.markup import embedded, finite, plain, policy, template
+from plan_cutters.plan_file.words.cutters import reason
+from plan_cutters_batch.row import OUTCOMES, PartRow, cause, code_of, fault, outcome
+from plan_cutters_batch.tools import fewest
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.
 NAMED = 100
-
-#: What came of a part, from worst to best.
-Outcome = Literal["failed", "not_finished", "not_sure", "finished"]
-#: The same in words for people.
-OUTCOMES: dict[Outcome, str] = {word: word.replace("_", " ") for word in get_args(Outcome)}
-#: What is not sure is neither reached nor known not to be.
-_AS_CASES: dict[Outcome, case.Outcome] = {
-    "failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"
-}  # fmt: skip
-#: By the exit code of a single plan; every other code is a failure.
-_OF_CODES: dict[int, Outcome] = {0: "finished", 1: "not_finished", 4: "not_sure"}
-
-
-def outcome(row: PartRow) -> Outcome:
-    """Sum up a part in a word.
-
-    >>> outcome(PartRow(name="a", file="a.step", status="kept", code=4))
-    'not_sure'
-    >>> outcome(PartRow(name="a", file="a.step", status="planned", code=139))
-    'failed'
-    """
-    return "failed" if row.status == "failed" else _OF_CODES.get(row.code, "failed")
-
-
-def code_of(row: PartRow) -> int:
-    """The exit code of a part: a failure has never that of an answer.
-
-    >>> code_of(PartRow(name="a", file="a.step", status="failed", code=0))
-    3
-    """
-    return row.code if outcome(row) != "failed" or row.code > 1 else 3
-
-
-#: What may end a batch with a code that is not zero, as `--fail-on` names it.
-FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
-
-
-def fault(row: PartRow) -> str:
-    """Name what is wrong with a part, as `--fail-on` does; empty where it is finished.
-
-    >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
-    'late'
-    >>> fault(PartRow(name="a", file="a.step", status="failed", code=139))
-    'unreadable'
-    >>> fault(PartRow(name="a", file="a.step", status="kept", code=0))
-    ''
-    """
-    result = outcome(row)
-    if result == "failed":
-        return {2: "refused", TIMED_OUT: "late"}.get(code_of(row), "unreadable")
-    return {"not_finished": "unfinished", "not_sure": "unsure", "finished": ""}[result]
-
-
-def cause(row: PartRow) -> str:
-    """Why a part failed: never empty."""
-    return row.error or f"no cause was reported (exit code {row.code})"
-
-
-def part_case(row: PartRow) -> Case:
-    """The case of a part: an error without an answer or where the answer is not sure, a failure where it is not finished.
-
-    >>> part_case(PartRow(name="a", file="in/a.step", status="failed", code=124, error="not done within 9 s")).outcome
-    'error'
-    """
-    result = outcome(row)
-    if result == "finished":
-        return Case(row.file, row.name, seconds=row.seconds)
-    text = cause(row) if result == "failed" else row.verdict
-    kind = f"exit_code_{row.code}" if result == "failed" else row.reason or result
-    details = row.error or "" if result != "failed" else ""
-    return Case(row.file, row.name, _AS_CASES[result], kind, text, details, row.seconds)
 
 
 class _Entry(BaseModel):
@@ -202,42 +142,53 @@ class Summary(_Entry):
     run: BatchRun
 
 
-def summary_of(
-    rows: Sequence[PartRow], *, title: str, files: Mapping[str, Table], versions: Mapping[str, str], run: BatchRun
-) -> Summary:
-    """Sum up the rows."""
-    outcomes = [outcome(row) for row in rows]
+def summary_of(rows: Sequence[PartRow], table: bytes, *, title: str, seconds: float, cluster: Mapping[str, object]) -> Summary:
+    """Sum up the rows, and the table that they make."""
     cutters: dict[str, Counter[str]] = {}
-    for row, result in zip(rows, outcomes, strict=True):
+    for row in rows:
         if row.cutter is not None:
-            cutters.setdefault(row.cutter, Counter())[result] += 1
-    failed = [row for row, result in zip(rows, outcomes, strict=True) if result == "failed"]
-    reasons = Counter(row.reason for row, result in zip(rows, outcomes, strict=True) if row.reason and result != "finished")
+            cutters.setdefault(row.cutter, Counter())[outcome(row)] += 1
+    failed = [row for row in rows if outcome(row) == "failed"]
+    reasons = Counter(row.reason for row in rows if row.reason and outcome(row) != "finished")
     made = Counter(row.status for row in rows)
     return Summary(
-        title=title,
+        title=plain(title),
         code=max(map(code_of, rows), default=0),
-        parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **_counts(Counter(outcomes))),
-        by_cutter=[CutterParts(cutter=name, **_counts(cutters[name]))
+        parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **Counter(str(outcome(row)) for row in rows)),
+        by_cutter=[CutterParts(cutter=name, **cutters[name])
                    for name in sorted(cutters, key=lambda name: (-cutters[name].total(), name))],
         by_reason=[ReasonParts(reason=code, parts=reasons[code])
                    for code in sorted(reasons, key=lambda code: (-reasons[code], code))],
-        shop=_shop(rows, outcomes),
+        shop=_shop(rows),
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
-        files=dict(files), versions=dict(versions), run=run,
+        files={"csv": Table(name=CSV, sha256=hashlib.sha256(table).hexdigest())},
+        versions=versions(),
+        run=BatchRun(
+            time=datetime.now(UTC).isoformat(timespec="seconds"),
+            seconds=finite(float(seconds)),
+            seconds_of_parts=sum(row.seconds for row in rows if row.status != "kept" and math.isfinite(row.seconds)),
+            cluster=json.loads(embedded(to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants"))),
+        ),
     )  # fmt: skip
 
 
-def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
+def _shop(rows: Sequence[PartRow]) -> ShopTools:
     """Sum up the tools of all parts."""
     parts = [row.tools for row in rows if row.tools is not None and row.status != "failed"]
-    names = _names(parts)
+    # How each tool is called: as most plans call it, each otherwise.
+    calls: dict[str, Counter[str]] = {}
+    for part in parts:
+        for tool, name in part.names.items():
+            calls.setdefault(tool, Counter())[name] += 1
+    names = {tool: min(call, key=lambda name: (-call[name], name)) for tool, call in calls.items()}
+    taken = Counter(names.values())
+    names = {tool: name if taken[name] == 1 else f"{name} ({tool})" for tool, name in names.items()}
     judged = Counter(tool for part in parts for tool in part.names)
     alone = Counter(tool for part in parts for tool in part.alone)
     used = Counter(tool for part in parts for tool in part.used)
     order = sorted(judged, key=lambda tool: (-alone[tool], -used[tool], names[tool], tool))
     best = fewest(parts)
-    unfinished = [row for row, result in zip(rows, outcomes, strict=True) if result == "not_finished"]
+    unfinished = [row for row in rows if outcome(row) == "not_finished"]
     return ShopTools(
         tools=[ToolParts(tool=names[tool], id=tool, judged=judged[tool], alone=alone[tool], used=used[tool]) for tool in order],
         least=None if not best.tools else
@@ -252,21 +203,6 @@ def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
     )  # fmt: skip
 
 
-def _names(parts: Sequence[PartTools]) -> dict[str, str]:
-    """How each tool is called, by its id: as most plans call it, each otherwise."""
-    ways: dict[str, Counter[str]] = {}
-    for part in parts:
-        for tool, name in part.names.items():
-            ways.setdefault(tool, Counter())[name] += 1
-    names = {tool: min(way, key=lambda name: (-way[name], name)) for tool, way in ways.items()}
-    taken = Counter(names.values())
-    return {tool: name if taken[name] == 1 else f"{name} ({tool})" for tool, name in names.items()}
-
-
-def _counts(counts: Mapping[str, int]) -> dict[str, int]:
-    return {word: counts.get(word, 0) for word in OUTCOMES}
-
-
 def schema() -> dict[str, Any]:
     """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Summary.model_json_schema(mode="serialization")}
@@ -274,6 +210,160 @@ def schema() -> dict[str, Any]:
 
 def schema_text() -> str:
     return json.dumps(schema(), indent=2) + "\n"
+
+
+PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"
+_HERE = Path(__file__).parent
+#: What a spreadsheet takes for the beginning of a formula (the wide forms too), or drops before one; and our own mark.
+_FORMULA = re.compile(r"[=+\-@＝＋－＠'\s\x00-\x1f\x7f]")
+#: Tools that a sentence names.
+_NAMED = 8
+
+
+def write_index(
+    rows: Sequence[PartRow], put: Callable[[str, bytes], None], *, title: str, seconds: float, cluster: Mapping[str, object]
+) -> None:
+    """Write the index of all parts; all is made before anything is written, and the summary comes last.
+
+    Rows come in any order: the table has them by name, the page with failures on top. `put` lets a file of a name and a content
+    appear whole or not at all, or raises. `seconds` by the clock, of the whole run. `cluster` says where it ran.
+    """
+    rows = sorted(map(_clean, rows), key=lambda row: (row.name, row.file, row.key))
+    table = csv_of(rows)
+    summary = summary_of(rows, table, title=title, seconds=seconds, cluster=cluster)
+    text = (summary.model_dump_json(indent=2) + "\n").encode()
+    for name, data in ((CSV, table), (PAGE, page(rows, summary)), (SUMMARY, text)):
+        put(name, data)
+
+
+def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
+    """The page: UTF-8, one file without its pictures and the pages of the parts, which it names relative to itself."""
+    worst = list(OUTCOMES)
+    shown = sorted(map(_shown, rows), key=lambda each: worst.index(each["outcome"]))
+    script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("index.js", "index.css"))
+    return _TEMPLATE.render(
+        policy=policy(script, style, "'self' file:"),
+        script=Markup(script),
+        style=Markup(style),
+        summary=summary,
+        rows=shown,
+        worst={word: place for place, word in enumerate(worst)},
+        outcomes=OUTCOMES,
+        of=summary.parts.model_dump(),
+        shop=shop_lines(summary),
+        pages={each["row"].name: each["page"] for each in shown},
+        percent=percent,
+        reason=reason,
+        time=numbers.duration,
+        w=numbers,
+    ).encode()
+
+
+def _shown(row: PartRow) -> dict[str, Any]:
+    """A row as the page has it: texts, and what they are sorted by where that is not the text."""
+    result = outcome(row)
+    return {
+        "row": row,
+        "outcome": result,
+        # Of a part that failed its cause, else the headline; then what went wrong all the same, as a file that was not written.
+        "says": cause(row) if result == "failed" else row.verdict,
+        "wrong": "" if result == "failed" else row.error or "",
+        "coarser": row.coarser or "",
+        "late": fault(row) == "late",
+        "made": "reused from an earlier run" if row.status == "kept" else "",
+        "share": "" if row.share is None else percent(row.share),
+        "reason": reason(row.reason) if row.reason else "",
+        "time": numbers.duration(row.seconds),
+        "seconds": row.seconds if math.isfinite(row.seconds) else -1.0,
+        "page": _link(row.page or (f"{row.folder}/plan.json" if row.folder and result == "failed" else None)),
+        "picture": _link(row.picture),
+    }
+
+
+def _link(path: str | None) -> str:
+    """A path below the index as a reference that cannot leave its folder, nor begin with a scheme; empty where there is none.
+
+    >>> _link("a b/review.html"), _link("javascript:alert(1)"), _link("../x"), _link("/etc/passwd"), _link(None)
+    ('./a%20b/review.html', './javascript%3Aalert%281%29', '', '', '')
+    """
+    if not path or path.startswith("/") or ".." in PurePosixPath(path).parts:
+        return ""
+    try:
+        # Bytes of a file's name that are no UTF-8 stay what they are.
+        return "./" + quote(path.encode("utf-8", "surrogateescape"))
+    except UnicodeEncodeError:
+        return ""  # no file system has such a name
+
+
+def _clean(row: PartRow) -> PartRow:
+    """The row without what has no place in a text file; links keep their bytes."""
+    same = {"page": row.page, "picture": row.picture, "seconds": row.seconds}
+    return PartRow.model_validate(json.loads(embedded(row.model_dump())) | same)
+
+
+def columns() -> list[str]:
+    """The columns in their order: the outcome first, as it sums up status and code; then the fields of a row."""
+    return list(dict.fromkeys(("name", "file", "outcome", *(name for name in PartRow.model_fields if name != "tools"))))
+
+
+def values(row: PartRow) -> dict[str, Any]:
+    """The cells of a row; None for what is not known. A part that failed always says why."""
+    result = outcome(row)
+    cells = row.model_dump() | {"outcome": result, "error": cause(row) if result == "failed" else row.error}
+    return {name: finite(cells[name]) for name in columns()}
+
+
+def csv_of(rows: Sequence[PartRow]) -> bytes:
+    """The table as text (RFC 4180, UTF-8): a header, then a line for each part; what is not known is empty.
+
+    A text that a spreadsheet might take for a formula has an apostrophe in front, as has one that begins with an apostrophe: who
+    takes the first apostrophe away has the text as it was.
+    """
+    text = io.StringIO(newline="")
+    table = csv.writer(text, lineterminator="\r\n")
+    table.writerow(columns())
+    for row in rows:
+        cells = values(row).values()
+        table.writerow([f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell for cell in cells])
+    # Paths keep bytes that are no UTF-8.
+    return text.getvalue().encode(errors="backslashreplace")
+
+
+def shop_lines(summary: Summary) -> list[str]:
+    """Say which tools finish most parts, which are the fewest for all parts that are finished, and which are never used."""
+    shop, parts = summary.shop, summary.parts
+    if not shop.tools:
+        return []
+    best = [each.tool for each in shop.tools if each.alone == shop.tools[0].alone]
+    lines = [
+        f"Finishes most parts alone: {_listed(best)}, {shop.tools[0].alone:,} of {parts.count:,}{' each' * (len(best) > 1)}."
+        if shop.tools[0].alone
+        else "No tool finishes a part alone."
+    ]
+    lines.append("No tools finish a part together beyond doubt." if shop.least is None else _least(shop.least))
+    if shop.never_used:
+        lines.append(f"In no plan: {_listed(shop.never_used)}.")
+    return lines
+
+
+def _least(least: LeastTools) -> str:
+    parts = "the one part" if least.parts == 1 else f"all {least.parts:,} parts"
+    names = _listed(least.tools)
+    if len(least.tools) == 1:
+        return f"One tool finishes {parts} that can be finished beyond doubt: {names}."
+    text = f"Fewest tools for {parts} that can be finished beyond doubt, {len(least.tools)}: {names}"
+    if least.proven:
+        return f"{text}. No fewer do (proved)."
+    doubt = f"whether fewer than {len(least.tools)} do, the plans do not state"
+    return f"{text}. At least {numbers.count(least.at_least, 'tool')} must be there (proved); {doubt}."
+
+
+def _listed(names: Sequence[str]) -> str:
+    rest = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f" and {rest} more" if rest > 0 else "")
+
+
+_TEMPLATE = template(_HERE / "index.html.jinja")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """A task of a batch: one part, on a worker. The command works in a child process, so that a crash or hang costs that part."""
 
+import contextlib
 import functools
 import os
 import pickle
@@ -8,17 +9,17 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from plan_cutters.errors import PlanError
-from plan_cutters_base.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
-from plan_cutters_base.workers.child import Child, can_supervise, compiler
+from plan_cutters_base.whole import system_lock
+from plan_cutters_base.workers.child import INTERRUPTED, TIMED_OUT, Assignment, Child, JobInput, can_supervise, compiler
 from plan_cutters_base.workers.supervise import WRITING
-from plan_cutters_batch import keys, store
-from plan_cutters_batch.job import UNREADABLE, USAGE, Content, Handed, content
-from plan_cutters_batch.row import PartRow, row_of
+from plan_cutters_batch.job import Content, Handed, content, key_of, versions, write_files
+from plan_cutters_batch.row import UNREADABLE, USAGE, PartRow, failed, row_of
+from plan_cutters_batch.store import Store
 
 PLAN = "plan.json"
 #: Exit codes with which a plan is there.
@@ -39,17 +40,18 @@ class Task:
     handed: Handed
     #: Of the command line, for what is no option of the plan.
     words: tuple[str, ...]
-    #: Their `keys.settings_key`.
+    #: The key of its `Settings`.
     settings: str
     #: URL of the output; None: the files come back with the row.
-    store: str | None
+    store: str | None = None
     #: Lies in the output: a worker that does not see it writes elsewhere.
-    token: str
-    force: bool
+    token: str = ""
+    #: Whether what is done is planned, too.
+    force: bool = False
     #: Seconds for the part.
-    timeout: float | None
+    timeout: float | None = None
     #: Of where the batch was begun.
-    versions: Mapping[str, str]
+    versions: Mapping[str, str] = field(default_factory=dict)
     #: The file as workers find it, in whatever folder they run.
     source: str = ""
 
@@ -64,47 +66,43 @@ class Outcome:
     """An outcome holds the row of a part, and its files where the worker could not write them."""
 
     row: PartRow
-    files: Mapping[str, bytes]
+    files: Mapping[str, bytes] = field(default_factory=dict)
     #: Address of the worker where no part can be planned, whatever it is: `row.error` says why. The part is for another one.
     unfit: str = ""
 
 
 def work(task: Task) -> Outcome:
     """Plan a part: never raises, for the task would be tried again elsewhere with the same end."""
-    began = time.monotonic()
+    began, key = time.monotonic(), ""
 
-    def failed(why: str, code: int, key: str = "") -> Outcome:
-        line, seconds = " ".join(why.split())[:_LONGEST], time.monotonic() - began
-        return Outcome(
-            PartRow(name=task.name, file=task.file, key=key, status="failed", code=code, error=line, seconds=seconds), {}
-        )
+    def fault(why: str, code: int) -> Outcome:
+        line = " ".join(why.split())[:_LONGEST]
+        return Outcome(failed(task.name, task.file, line, code, key=key, seconds=time.monotonic() - began))
 
-    def unfit(why: str) -> Outcome:
-        worker = _worker()
-        return replace(failed(why, USAGE), unfit="" if worker is None else str(worker.address))
-
-    key = ""
     try:
-        if why := _unfit(task.versions):
-            return unfit(why)
-        output = None if task.store is None else store.Store(task.store)
-        if output is not None and not output.seen(task.token):
-            return unfit(
+        output = None if task.store is None else Store(task.store)
+        why = _unfit(task.versions)
+        if not why and output is not None and not output.seen(task.token):
+            why = (
                 f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
                 "or another batch has begun there since"
             )
+        if why:
+            worker = _worker()
+            return replace(fault(why, USAGE), unfit="" if worker is None else str(worker.address))
+        source = task.source or task.file
         try:
-            content = content_of(task)
+            whole = Content(task.part) if task.part else content(source)
         except PlanError as error:
-            return failed(str(error).replace(task.source or task.file, task.file), UNREADABLE)
-        key = keys.key(content.key, task.settings)
+            return fault(str(error).replace(source, task.file), UNREADABLE)
+        key = key_of(whole.key, task.settings)
         if output is not None and not task.force and (row := cached(output, task.folder, key, task.name, task.file)):
-            return Outcome(row, {})
+            return Outcome(row)
         # The worker's folder, which dask clears when the worker was killed.
         scratch = getattr(_worker(), "local_directory", None)
         with tempfile.TemporaryDirectory(prefix="plan-", dir=scratch, ignore_cleanup_errors=True) as name:
             folder = Path(name)
-            code, line = planned(task, content, folder)
+            code, line = planned(task, whole, folder)
             late = code == TIMED_OUT and (folder / "out" / PLAN).is_file()
             if late:
                 line = _late(task, folder / "out")
@@ -112,28 +110,26 @@ def work(task: Task) -> Outcome:
             # A partial plan does not take the place of a whole one of an earlier run with the same key.
             done = late and output is not None and cached(output, task.folder, key, task.name, task.file) is not None
             if PLAN not in made or not (late or code in _PLANNED) or done:
-                return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
-            row = _row(task, made[PLAN].read_bytes(), key, code, time.monotonic() - began)
+                return fault(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE)
+            from plan_cutters.plan_file.load import plan_of
+
+            row = row_of(plan_of(made[PLAN].read_bytes(), PLAN), name=task.name, file=task.file, code=code, key=key,
+                         folder=task.folder, seconds=time.monotonic() - began)  # fmt: skip
             if late:
                 row = row.model_copy(update={"status": "failed", "error": line})
             if output is None:
                 return Outcome(row, {name: path.read_bytes() for name, path in made.items()})
             output.publish(task.folder, made, row)
-        return Outcome(row, {})
+        return Outcome(row)
     except PlanError as error:
-        return failed(str(error), USAGE, key)
+        return fault(str(error), USAGE)
     except OSError as error:
-        return failed(f"{_here()}: {error.strerror or error}", USAGE, key)
+        return fault(f"{_here()}: {error.strerror or error}", USAGE)
     except Exception as error:
-        return failed(f"internal error ({type(error).__name__}: {error})", UNREADABLE, key)
+        return fault(f"internal error ({type(error).__name__}: {error})", UNREADABLE)
 
 
-def content_of(task: Task) -> Content:
-    """Of the part of a task; a PlanError where it cannot be read."""
-    return Content(task.part) if task.part else content(task.source or task.file)
-
-
-def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
+def cached(output: Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
     """The row of an earlier run with the same key; None where there is none, or its files have changed."""
     row = output.row(folder)
     if row is None or row.key != key or row.status == "failed":
@@ -141,11 +137,11 @@ def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> 
     return row.model_copy(update={"status": "kept", "name": name, "file": file})
 
 
-def _unfit(versions: Mapping[str, str]) -> str:
-    """Why this worker cannot plan as the others do; empty where it can."""
-    for name, here in keys.versions().items():
-        if (there := versions.get(name, here)) != here:
-            return f"{_here()}: {name} {here} on this worker, {there} where the batch was begun: install the same on both"
+def _unfit(there: Mapping[str, str]) -> str:
+    """Why this worker cannot plan as the others do, by versions that are given; empty where it can."""
+    for name, here in versions().items():
+        if there.get(name, here) != here:
+            return f"{_here()}: {name} {here} on this worker, {there[name]} where the batch was begun: install the same on both"
     return _ready()
 
 
@@ -157,27 +153,18 @@ def _ready() -> str:
     if loaded.ended():
         why = (words.strip().splitlines() or ["it crashed"])[-1]
         return f"{_here()}: the CAD kernel cannot be loaded ({why}): install it, libgl1 on Debian"
-    from plan_cutters.files.lock import Lock
     from plan_cutters.kernels.jit import at_hand
 
-    # The first of the workers of a machine compiles for all of them.
-    place = Path(tempfile.gettempdir(), f"plan-cutters-compiling-{getattr(os, 'getuid', int)()}")
-    while at_hand("search.search.search_rows") is False:
-        try:
-            lock = Lock(place)
-        except PlanError:
-            time.sleep(0.5)
-            continue
-        try:
+    # The first of the workers of a machine compiles for all of them. Where it cannot, each part does, and says what is wrong.
+    place = Path(tempfile.gettempdir(), f"plan-cutters-compiling-{getattr(os, 'getuid', int)()}.lock")
+    if at_hand("search.search.search_rows") is False:
+        with contextlib.suppress(OSError), system_lock(place):
             if at_hand("search.search.search_rows") is False:
                 made = compiler(maps=False)
                 try:
-                    if made.ended():
-                        break  # each part compiles for itself, and says what is wrong
+                    made.ended()
                 finally:
                     made.end()
-        finally:
-            lock.release()
     return ""
 
 
@@ -215,15 +202,11 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
     """Run the command in a folder; its exit code, and the last line that it said."""
     name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
     if task.part is None:
-        content.write(folder / name)
-    for file, data in task.handed.files:
-        there = folder / file
-        if there.exists():
-            return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
-        there.parent.mkdir(parents=True, exist_ok=True)
-        there.write_bytes(data)
-    handed = JobInput(task.handed.options, task.part)
-    (folder / ".handed").write_bytes(pickle.dumps(handed, protocol=5))
+        write_files(folder, [(name, content.data), *content.within()])
+    if any((folder / file).exists() for file, _ in task.handed.files):
+        return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
+    write_files(folder, task.handed.files)
+    (folder / ".handed").write_bytes(pickle.dumps(JobInput(task.handed.options, task.part), protocol=5))
     words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     limit = float("inf")
     if task.timeout:
@@ -275,16 +258,3 @@ def files_of(folder: Path) -> dict[str, Path]:
     """Files of a plan, the plan itself last."""
     files = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
     return dict(sorted(files.items(), key=lambda each: each[0] == PLAN))
-
-
-def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> PartRow:
-    """The line of the table that a plan makes; what could not be written beside it is said there."""
-    from plan_cutters.plan_file.load import plan_of
-
-    plan = plan_of(content, PLAN)
-    row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
-    # Sampled more coarsely than requested: that would have taken too many samples.
-    noted = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
-    row = row.model_copy(update={"coarser": None if noted is None else f"{noted[:1].lower()}{noted[1:].removesuffix('.')}"})
-    missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
-    return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

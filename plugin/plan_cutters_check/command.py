@@ -18,7 +18,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.option_groups import Command, options
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters_base.workers.assignment import is_child
+from plan_cutters_base.workers.child import is_child
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options

@@ -245,7 +245,7 @@ class PartRequest:
         from plan_cutters.command.cli import command as plan
         from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
         from plan_cutters_base.user_files import noted
-        from plan_cutters_batch.job import Settings, handed
+        from plan_cutters_batch.job import Settings
 
         with plan.make_context(_SELF, ["part", *words]) as context:
             requested = PlanRequest(**context.params)
@@ -262,7 +262,7 @@ class PartRequest:
         for name in ("step_schema", "read_timeout", "timeout", "memory"):
             if (value := getattr(requested, name)) is not None:
                 handed_on += [f"--{name.replace('_', '-')}", str(value)]
-        return cls(settings, handed(options), tuple(handed_on))
+        return cls(settings, settings.handed, tuple(handed_on))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -405,19 +405,21 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
 def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there; a PlanError where it cannot be planned."""
     from plan_cutters.plan_file.load import load_plan
-    from plan_cutters_batch import keys, work
+    from plan_cutters_base.user_files import checksum
+    from plan_cutters_batch import work
+    from plan_cutters_batch.job import key_of
     from plan_cutters_batch.row import row_of
     from plan_cutters_batch.store import Store
 
     name = Path(path).name
-    key = keys.key(content.key, keys.settings_key(request.settings, request.handed))
+    key = key_of(content.key, request.settings.key)
     # The part's name stands in its plan.
-    folder = keys.key(key, keys.checksum(name.encode("utf-8", "surrogateescape")))
+    folder = key_of(key, checksum(name.encode("utf-8", "surrogateescape")))
     store = Store(str(cache))
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    task = work.Task(name, path, None, request.handed, request.words, key, None, "", False, None, {})
+    task = work.Task(name, path, None, request.handed, request.words, key)
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
         code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")

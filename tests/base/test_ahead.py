@@ -9,7 +9,7 @@ import pytest
 
 from plan_cutters.command import background_compile
 from plan_cutters.kernels import jit
-from plan_cutters_base.workers.assignment import VARIABLE, Assignment
+from plan_cutters_base.workers.child import VARIABLE, Assignment
 from tests.support.forked import ENV
 from tests.support.places import ROOT
 

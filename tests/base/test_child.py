@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters_base.workers.assignment import VARIABLE, Assignment, assignment
-from plan_cutters_base.workers.child import Child
+from plan_cutters_base.workers.child import VARIABLE, Assignment, Child, assignment
 
 TEXT = st.text(st.characters(codec=None), max_size=20)
 NUMBER = st.none() | st.integers(0, 1 << 50)
@@ -37,7 +36,7 @@ def test_nobody_of_ours_started_this_process(monkeypatch):
 def test_files_beside_the_part_are_no_modules(tmp_path):
     for name in ("json", "plan_cutters", "numpy"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit(9)")
-    code = "import json, plan_cutters, numpy; from plan_cutters_base.workers.assignment import assignment as a; print(a().done)"
+    code = "import json, plan_cutters, numpy; from plan_cutters_base.workers.child import assignment as a; print(a().done)"
     child = Child(["-c", code], Assignment(done=7), cwd=tmp_path, stdout=subprocess.PIPE, text=True)
     said, _ = child.process.communicate(timeout=60)
     assert (child.ended(), said) == (0, "7\n")
@@ -91,7 +90,7 @@ def test_nothing_of_it_is_left(seconds, grace, code):
 def test_one_without_a_session_ends_with_the_session_of_its_parent():
     code = """
 import os, subprocess
-from plan_cutters_base.workers.assignment import Assignment
+from plan_cutters_base.workers.child import Assignment
 from plan_cutters_base.workers.child import Child
 sleep = "import time; time.sleep(600)"
 own, mine = (Child(["-c", sleep], Assignment(), session=session) for session in (True, False))
@@ -110,6 +109,6 @@ own.process.wait()
 def test_an_assignment_is_not_handed_on_by_itself(monkeypatch):
     """Who starts a child says anew what it is to know: it does not report on a pipe of its grandparent."""
     monkeypatch.setenv(VARIABLE, str(replace(Assignment(), report=3, parent=1)))
-    code = "from plan_cutters_base.workers.assignment import assignment, is_child; print(is_child(), assignment().parent)"
+    code = "from plan_cutters_base.workers.child import assignment, is_child; print(is_child(), assignment().parent)"
     child = Child(["-c", code], Assignment(), stdout=subprocess.PIPE, text=True)
     assert child.process.communicate(timeout=60)[0] == "False None\n"

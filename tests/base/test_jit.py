@@ -24,9 +24,7 @@ SOURCE = """
 import sys
 import tempfile
 import numpy as np
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 @kernel
 def deepest(x):
@@ -130,9 +128,7 @@ def test_a_line_above_a_function_is_no_other_function(run, tmp_path):
 TWO = """
 import sys
 import numpy as np
-from plan_cutters_base.jit import decorators
-entry, kernel, _ = decorators(__name__)
-
+from plan_cutters_base.jit import entry, kernel
 if len(sys.argv) > 1:
     @entry
     def number():

@@ -41,7 +41,7 @@ def spin():
 
 def trap(name):
     if name == where and how == "copy":
-        from plan_cutters_base.copies import limited
+        from plan_cutters_base.forks import limited
         limited(lambda: spin() or b"", 600.0)
     elif name == where and how == "sleep":
         Path(os.environ["STUCK_SIGN"]).touch()
@@ -255,8 +255,8 @@ CALLER = """
 import itertools, os, sys, threading
 from pathlib import Path
 import plan_cutters_base.forks as forks
-from plan_cutters_base.copies import each
-from plan_cutters_base.copies import limited
+from plan_cutters_base.forks import each
+from plan_cutters_base.forks import limited
 if sys.argv[3] == "looked after":
     forks._killed_by_the_system = lambda: False
 def spin():

@@ -14,7 +14,7 @@ from plan_cutters import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.rows import Tree
 from plan_cutters.plan_file.model import AreaEntry
-from plan_cutters_base.packed import packed, unpacked
+from plan_cutters_base.values import packed, unpacked
 
 
 def again(value):

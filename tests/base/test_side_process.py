@@ -15,8 +15,8 @@ import pytest
 from plan_cutters import pipeline, plan
 from plan_cutters.report import folder, models
 from plan_cutters.report.folder import write_all
-from plan_cutters_base import copies, forks
-from plan_cutters_base.copies import SideProcess, TimeLimit, each, limited
+from plan_cutters_base import forks
+from plan_cutters_base.forks import SideProcess, TimeLimit, each, limited
 from tests.support.places import ROOT
 
 GROOVE = ROOT / "samples" / "v_groove.step"
@@ -69,7 +69,7 @@ def test_whatever_becomes_of_the_copy_the_result_is_made_here(fault):
 
 @pytest.mark.parametrize("part", [b"", b"\0", struct.pack("<q", 9) + b"half"])
 def test_half_an_answer_is_none(monkeypatch, part):
-    monkeypatch.setattr(copies, "tell", lambda pipe, answer: pipe.write(part))
+    monkeypatch.setattr(forks, "tell", lambda pipe, answer: pipe.write(part))
     with SideProcess(lambda: "here", 5.0) as copy:
         assert copy.result() == "here"
 
@@ -101,7 +101,7 @@ def test_without_a_copy_the_work_is_done_here(monkeypatch):
     with SideProcess(os.getpid, 5.0, worth=False) as copy:
         assert not copy.works
         assert copy.result() == os.getpid()
-    monkeypatch.setattr("plan_cutters_base.copies.Copy", lambda *_: (_ for _ in ()).throw(OSError("no more processes")))
+    monkeypatch.setattr("plan_cutters_base.forks.Copy", lambda *_: (_ for _ in ()).throw(OSError("no more processes")))
     with SideProcess(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
 
@@ -157,7 +157,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
 
 def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):
     begun = []
-    monkeypatch.setattr("plan_cutters_base.copies.Copy", lambda *given: begun.append(given))
+    monkeypatch.setattr("plan_cutters_base.forks.Copy", lambda *given: begun.append(given))
     result = plan(GROOVE, cutters="R2L30", grid=9, area_budget=0, jobs=1)
     write_all(replace(result), tmp_path / "out", ("json", "html"))
     assert not begun

@@ -14,9 +14,9 @@ import pytest
 import cad_io
 import plan_cutters
 from plan_cutters_base import stage_cache
-from plan_cutters_base.digest import sources
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.stage_cache import NO_CACHE, RunCache, StageCache, settle
+from plan_cutters_base.user_cache import CacheWarning
+from plan_cutters_base.values import sources
 
 
 @pytest.fixture(autouse=True)

@@ -4,7 +4,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import PlanError
-from plan_cutters_batch import cluster, keys
+from plan_cutters_batch import run
+from plan_cutters_batch.job import versions
 
 
 @pytest.fixture(scope="module")
@@ -14,26 +15,26 @@ def running():
 
 
 def test_nobody_at_an_address_is_one_line(monkeypatch):
-    monkeypatch.setattr(cluster, "_ANSWER", 0.3)
-    with pytest.raises(PlanError, match="does the scheduler run") as caught, cluster.opened("tcp://127.0.0.1:9"):
+    monkeypatch.setattr(run, "_ANSWER", 0.3)
+    with pytest.raises(PlanError, match="does the scheduler run") as caught, run.opened("tcp://127.0.0.1:9"):
         pass
     assert "\n" not in str(caught.value)
 
 
 def test_a_scheduler_without_workers_is_one_line(monkeypatch):
-    monkeypatch.setattr(cluster, "_JOIN", 0.3)
+    monkeypatch.setattr(run, "_JOIN", 0.3)
     with (
         LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
         pytest.raises(PlanError, match="has no worker"),
-        cluster.opened(empty.scheduler_address),
+        run.opened(empty.scheduler_address),
     ):
         pass
 
 
 def test_workers_with_other_versions_are_refused_with_both_named(running, monkeypatch):
-    with cluster.opened(running):
+    with run.opened(running):
         pass
-    here = keys.versions()
+    here = versions()
     for there, said in (
         ({**here, "numba": "0.1"}, rf"has numba 0\.1, this machine {here['numba']}: install the same"),
         ({**here, "plan-cutters": "0.0.9+a"}, r"has plan-cutters 0\.0\.9\+a, this machine 0\.1"),
@@ -41,5 +42,5 @@ def test_workers_with_other_versions_are_refused_with_both_named(running, monkey
         (ModuleNotFoundError("plan_cutters"), r"cannot load plan-cutters \(ModuleNotFoundError\)"),
     ):
         monkeypatch.setattr(Client, "run", lambda self, *_, there=there, **__: {"tcp://w": there})
-        with pytest.raises(PlanError, match=said), cluster.opened(running):
+        with pytest.raises(PlanError, match=said), run.opened(running):
             pass

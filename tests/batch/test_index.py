@@ -17,10 +17,9 @@ from hypothesis import strategies as st
 from plan_cutters import plan
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.shares import reached_share
-from plan_cutters_batch import index as table
-from plan_cutters_batch.index import write_index
-from plan_cutters_batch.row import PartRow, row_of
-from plan_cutters_batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
+from plan_cutters_batch import summary as table
+from plan_cutters_batch.row import OUTCOMES, PartRow, code_of, outcome, row_of
+from plan_cutters_batch.summary import NAMED, Summary, schema_text, write_index
 from tests.support.browser import opened
 from tests.support.places import ROOT
 

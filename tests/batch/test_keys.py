@@ -10,15 +10,13 @@ import pytest
 
 from plan_cutters import Options
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters_batch import keys
-from plan_cutters_batch.job import Settings, content, handed
+from plan_cutters_batch.job import Settings, content, key_of, write_files
 from tests.support.places import ROOT
 from tests.support.step_references import BALL, BOX, write_assembly
 
 
 def key(formats=("json",), schema="ap242", timeout=120.0, **options):
-    settings = Settings(Options(**options), formats, schema, timeout)
-    return keys.settings_key(settings, handed(settings.options))
+    return Settings(Options(**options), formats, schema, timeout).key
 
 
 PLAIN = key(cutters="R6L80")
@@ -58,7 +56,7 @@ def test_the_content_of_fixtures_and_libraries_counts(tmp_path):
     vise.write_bytes(b"other")
     assert key(fixtures=str(vise)) != one
     settings = Settings(Options(cutters="R6L80"))
-    assert key(cutters="R6L80") != keys.settings_key(replace(settings, read=("a",)), handed(settings.options))
+    assert key(cutters="R6L80") != replace(settings, read=("a",)).key
     vise.unlink()
     with pytest.raises(OptionError, match="No such file"):
         key(fixtures=str(vise))
@@ -69,17 +67,15 @@ def test_fixtures_travel_under_names_of_their_own(tmp_path):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "vise.stl").write_bytes(folder.encode())
     options = Options(fixtures=[str(tmp_path / "a/vise.stl"), f"{tmp_path / 'b/vise.stl'}@0,0,9", "table"])
-    there = handed(options)
+    there = Settings(options).handed
     assert dict(there.files) == {"vise.stl": b"a", "_vise.stl": b"b"}
     assert options.fixtures[0].source == str(tmp_path / "a/vise.stl")
 
 
 def test_every_process_makes_the_same_key():
     code = (
-        "from plan_cutters import Options\nfrom plan_cutters_batch import keys\n"
-        "from plan_cutters_batch.job import Settings, handed\n"
-        "s = Settings(Options(cutters='R6L80', machine='trunnion-ac', holder='er32'))\n"
-        "print(keys.settings_key(s, handed(s.options)))"
+        "from plan_cutters import Options\nfrom plan_cutters_batch.job import Settings\n"
+        "print(Settings(Options(cutters='R6L80', machine='trunnion-ac', holder='er32')).key)"
     )
     environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
     said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True).stdout
@@ -87,8 +83,7 @@ def test_every_process_makes_the_same_key():
 
 
 def test_a_part_has_the_key_of_its_content():
-    a, b = keys.checksum(b"a"), keys.checksum(b"b")
-    assert len({keys.key(a, PLAIN), keys.key(b, PLAIN), keys.key(a, "other")}) == 3
+    assert len({key_of("a", PLAIN), key_of("b", PLAIN), key_of("a", "other")}) == 3
 
 
 def test_settings_are_frozen():
@@ -99,9 +94,9 @@ def test_settings_are_frozen():
 def test_files_that_a_part_or_a_fixture_refers_to_count_and_travel(tmp_path):
     whole = write_assembly(tmp_path / "part")
     part, fixture = content(str(whole)), key(fixtures=str(whole))
-    there = handed(Options(fixtures=[str(whole), f"{whole}@0,0,50", "box:1,2,3"]))
+    there = Settings(Options(fixtures=[str(whole), f"{whole}@0,0,50", "box:1,2,3"])).handed
     assert {name for name, _ in there.files} == {f"fixture-1/{each}" for each in (whole.name, BOX, BALL)}
-    part.write(tmp_path / "copy.stp")
+    write_files(tmp_path, part.within())
     assert (tmp_path / BALL).read_bytes() == whole.with_name(BALL).read_bytes()
     whole.with_name(BALL).write_bytes(whole.with_name(BALL).read_bytes() + b" ")
     assert content(str(whole)).key != part.key

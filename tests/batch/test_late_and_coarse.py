@@ -13,16 +13,16 @@ from plan_cutters.errors import TooManySamplesError
 from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
-from plan_cutters.scene.preparation import MOST
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch import cluster, keys, work
+from plan_cutters.scene.spacing import MOST
+from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_batch import command as of_many
-from plan_cutters_batch.index import write_index
-from plan_cutters_batch.job import Settings, handed
-from plan_cutters_batch.row import PartRow
+from plan_cutters_batch import run as runs
+from plan_cutters_batch import work
+from plan_cutters_batch.job import Settings, versions
+from plan_cutters_batch.row import FAIL_ON, PartRow, fault
 from plan_cutters_batch.run import Terms, foreseen
 from plan_cutters_batch.store import Store
-from plan_cutters_batch.summary import FAIL_ON, fault
+from plan_cutters_batch.summary import write_index
 from tests.support.commands import in_lines
 from tests.support.places import ROOT
 
@@ -45,10 +45,9 @@ def fit(monkeypatch):
 
 def task_of(out, options=QUICK, **more):
     settings = Settings(Options(**options, jobs=1))
-    there = handed(settings.options)
     words = ("--formats", "json", "--no-cache")
-    return work.Task("groove", GROOVE, None, there, words, keys.settings_key(settings, there), out.root_url,
-                     out.begin(), more.pop("force", False), 240.0, keys.versions(), GROOVE, **more)  # fmt: skip
+    return work.Task("groove", GROOVE, None, settings.handed, words, settings.key, out.root_url,
+                     out.begin(), more.pop("force", False), 240.0, versions(), GROOVE, **more)  # fmt: skip
 
 
 def late(task, content, folder):
@@ -173,8 +172,8 @@ def test_each_outcome_has_a_word():
 def test_the_code_is_the_largest_of_what_the_batch_fails_on(monkeypatch, capsys, tmp_path, words, codes, expected):
     rows = [row_with(f"p{k}", code) for k, code in enumerate(codes)]
     facts = {"address": "here", "workers": 1, "threads": 1, "dashboard": None}
-    monkeypatch.setattr(cluster, "opened", lambda *_: contextlib.nullcontext(SimpleNamespace()))
-    monkeypatch.setattr(cluster, "facts", lambda client: facts)
+    monkeypatch.setattr(runs, "opened", lambda *_: contextlib.nullcontext(SimpleNamespace()))
+    monkeypatch.setattr(runs, "facts", lambda client: facts)
     monkeypatch.setattr("plan_cutters_batch.run.run_batch", lambda *_, **__: iter(rows))
     args = (GROOVE, "--out", str(tmp_path / "out"), "--cutter", "R6L80", "--formats", "json", *words)
     code, line = guarded(lambda: (invoked(of_many.command, "plan-cutters batch", args), ""), False)
@@ -195,7 +194,7 @@ def test_a_word_that_is_none_is_one_line(capsys, tmp_path, words):
 
 def test_an_address_on_object_storage_is_not_opened_in_a_browser():
     bucket = SimpleNamespace(local=False, root_url="s3://shop/plans")
-    assert of_many._where(bucket, "index.html") == (
+    assert of_many._where(bucket) == (
         "The table is s3://shop/plans/index.html: copy the folder to this machine to open it, or give --out a folder."
     )
 

@@ -1,7 +1,6 @@
 """The board of many parts: what it writes on a terminal, and where there is none."""
 
 import io
-import threading
 
 import pytest
 from hypothesis import given, settings
@@ -9,8 +8,7 @@ from hypothesis import strategies as st
 
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_batch.progress import EACH, Board, Screen
-from plan_cutters_batch.row import PartRow
-from plan_cutters_batch.summary import cause
+from plan_cutters_batch.row import PartRow, cause
 
 GOOD = PartRow(name="blade", file="blade.step", status="planned", code=0, verdict="Take flat end D12 x 60")
 BAD = PartRow(name="rim\n\x1b[2J", file="rim.step", status="failed", code=3, error="rim.step: not a STEP file")
@@ -81,7 +79,7 @@ def test_the_time_left_follows_from_the_parts_that_were_planned():
 def test_quiet_tells_failures_alone_even_after_it_is_closed():
     one, text = board(quiet=True)
     one.say("dashboard: http://127.0.0.1:8787")
-    one.progress(1, 2, 3)
+    one.progress(1, 2)
     one.row(GOOD)
     one.close()
     assert text.getvalue() == ""
@@ -116,7 +114,7 @@ def test_the_address_is_said_once():
 
 def test_a_terminal_has_a_bar_and_lines_for_failures():
     one, text = board(terminal=True)
-    one.progress(0, 2, 3)
+    one.progress(0, 2)
     one.row(GOOD)
     one.row(BAD)
     one.say("dashboard: http://127.0.0.1:8787/status")
@@ -147,7 +145,7 @@ def test_a_stream_that_is_gone_ends_nothing(terminal):
     one = Board(False, 2, console=Screen(file=Broken(), force_terminal=terminal))
     one.say("hello")
     one.row(BAD)
-    one.progress(1, 0, 2)
+    one.progress(1, 0)
     one.close()
     assert (one.done, one.failed) == (1, 1)
 
@@ -156,21 +154,8 @@ def test_a_stream_that_is_gone_ends_nothing(terminal):
 def test_a_part_that_is_told_of_twice_counts_once(before):
     one, text = board(total=3)
     for done in (1, 2, 3):
-        steps = [lambda done=done: one.progress(done, 3 - done, 3), lambda: one.row(GOOD)]
+        steps = [lambda done=done: one.progress(done, 3 - done), lambda: one.row(GOOD)]
         for step in steps if before else steps[::-1]:
             step()
     one.close()
     assert text.getvalue().splitlines()[-1].startswith("3/3  ")
-
-
-def test_threads_lose_no_part():
-    one, text = board(total=400)
-    threads = [threading.Thread(target=lambda: [one.row(BAD) for _ in range(50)]) for _ in range(8)]
-    for each in threads:
-        each.start()
-    for each in threads:
-        each.join()
-    one.close()
-    assert len(lines(text)) == 401
-    assert text.getvalue().splitlines()[-1].startswith("400/400  ")
-    assert lines(text)[-1] == "parts done, 400 failed"

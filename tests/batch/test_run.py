@@ -12,10 +12,11 @@ import pytest
 
 from plan_cutters import Options, plan_many
 from plan_cutters.errors import PlanError
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_batch import cluster, keys
-from plan_cutters_batch.job import Fault, Job, Settings
-from plan_cutters_batch.row import PartRow
+from plan_cutters_base.workers.child import TIMED_OUT
+from plan_cutters_batch import job as made
+from plan_cutters_batch import run as runs
+from plan_cutters_batch.job import Job, Settings
+from plan_cutters_batch.row import PartRow, failed
 from plan_cutters_batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters_batch.store import Store
 from plan_cutters_batch.work import Outcome
@@ -27,7 +28,7 @@ QUICK = {"cutters": "R6L80", "grid": 5, "area_budget": 0, "jobs": 1}
 
 @pytest.fixture(scope="module")
 def client():
-    with cluster.opened(None, 2) as client:
+    with runs.opened(None, 2) as client:
         yield client
 
 
@@ -86,7 +87,7 @@ def test_rows_come_what_is_done_is_kept_and_a_broken_part_costs_itself(client, t
     out = Store(str(tmp_path / "out"))
     parts = jobs(tmp_path, "a", "deep")
     (tmp_path / "broken.step").write_text("no part")
-    parts += [*jobs(tmp_path, "broken"), Fault("twice", "twice.step", "twice.step: told")]
+    parts += [*jobs(tmp_path, "broken"), failed("twice", "twice.step", "twice.step: told")]
     rows = ran(parts, client, out)
     assert {name: (row.status, row.code) for name, row in rows.items()} == {
         "a": ("planned", 0), "deep": ("planned", 0), "broken": ("failed", 3), "twice": ("failed", 2)}  # fmt: skip
@@ -166,16 +167,17 @@ def test_plan_many_gives_plans_of_shapes_and_paths(client):
 
 
 def test_versions_that_differ_are_refused_with_both_named(client, tmp_path, monkeypatch):
-    monkeypatch.setattr(keys, "versions", lambda: {"numba": "0.1"})
+    monkeypatch.setattr(runs, "versions", lambda: {"numba": "0.1"})
     (found,) = outcomes(jobs(tmp_path, "a"), client, Terms())
     assert found.row.code == 2
     assert "numba 0." in found.row.error
     assert "0.1 where the batch was begun" in found.row.error
 
 
-def test_a_worker_that_does_not_see_the_output_writes_nothing(client, tmp_path):
+def test_a_worker_that_does_not_see_the_output_writes_nothing(client, tmp_path, monkeypatch):
     out = Store(str(tmp_path))
-    (found,) = outcomes(jobs(tmp_path, "a"), client, Terms(), out=out, token="another")
+    monkeypatch.setattr(out, "begin", lambda: "another")
+    (found,) = outcomes(jobs(tmp_path, "a"), client, Terms(), out=out)
     assert "does not see" in found.row.error
     assert list(tmp_path.iterdir()) == [tmp_path / "a.step"]
 
@@ -191,7 +193,7 @@ def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
     class Counted:
         most = 0
 
-        def progress(self, done, running, total):
+        def progress(self, done, running):
             self.most = max(self.most, running)
 
     board, drawn = Counted(), []
@@ -250,21 +252,21 @@ def test_a_worker_that_can_plan_nothing_is_left_out_and_fails_no_part(client):
 def test_no_scheduler_is_one_line_within_seconds(tmp_path):
     began = time.monotonic()
     for address in ("tcp://127.0.0.1:1", str(tmp_path / "none.json"), "nonsense://x:1"):
-        with pytest.raises(PlanError, match=r"^--cluster ") as error, cluster.opened(address):
+        with pytest.raises(PlanError, match=r"^--cluster ") as error, runs.opened(address):
             pass
         assert "\n" not in str(error.value)
     (tmp_path / "scheduler.json").write_text("{}")
-    with pytest.raises(PlanError), cluster.opened(str(tmp_path / "scheduler.json")):
+    with pytest.raises(PlanError), runs.opened(str(tmp_path / "scheduler.json")):
         pass
     assert time.monotonic() - began < 60
 
 
 def test_workers_by_cores_and_memory():
-    count, memory = cluster.workers_of(None, None, 1)
+    count, memory = runs.workers_of(None, None, 1)
     assert count >= 1
-    assert memory >= cluster.LEAST_MEMORY
-    assert cluster.workers_of(3, 2e9, 1) == (3, 2_000_000_000)
-    assert cluster.workers_of(None, 1e15, 1)[0] == 1
+    assert memory >= runs.LEAST_MEMORY
+    assert runs.workers_of(3, 2e9, 1) == (3, 2_000_000_000)
+    assert runs.workers_of(None, 1e15, 1)[0] == 1
 
 
 @pytest.mark.slow("starts servers or clusters")
@@ -274,22 +276,21 @@ def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
 
     out = Store(str(tmp_path / "out"))
     (job,) = parts = jobs(tmp_path, "a")
-    there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, job.settings.handed, (), job.settings.key, out.root_url, out.begin())
     monkeypatch.setattr(works, "_ready", lambda: "")
     assert works.work(task).row.status == "planned"
     assert [row.status for row in foreseen(parts, out, Terms())] == ["kept"]
-    monkeypatch.setattr(keys, "made_by", lambda: b"another program")
-    assert [row.status for row in foreseen(parts, out, Terms())] == ["planned"]
+    monkeypatch.setattr(made, "made_by", lambda: b"another program")
+    assert [row.status for row in foreseen(jobs(tmp_path, "a"), out, Terms())] == ["planned"]
 
 
 @pytest.mark.parametrize("name", ["made_by", "_own"])
 def test_an_edit_of_the_core_or_of_the_batch_makes_another_program(monkeypatch, name):
-    before = keys.program()
-    assert getattr(keys, name)()
-    monkeypatch.setattr(keys, name, lambda: b"another")
-    assert keys.program() != before
-    assert keys.versions()["plan-cutters"].endswith(keys.program().hex()[:12])
+    before = made.program()
+    assert getattr(made, name)()
+    monkeypatch.setattr(made, name, lambda: b"another")
+    assert made.program() != before
+    assert made.versions()["plan-cutters"].endswith(made.program().hex()[:12])
 
 
 def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
@@ -302,8 +303,7 @@ def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
 
     out = Store(str(tmp_path / "out"))
     (job,) = jobs(tmp_path, "a")
-    there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, job.settings.handed, (), job.settings.key, out.root_url, out.begin())
     monkeypatch.setattr(works, "_ready", lambda: "")
     monkeypatch.setattr(Path, "write_bytes", full)
     row = works.work(task).row

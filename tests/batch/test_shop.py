@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import plan
-from plan_cutters_batch import shop
-from plan_cutters_batch.index import write_index
-from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, row_of
-from plan_cutters_batch.shop import fewest
+from plan_cutters_batch import tools as of_shop
+from plan_cutters_batch.row import PartRow, row_of
+from plan_cutters_batch.summary import write_index
+from plan_cutters_batch.tools import FaceTools, PartTools, essential, fewest
 
 TOOLS = "ABCDE"
 
@@ -92,7 +92,7 @@ def test_parts_in_doubt_and_unfinished_ones_count_for_nothing():
 def test_a_search_that_ends_early_leaves_a_set_that_finishes_all(parts, end):
     tools = [stated(*part) for part in parts]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(shop, "_least", lambda cost, rows: (None if end == "none" else [0.0] * len(cost), 0.0))
+        patch.setattr(of_shop, "_least", lambda cost, rows: (None if end == "none" else [0.0] * len(cost), 0.0))
         result = fewest(tools)
     assert all(part.finished_by(result.tools) for part in tools)
     assert result.at_least == 1

@@ -4,7 +4,7 @@ import fsspec
 import pytest
 
 from plan_cutters.errors import PlanError
-from plan_cutters_batch.job import Fault
+from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.sources import Source, manifest, sources
 
 KNOWN = ("cutter", "faces", "flip", "spacing", "tolerance")
@@ -19,7 +19,7 @@ def names(parts):
 
 
 def faults(parts):
-    return [part.why for part in parts if isinstance(part, Fault)]
+    return [part.error for part in parts if isinstance(part, PartRow)]
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_parts_of_one_name_are_told_and_neither_is_planned(folder, tmp_path):
     first, second = faults(parts)
     assert str(other) in first
     assert str(folder / "b.step") in second
-    assert all(part.row.status == "failed" and part.row.code == 2 for part in parts if isinstance(part, Fault))
+    assert all(part.status == "failed" and part.code == 2 for part in parts if isinstance(part, PartRow))
     assert len({part.name for part in parts}) == 3
 
 

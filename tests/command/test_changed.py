@@ -15,6 +15,8 @@ from plan_cutters.cases.files import Case
 from plan_cutters.errors import PlanError
 from plan_cutters_batch import keys
 from plan_cutters_ci.changed import RULES, PartRequest, Row, annotations, requested
+from plan_cutters_ci.changed import RULES, PartRequest, Row
+from plan_cutters_ci.changed_report import annotations, requested
 from plan_cutters_ci.repository import Changed, changed, content
 from tests.support.forked import ENV
 from tests.support.junit import cases
@@ -263,7 +265,7 @@ def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch)
 
     def key():
         request = PartRequest.of(words)
-        return keys.settings_key(request.settings, request.handed)
+        return request.settings.key
 
     first = key()
     assert key() == first

@@ -28,9 +28,9 @@ from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.text import story_of, with_text
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import VARIABLE, Assignment
+from plan_cutters_base.user_cache import CacheWarning
+from plan_cutters_base.workers.child import VARIABLE, Assignment
 from plan_cutters_base.workers.supervise import _Watch
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run, start
@@ -402,7 +402,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
-    child = f"from plan_cutters_base.workers.assignment import report as tell; odd = {odd!r}\n"
+    child = f"from plan_cutters_base.workers.child import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd); tell('show', odd)"
     subprocess.run(
         [sys.executable, "-c", child], env=ENV | {VARIABLE: str(Assignment(report=there))}, pass_fds=(there,), check=True

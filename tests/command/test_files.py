@@ -24,7 +24,7 @@ from cad_io.write import write_gltf
 from cad_io.write.step import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
-from plan_cutters_base.copies import TimeLimit, limited
+from plan_cutters_base.forks import TimeLimit, limited
 from tests.support.forked import run, start
 from tests.support.places import ROOT, SAMPLES
 from tests.support.split_parts import labels

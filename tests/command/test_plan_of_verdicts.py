@@ -25,8 +25,8 @@ from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
 from plan_cutters_agents.plan_answers import planned
 from plan_cutters_base.workers import supervise
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_base.workers.errors import OutOfTime
+from plan_cutters_base.workers.child import TIMED_OUT
+from plan_cutters_base.workers.supervise import OutOfTime
 from plan_cutters_ci.plans import compare
 from tests.support.commands import in_lines, leftovers
 from tests.support.forked import run

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from plan_cutters_base.workers import child
-from plan_cutters_base.workers.assignment import VARIABLE
+from plan_cutters_base.workers.child import VARIABLE
 from tests.support.commands import leftovers
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES

@@ -9,7 +9,7 @@ import pytest
 
 from plan_cutters.command import entry
 from plan_cutters_base.workers import child
-from plan_cutters_base.workers.assignment import VARIABLE
+from plan_cutters_base.workers.child import VARIABLE
 from tests.support.forked import ENV, run
 from tests.support.places import ROOT
 

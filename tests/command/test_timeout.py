@@ -8,8 +8,8 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.command import partial_plan
 from plan_cutters.report.to_json import PENDING
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_base.workers.errors import OutOfTime
+from plan_cutters_base.workers.child import TIMED_OUT
+from plan_cutters_base.workers.supervise import OutOfTime
 from tests.support.commands import assert_one_line, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES

@@ -10,7 +10,7 @@ import pytest
 from plan_cutters.command import map as map_command
 from plan_cutters.errors import PlanError
 from plan_cutters.report.drawing import posture_map
-from plan_cutters_batch import cluster
+from plan_cutters_batch import run
 from plan_cutters_ci.changed import command as changed
 
 
@@ -20,7 +20,7 @@ def read_only(*given, **words):
 
 @pytest.mark.parametrize(
     "work",
-    [lambda: cluster.opened(None).__enter__(), lambda: changed.main(["--base", "main"], standalone_mode=False)],
+    [lambda: run.opened(None).__enter__(), lambda: changed.main(["--base", "main"], standalone_mode=False)],
     ids=["batch", "changed"],
 )
 def test_no_folder_for_temporary_files_is_one_line(work, monkeypatch):

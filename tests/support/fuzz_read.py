@@ -38,7 +38,7 @@ from plan_cutters.command import cli, codes, terminal
 from plan_cutters.document import plan as plan_module
 from plan_cutters.report.to_json import schema
 from plan_cutters.scene import surroundings
-from plan_cutters_base.workers.assignment import VARIABLE, Assignment, limit_memory
+from plan_cutters_base.workers.child import VARIABLE, Assignment, limit_memory
 from plan_cutters_base.workers.supervise import LIMITED
 from tests.support.fuzz_seeds import write_seeds
 

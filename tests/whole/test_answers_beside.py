@@ -8,7 +8,7 @@ import pytest
 
 from plan_cutters import pipeline, plan
 from plan_cutters.outcome import Answers
-from plan_cutters_base import copies
+from plan_cutters_base import forks
 from tests.support.places import SAMPLES
 
 WORDS = {"cutters": ["R2L30"], "machine": "trunnion-ac", "fixtures": "table", "holder": "er16", "feed": 1000.0,
@@ -46,7 +46,7 @@ def test_they_are_those_that_are_made_one_after_the_other(tmp_path, in_turn, mon
 @pytest.mark.slow("plans parts whole")
 def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
     monkeypatch.setattr(
-        copies.SideProcess, "result", lambda self, here=None, waiting=None: (self.__exit__(), (here or self._call)())[1]
+        forks.SideProcess, "result", lambda self, here=None, waiting=None: (self.__exit__(), (here or self._call)())[1]
     )
     assert document(tmp_path, jobs=2)[1] == in_turn[1]
 

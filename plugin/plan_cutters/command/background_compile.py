@@ -4,8 +4,7 @@ import sys
 import time
 from collections.abc import Callable
 
-from plan_cutters_base.workers.assignment import follow_parent
-from plan_cutters_base.workers.child import compiler
+from plan_cutters_base.workers.child import compiler, follow_parent
 
 #: The longest that is waited for it, s: what is not there by then is compiled here.
 _PATIENCE = 120.0

@@ -25,11 +25,18 @@ from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.validation import File
 from plan_cutters.errors import OptionError
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
-from plan_cutters_base.workers.child import can_supervise
-from plan_cutters_base.workers.errors import Supervised, Unfinished
+from plan_cutters_base.workers.child import (
+    INTERRUPTED,
+    assignment,
+    began,
+    can_supervise,
+    is_child,
+    limit_memory,
+    report,
+    wait_to_begin,
+)
 from plan_cutters_base.workers.prompt import is_waited_for, let_go
-from plan_cutters_base.workers.supervise import default_memory
+from plan_cutters_base.workers.supervise import Supervised, Unfinished, default_memory
 
 #: The word for standard input.
 PIPE = "-"

@@ -14,8 +14,8 @@ import click
 
 from plan_cutters.command import terminal
 from plan_cutters.command.entry import instead
-from plan_cutters_base.workers.assignment import INTERRUPTED
-from plan_cutters_base.workers.errors import Supervised
+from plan_cutters_base.workers.child import INTERRUPTED
+from plan_cutters_base.workers.supervise import Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan

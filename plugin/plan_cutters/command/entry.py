@@ -141,7 +141,7 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
         os._exit(130)
 
     try:
-        from plan_cutters_base.workers.assignment import follow_parent, is_child
+        from plan_cutters_base.workers.child import follow_parent, is_child
 
         follow_parent()
         # A child has nothing to say when it is ended. Who has something to tidy sets a handler that raises, later.

@@ -19,7 +19,7 @@ from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.names import called
-from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
+from plan_cutters_base.workers.child import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.progress import PartCases

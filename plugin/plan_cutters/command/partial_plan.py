@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
 from plan_cutters.command.progress import Display
-from plan_cutters_base.workers.assignment import INTERRUPTED, TIMED_OUT
-from plan_cutters_base.workers.errors import OutOfTime, Stuck, Unfinished
-from plan_cutters_base.workers.supervise import supervise
+from plan_cutters_base.workers.child import INTERRUPTED, TIMED_OUT
+from plan_cutters_base.workers.supervise import OutOfTime, Stuck, Unfinished, supervise
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest

@@ -15,9 +15,9 @@ from io import StringIO, TextIOWrapper
 from typing import IO, TYPE_CHECKING, Any, Literal, TypeVar
 
 from plan_cutters.errors import PlanError
-from plan_cutters_base.errors import CacheWarning
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import is_child, report
+from plan_cutters_base.user_cache import CacheWarning
+from plan_cutters_base.workers.child import is_child, report
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from plan_cutters.errors import PlanError
-from plan_cutters_base.system_lock import acquired, system_lock
+from plan_cutters_base.whole import acquired, system_lock
 
 
 def require_temporary() -> None:

@@ -22,18 +22,17 @@ def holder(
 
     Parameters
     ----------
-    source : object
+    source
         A kernel shape, a CadQuery or build123d object, or a list of such. A planar face, sketch or wire in a plane through the
         axis is turned about it.
-    axis : str or ((x, y, z), (x, y, z))
+    axis
         `x`, `y` or `z`, or a point and a direction. It points from the nose of the holder, where the cutter sticks out, to the
         spindle; the nose is the lowest point along it. `-z` points the other way.
-    enclose : bool
+    enclose
         Take what is no body of revolution, too (flats, keyways, screws), as the body that it sweeps when it turns.
-    tolerance : float
+    tolerance
         How far out curved outlines may become stages, mm. Cylinders and cones stay as they are. It is doubled until there are at
         most 12 stages; the name says so.
-    name : str
 
     Raises
     ------

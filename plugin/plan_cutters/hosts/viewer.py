@@ -1,5 +1,6 @@
 """Make the shapes of a result that a host shows: kernel shapes with names and colours, in groups."""
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -45,18 +46,8 @@ def shown(
 ) -> tuple[str, dict[str, tuple[Shown, ...]]]:
     """The part's name, and groups of what is to be seen: targets by verdict, check faces, ignored faces, fixtures, the tool.
 
-    Parameters
-    ----------
-    result : Result
-    at : int or WitnessEntry, optional
-        A sample, by its row, or a witness of the plan: there the tool is put, at the posture found or the best one tried.
-    cutter : str, optional
-        Id of the one whose verdicts and tool are shown; default the result's own choice.
-
-    Raises
-    ------
-    OptionError
-        No posture is known there.
+    `at` is a sample, by its row, or a witness of the plan: there the tool is put, at the posture found or the best one tried; an
+    OptionError where none is known. `cutter`: the id of the one whose verdicts and tool are shown, or the result's own choice.
     """
     names = _Names()
     roots = result.part.tree
@@ -70,9 +61,12 @@ def shown(
         title, colour, _ = style(piece)
         group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(piece), "targets")
         groups[group].append(Shown(piece.shape, names.of(title), colour))
-    groups["fixtures"] += [
-        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.conditions.surroundings.fixtures
-    ]
+    for each in result.conditions.surroundings.fixtures:
+        if isinstance(each.source, Part):
+            shape = placed(each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]))
+        else:
+            shape = of_triangles(each.shown)
+        groups["fixtures"].append(Shown(shape, names.of(each.name), rgb("fixture")))
     filled = {word: tuple(each) for word, each in groups.items() if each}
     if at is not None:
         tip, axis = _posture(result, tool, at)
@@ -80,26 +74,14 @@ def shown(
     return name, filled
 
 
-class _Names:
+class _Names(set[str]):
     """Names that are each used once; a path has no slash within a name."""
 
-    def __init__(self) -> None:
-        self.taken: set[str] = set()
-
     def of(self, wanted: str) -> str:
-        name, count = wanted.replace("/", "_"), 2
-        base = name
-        while name in self.taken:
-            name, count = f"{base} {count}", count + 1
-        self.taken.add(name)
+        base = wanted.replace("/", "_")
+        name = next(name for k in itertools.count(1) if (name := base if k == 1 else f"{base} {k}") not in self)
+        self.add(name)
         return name
-
-
-def _fixture(fixture: Any) -> Any:
-    if isinstance(fixture.source, Part):
-        place = np.column_stack([fixture.fixture.rotation, fixture.fixture.shift])
-        return placed(fixture.source.shape, place)
-    return of_triangles(fixture.shown)
 
 
 def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Floats, Floats]:

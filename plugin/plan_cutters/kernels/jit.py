@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-from plan_cutters_base.jit import VERSION, cache_folder, decorators
+from plan_cutters_base.jit import VERSION, cache_folder, entry, kernel, maker
 
 __all__ = ["VERSION", "at_hand", "entry", "kernel", "maker"]
-
-entry, kernel, maker = decorators(__name__)
 
 
 def at_hand(name: str) -> bool | None:

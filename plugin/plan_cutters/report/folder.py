@@ -21,7 +21,7 @@ from plan_cutters.report.protocol import Judged
 if TYPE_CHECKING:
     from plan_cutters.document.clock import Clock
     from plan_cutters.plan_file.model import FileEntry, Plan
-    from plan_cutters_base.copies import SideProcess
+    from plan_cutters_base.forks import SideProcess
 
 
 class Writer(NamedTuple):
@@ -102,7 +102,7 @@ class Making:
 
         The page is made while the faces are split, the GLB while the STEP file is written.
         """
-        from plan_cutters_base.copies import SideProcess
+        from plan_cutters_base.forks import SideProcess
 
         by_model = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
         models = {self._place(about): mine for about, mine in by_model.items() if mine}

@@ -13,12 +13,63 @@ import shutil
 import signal
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from plan_cutters_base.workers.assignment import INTERRUPTED
-from plan_cutters_base.workers.child import Worker, early
-from plan_cutters_base.workers.errors import OutOfTime, Stuck, Supervised, Unfinished
+from plan_cutters_base.forks import process_status
+from plan_cutters_base.whole import sweep
+from plan_cutters_base.workers.child import INTERRUPTED, Worker, early
+
+
+@dataclass(eq=False)
+class Supervised(Exception):
+    """The child did not end by itself: `text` says what happened, in words for the user."""
+
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(eq=False)
+class Stuck(Supervised):
+    """So it was, at a face of a part, and why: without it, there may be a plan."""
+
+    part: str
+    face: int
+    why: str
+    #: Parts that were done, and the exit code that these ask for.
+    before: int
+    code: int
+    #: When this part began (`time.monotonic`).
+    since: float
+
+
+@dataclass(eq=False)
+class OutOfTime(Supervised):
+    """A part was not done within the time for the whole of it; `before` and `code` as of `Stuck`."""
+
+    text: str = field(default="not done in time", init=False)
+    before: int
+    code: int
+    #: The output where the plan was in it already, so that only models are missing.
+    out: Path | None
+    #: Whether its summary was shown.
+    summarised: bool = False
+
+
+@dataclass(eq=False)
+class Unfinished(Supervised):
+    """So it was, but the plan was in the output already: what is missing are models."""
+
+    #: The exit code that the plans so far ask for.
+    code: int
+    out: Path
+    #: Parts that were begun.
+    parts: int
+    #: Whether the summary of the plan was shown.
+    summarised: bool = False
 
 
 class Display(Protocol):
@@ -59,36 +110,27 @@ def supervise(
     name: str = "plan-cutters", timeout: float = math.inf, since: float | None = None, done: int = 0,
     excluded: Mapping[int, str] | None = None, leave: Callable[[int, Path], None] | None = None,
 ) -> int:  # fmt: skip
-    """Run a command in a child.
+    """Run a command in a child; its exit code.
 
     An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing; where verdicts stand, within
     WRITING, in which it writes them, and a second one ends it at once. So does the end of `timeout`.
 
     Parameters
     ----------
-    words : sequence of str
-        Its arguments.
-    read_timeout : float
+    words, name
+        Its arguments, and the command's name as `entry.begin` takes it.
+    read_timeout
         Seconds that reading one part may take; the limits of later stages follow from it.
-    memory : int, optional
+    memory
         Bytes of address space that the child may use.
-    display : Display, optional
+    display
         Told what the child tells.
-    name : str
-        The command's, as `entry.begin` takes it.
-    timeout : float
-        Seconds that the whole of a part may take.
-    since : float, optional
-        When the first part began (`time.monotonic`); default now.
+    timeout, since
+        Seconds that the whole of a part may take; when the first part began (`time.monotonic`), default now.
     done, excluded
         As of `Assignment`.
-    leave : callable, optional
+    leave
         Called once with the exit code and the output of the one part, when its summary was shown and models are all that is left.
-
-    Returns
-    -------
-    int
-        The child's exit code.
 
     Raises
     ------
@@ -190,11 +232,8 @@ def _stopping() -> list[int]:
 
 def _processor(child: int | None) -> float:
     """Processor seconds that a process has used, without its children; 0 where the system does not tell (only Linux does)."""
-    try:
-        fields = Path(f"/proc/{child}/stat").read_text(errors="replace").rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-    except (OSError, IndexError, ValueError):
-        return 0.0
+    status = process_status(child)
+    return (int(status[11]) + int(status[12])) / os.sysconf("SC_CLK_TCK") if status else 0.0
 
 
 class _Watch:
@@ -296,8 +335,6 @@ class _Watch:
     def clear(self) -> None:
         """Take away what the child had begun to write and not given to the output."""
         for folder in self.staging:
-            from plan_cutters_base.system_lock import sweep
-
             if folder.endswith(".lock"):
                 sweep(Path(folder))
             else:

@@ -25,7 +25,7 @@ from cad_io.split import split
 from cad_io.tessellate.triangles import tessellate
 from cad_io.write import step
 from plan_cutters import plan
-from plan_cutters_base.copies import Ended, each
+from plan_cutters_base.forks import Ended, each
 from tests.support.cad_parts import box, compound, loose
 from tests.support.places import ROOT
 

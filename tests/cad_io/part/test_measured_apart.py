@@ -7,7 +7,7 @@ import pytest
 
 from cad_io import Part, read_part
 from cad_io.part import part as room
-from plan_cutters_base.packed import packed, unpacked
+from plan_cutters_base.values import packed, unpacked
 from tests.support.places import SAMPLES
 
 PART = SAMPLES / "pocket_top.step"

@@ -16,7 +16,7 @@ from cad_io.arrays import LostFace
 from cad_io.kernel import faces
 from cad_io.kernel.shapes import Node
 from cad_io.read import read
-from plan_cutters_base.copies import limited
+from plan_cutters_base.forks import limited
 from tests.support.cad_parts import box, compound, drilled, moved, real
 
 REAL = real("cadquery_red_cube_blue_cylinder.step", "asitus_bolt-colored-faces.stp", "tigl_D150_wing.igs")

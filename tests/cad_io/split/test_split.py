@@ -31,7 +31,7 @@ from cad_io.split import cut_faces
 from cad_io.split.border import CannotSplit
 from cad_io.split.cut_faces import TOO_LONG
 from cad_io.split.pieces import MIXED, UNKNOWN, split
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from tests.support.split_parts import block, face_count, labels, largest_bspline, patch, waves
 
 
