@@ -339,15 +339,15 @@ def face_numbers(part: Part, value: Any) -> tuple[int, ...]:
         raise ReadError("the list of faces holds itself") from None
     for face in (face for shape in shapes for face in explore(shape, TopAbs_FACE)):
         # The kernel compares how a place was made, not where it is.
-        partners = [n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)]
-        there = (n for n in partners if same_place(known.FindKey(n).Location(), face.Location()))
-        number = known.FindIndex(face) or next(there, 0)
-        if not number:
-            raise ReadError(
-                f"a given face is F{partners[0]} of the part, but in another place: pick it on the part as it is placed"
-                if partners
-                else "a given face is not a face of the part: pick it on the shape that is planned, after its last change"
-            )
+        if not (number := known.FindIndex(face)):
+            partners = [n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)]
+            number = next((n for n in partners if same_place(known.FindKey(n).Location(), face.Location())), 0)
+            if not number:
+                raise ReadError(
+                    f"a given face is F{partners[0]} of the part, but in another place: pick it on the part as it is placed"
+                    if partners
+                    else "a given face is not a face of the part: pick it on the shape that is planned, after its last change"
+                )
         numbers.add(number)
     if not numbers:
         raise ReadError(f"no faces in a value of type {type(value).__name__}: give faces of the part")
