@@ -31,7 +31,7 @@ from cad_io.kernel import edges_of, may_refuse
 from cad_io.part.part import Part
 from cad_io.part.patterns import doubled
 from cad_io.part.sew import edge_uses, join
-from plan_cutters_base.copies import Ended, each
+from plan_cutters_base.forks import Ended, each
 
 #: Deflections of a cap's border, rad, and mm as a share of the part's diagonal.
 _ANGLE, _CHORD = 0.2, 1e-4

@@ -30,7 +30,7 @@ from cad_io.read.objects import from_object
 from cad_io.read.sniff import load, sniff
 from cad_io.read.step_text import DOCUMENTS, followed, in_folder_of, names
 from cad_io.units import in_mm
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 from plan_cutters_base.user_files import OutsideError, checksum, checksums
 

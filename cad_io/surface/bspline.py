@@ -14,9 +14,7 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.surface.elementary import Bends
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 #: Highest degree that the CAD kernel knows.
 DEGREE = 25

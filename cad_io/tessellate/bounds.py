@@ -16,9 +16,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.surface import Bends, Surface
 from cad_io.surface.surface import lines_within
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 #: Cells along a surface that is bent one way only, at least, so many times those of one bent both ways; at most each way, where
 #: dense knots are put together. Where there are few one way, there may be more the other way.

@@ -25,7 +25,7 @@ from cad_io.arrays import Floats, Ints
 from cad_io.kernel import bounding, may_refuse
 from cad_io.part import Part
 from cad_io.surface import Surface
-from plan_cutters_base.copies import ChildDied, Ended, each, limited
+from plan_cutters_base.forks import ChildDied, Ended, each, limited
 
 Taken = TypeVar("Taken")
 

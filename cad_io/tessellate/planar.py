@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from cad_io.tessellate.mesh import upright
-from plan_cutters_base.jit import decorators
-
-entry, kernel, _ = decorators(__name__)
+from plan_cutters_base.jit import entry, kernel
 
 #: A corner is in the circle of another triangle if it is so far in it, and a corner bends if it bends so much: shares of the
 #: terms that cancel where points lie on one circle or on one line.

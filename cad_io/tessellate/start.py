@@ -23,9 +23,6 @@ from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start
 from cad_io.tessellate.planar import cells, odd, places, triangulated
-from plan_cutters_base.copies import TimeLimit
-from cad_io.tessellate.outline import Outline, Steps, Use, cut_where_they_meet, outline_of, uses_of
-from cad_io.tessellate.planar import cells, odd, triangulated
 from plan_cutters_base.forks import TimeLimit
 
 #: Chords of a bent border curve, at least; how often one is halved, at most.

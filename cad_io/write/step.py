@@ -46,8 +46,6 @@ from cad_io.kernel import edges_of, explore, faces, may_refuse, shape_map, silen
 from cad_io.kernel.shapes import Node, children, compound, flat, placed
 from cad_io.part import Part
 from cad_io.split.pieces import Piece, Split
-from plan_cutters_base.copies import ChildDied, TimeLimit, limited
-from cad_io.write.canonical import canonical
 from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.whole import whole
 

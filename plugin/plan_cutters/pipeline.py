@@ -49,12 +49,6 @@ from plan_cutters.scene.preparation import (
 )
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.work import Work, part_of
-from plan_cutters_base.copies import SideProcess
-from plan_cutters_base.forks import Gauge
-from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
-from plan_cutters.scene.spacing import affordable, sampled, spacing_key
-from plan_cutters.scene.threads import part_of
-from plan_cutters.scene.work import Work
 from plan_cutters_base.forks import Gauge, SideProcess
 from plan_cutters_base.stage_cache import NO_CACHE, Cache, RunCache, StageCache
 

@@ -14,7 +14,6 @@ from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.validation import Folder
 from plan_cutters_agents.access import Limits
-from plan_cutters_base.workers.assignment import INTERRUPTED
 from plan_cutters_base.workers.child import INTERRUPTED
 
 _SELF = "plan-cutters mcp"

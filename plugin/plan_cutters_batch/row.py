@@ -5,8 +5,8 @@ from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict
 
-from plan_cutters.cases import case
-from plan_cutters.cases.case import Case
+from plan_cutters.cases import files as case
+from plan_cutters.cases.files import Case
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters_base.workers.child import TIMED_OUT

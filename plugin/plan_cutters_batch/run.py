@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Unpack
 
-from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.domain.checks import spelled_out
 from plan_cutters.errors import OptionError, PlanError, extra_hint
 from plan_cutters.files.folder import refuse_memory
 from plan_cutters.files.lock import require_temporary

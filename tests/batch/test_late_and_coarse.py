@@ -13,7 +13,7 @@ from plan_cutters.errors import TooManySamplesError
 from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
-from plan_cutters.scene.spacing import MOST
+from plan_cutters.scene.preparation import MOST
 from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_batch import command as of_many
 from plan_cutters_batch import run as runs

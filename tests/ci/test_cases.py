@@ -6,11 +6,8 @@ import pytest
 
 from plan_cutters.cases.files import junit
 from plan_cutters.report.to_json import dumps
-from plan_cutters_batch.row import PartRow
-from plan_cutters_batch.summary import part_case
-from plan_cutters_ci.changed import RULES, Row, row_cases
 from plan_cutters_batch.row import PartRow, part_case
-from plan_cutters_ci.changed_report import RULES, Row, row_cases
+from plan_cutters_ci.changed import RULES, Row, row_cases
 from plan_cutters_ci.diff import compare_folders
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.repository import Changed

@@ -13,10 +13,7 @@ import yaml
 
 from plan_cutters.cases.files import Case
 from plan_cutters.errors import PlanError
-from plan_cutters_batch import keys
 from plan_cutters_ci.changed import RULES, PartRequest, Row, annotations, requested
-from plan_cutters_ci.changed import RULES, PartRequest, Row
-from plan_cutters_ci.changed_report import annotations, requested
 from plan_cutters_ci.repository import Changed, changed, content
 from tests.support.forked import ENV
 from tests.support.junit import cases

@@ -8,10 +8,6 @@ import pytest
 from plan_cutters.cases.files import CaseFiles
 from plan_cutters.command import partial_plan
 from plan_cutters.command.progress import Display, PartCases
-from plan_cutters_base.workers.assignment import TIMED_OUT
-from plan_cutters_base.workers.errors import OutOfTime
-from plan_cutters.command.part_cases import PartCases
-from plan_cutters.command.progress import Display
 from plan_cutters_base.workers.child import TIMED_OUT
 from plan_cutters_base.workers.supervise import OutOfTime
 from tests.support.commands import assert_one_line, leftovers

@@ -21,9 +21,6 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.option_table import LEAST_TOLERANCE, OPTIONS
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import refusal, whole
-from plan_cutters_base.workers.assignment import began, is_child, report
-from plan_cutters_base.workers.child import can_supervise
-from plan_cutters_base.whole import whole
 from plan_cutters_base.workers.child import began, can_supervise, is_child, report
 from plan_cutters_base.workers.supervise import supervise
 

@@ -13,7 +13,7 @@ from plan_cutters.command import terminal
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.domain.figures import part_done
 from plan_cutters_base.terminal_text import clean
-from plan_cutters_base.workers.assignment import is_child, report
+from plan_cutters_base.workers.child import is_child, report
 
 if TYPE_CHECKING:
     from plan_cutters.cases.files import Case, CaseFiles

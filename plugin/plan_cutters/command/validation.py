@@ -106,7 +106,7 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     """Let setups that are named behind `auto` take its place, as an option of advice that is typed behind the command does."""
     if not isinstance(value, tuple) or value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
         return value
-    from plan_cutters_base.workers.assignment import is_child
+    from plan_cutters_base.workers.child import is_child
 
     named = value[1:]
     ctx.meta[_NAMED] = named
@@ -128,7 +128,7 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
     from plan_cutters.setups.files import read_setup
-    from plan_cutters_base.workers.assignment import is_child
+    from plan_cutters_base.workers.child import is_child
 
     try:
         first = Fixture.parse(value[0])
@@ -248,7 +248,7 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     """
     from cad_io.read.sniff import kind
     from plan_cutters.domain.checks import did_you_mean
-    from plan_cutters_base.workers.assignment import job_input
+    from plan_cutters_base.workers.child import job_input
 
     # A first word that is no file and nearly a command: the other words would be planned in its place.
     word = request.parts[0]
@@ -388,7 +388,7 @@ def options_of(request: PlanningRequest) -> "Options":
     import pickle
 
     from plan_cutters.options import Options
-    from plan_cutters_base.workers.assignment import job_input
+    from plan_cutters_base.workers.child import job_input
 
     # A batch has looked at its words already, perhaps on another machine.
     handed = job_input().options

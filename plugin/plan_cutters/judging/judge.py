@@ -24,7 +24,7 @@ from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.preparation import Copies, Prepared
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.work import Progress, Work, evenly, part_of, with_company
-from plan_cutters_base.digest import digest
+from plan_cutters_base.values import digest
 
 #: Grounds whose checksums are remembered.
 _GROUNDS = 8
