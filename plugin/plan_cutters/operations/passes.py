@@ -28,6 +28,8 @@ DIRECTIONS = 12
 #: Samples of a face at which it is measured, at most about, and of one of many triangles, by how many these are together; others
 #: take what the nearest one has.
 _OF_A_FACE, _AT_LEAST, _TOGETHER = 100, 16, 60_000
+#: A pass goes on over a smooth border while the surface leans from where it is measured by no more than this: cosine of 30 deg.
+_GOES_ON = math.cos(math.radians(30.0))
 
 
 class Extents:
@@ -42,11 +44,14 @@ class Extents:
 
     def __init__(self, samples: SurfaceSamples, obstacles: Obstacles) -> None:
         self._samples, self._obstacles = samples, obstacles
-        self._length = np.full((2, len(samples), DIRECTIONS), np.nan)
+        self._length = np.full((3, len(samples), DIRECTIONS), np.nan)
         self._measured = np.zeros(len(samples), bool)
+        pair = samples.face[samples.neighbours]
+        self._pairs = np.unique(pair[pair[:, 0] != pair[:, 1]], axis=0)
 
-    def along(self, rows: Rows, direction: Floats) -> tuple[Floats, Floats]:
-        """Lengths (m,), mm, of the faces of samples along directions (m, 3) in them: what goes on from each, and all of it.
+    def along(self, rows: Rows, direction: Floats) -> tuple[Floats, Floats, Floats]:
+        """Lengths (m,), mm, of the faces of samples along directions (m, 3) in them: what goes on from each, that with what it
+        goes on onto smoothly, and all of the face.
 
         Of the directions that are measured the nearest is taken: an extent may be longer by 1 %. nan: it is not known.
         """
@@ -54,14 +59,14 @@ class Extents:
         first, second = self._frame(rows)
         turn = np.arctan2((direction * second).sum(axis=1), (direction * first).sum(axis=1))
         which = np.rint(np.nan_to_num(turn) * (DIRECTIONS / math.pi)).astype(np.int64) % DIRECTIONS
-        connected, whole = self._length[:, rows, which]
-        return connected, whole
+        connected, beyond, whole = self._length[:, rows, which]
+        return connected, beyond, whole
 
     def longest(self, rows: Rows) -> Floats:
-        """The unit directions (m, 3) in which the faces of samples go on farthest, among those that are measured."""
+        """The unit directions (m, 3) in which passes through samples go on farthest, among those that are measured."""
         self._measure(rows)
         first, second = self._frame(rows)
-        turn = np.nan_to_num(self._length[0, rows]).argmax(axis=1)[:, None] * (math.pi / DIRECTIONS)
+        turn = np.nan_to_num(self._length[1, rows]).argmax(axis=1)[:, None] * (math.pi / DIRECTIONS)
         return np.asarray(np.cos(turn) * first + np.sin(turn) * second)
 
     def _frame(self, rows: Rows) -> tuple[Floats, Floats]:
@@ -78,9 +83,14 @@ class Extents:
             every = np.flatnonzero(face == number)
             self._measured[every] = True
             known = every[np.isfinite(samples.direction_max[every]).all(axis=1) & np.isfinite(samples.normal[every]).all(axis=1)]
-            vertex = np.ascontiguousarray(triangles.vertex[triangles.face == number])
+            vertex = triangles.vertex[triangles.face == number]
             if not len(known) or not len(vertex):
                 continue
+            own, smooth = len(vertex), self._pairs[(self._pairs == number).any(axis=1)]
+            others = np.isin(triangles.face, smooth[smooth != number])
+            vertex = np.concatenate([vertex, triangles.vertex[others]])
+            wide = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+            unit = wide / np.maximum(1e-300, np.linalg.norm(wide, axis=1, keepdims=True))
             most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
             some = known[:: 1 + len(known) // most]
             first, second = self._frame(some)
@@ -90,9 +100,9 @@ class Extents:
             for k in range(DIRECTIONS):
                 turn = k * math.pi / DIRECTIONS
                 along = np.ascontiguousarray(math.cos(turn) * first + math.sin(turn) * second)
-                connected, whole = np.empty((2, len(some)))
-                sections(point, along, normal, vertex, near, near, connected, whole)
-                self._length[0, known, k], self._length[1, known, k] = connected[nearest], whole[nearest]
+                lengths = np.empty((3, len(some)))
+                sections(point, along, normal, vertex, unit, own, _GOES_ON, near, near, *lengths)
+                self._length[:, known, k] = lengths[:, nearest]
             # A sample has its area there: what the triangles about a border say is no less than that allows.
             longest = np.nan_to_num(self._length[0, known]).max(axis=1)
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -354,8 +364,9 @@ class Cut(NamedTuple):
 def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False) -> Cut:
     """Find what passes by the tip take at samples (m,) with axes (m, 3), fixed or turning with the surface.
 
-    A face is cut in as many passes as there must be, at least one: they are as wide as their share of it. On a floor passes
-    are the step-over apart, as a share of the flat part: what its corner cuts beside that is not counted.
+    A face, with what it goes on onto smoothly, is cut in as many passes as there must be, at least one: they are as wide as their
+    share of it. On a floor, which ends where its plane does, passes are the step-over apart, as a share of the flat part: what
+    its corner cuts beside that is not counted.
     """
     normal, direction, curvature = samples.normal[rows], samples.direction_max[rows], samples.curvature[rows]
     widest = strips_at(cutter, normal, direction, curvature, axis, paths.scallop, paths.stepover)
@@ -365,7 +376,8 @@ def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats
     flat = flat_of(cutter)
 
     def fed(feed: Floats, apart: Floats) -> Cut:
-        breadth, length = (paths.extents.along(rows, way)[0] for way in (cross(normal, feed), feed))
+        each = (paths.extents.along(rows, way) for way in (cross(normal, feed), feed))
+        breadth, length = (np.where(floor, alone, beyond) for alone, beyond, _ in each)
         with np.errstate(invalid="ignore", divide="ignore"):
             # On a floor the outer passes cut all of the flat.
             count = np.ceil((breadth - np.where(floor, flat, apart)) / apart - NOTHING) + 1.0

@@ -249,7 +249,7 @@ class Walls:
         good, point = good[free], point[free]
         result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]
         # A window in a wall is no wall: strips are as high as what there is along them.
-        there = self._paths.extents.along(rows[good], tangent)[1]
+        there = self._paths.extents.along(rows[good], tangent)[2]
         there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
         samples, cutter = self._probes.samples, self._probes.cutters[c]
         feed = cross(samples.normal[rows[good]], tangent)

@@ -223,39 +223,55 @@ def _onwards(pieces, many, which, end, gap):
         which, end = best, 2 - begin
 
 
+@kernel
+def _through(pieces, many, which, gap):
+    """The length of what goes on both ways from a piece, among the first so many."""
+    pieces.counted[:many] = False
+    pieces.counted[which] = True
+    length = _long(pieces.ends[which])
+    for end in (0, 2):
+        length += _onwards(pieces, many, which, end, gap)
+    return length
+
+
 @entry
-def sections(point, along, normal, vertex, near, gap, connected, whole):
-    """Measure a face in planes through points on it: the part that goes on from the point, and all that the plane cuts.
+def sections(point, along, normal, vertex, unit, own, least, near, gap, connected, beyond, whole):
+    """Measure a face in planes through points on it: what goes on from the point, in it and beyond it, and all that is cut.
 
     `point` (p, 3) float64: mm.
     `along`, `normal` (p, 3) float64: unit directions that span the plane, in the face and along its normal, at right angles.
-    `vertex` (t, 3, 3) float64: corners of the triangles of the face, mm.
+    `vertex` (t, 3, 3) float64: corners of the triangles of the face, mm, and behind them of those faces onto which it goes on
+      smoothly.
+    `unit` (t, 3) float64: their unit normals, either way.
+    `own` (int): how many are those of the face.
+    `least` (float): cosine of the angle by which others lean at most from the normal at the point, for a pass to go on over them.
     `near`, `gap` (float): how far the point may be off the triangles, and what ends of neighbours may be apart, mm.
-    `connected`, `whole` (p,) float64, written: lengths along the face, mm; nan where no triangle is near the point.
+    `connected`, `beyond`, `whole` (p,) float64, written: lengths along the face, along it and what it goes on onto, and of all of
+      the face in the plane, mm; nan where no triangle is near the point.
     """
     frame = np.empty((3, 3))
     pieces = _Pieces(np.empty((len(vertex) + 1, 4)), np.zeros(len(vertex) + 1, np.bool_))
     for i in range(len(point)):
         frame[0], frame[1] = along[i], normal[i]
         cross(along[i], normal[i], frame[2])
-        connected[i] = whole[i] = np.nan
-        many, first, least = 0, -1, near
+        connected[i] = beyond[i] = whole[i] = np.nan
+        many, mine, first, nearest = 0, 0, -1, near
         for t in range(len(vertex)):
             if not _crossing(vertex[t], point[i], frame, pieces.ends[many]):
                 continue
-            away = _away(pieces.ends[many])
-            if away <= least:
-                first, least = many, away
+            if t < own:
+                away = _away(pieces.ends[many])
+                if away <= nearest:
+                    first, nearest = many, away
+                mine += 1
+            elif abs(dot(unit[t], normal[i])) < least:
+                continue
             many += 1
         if first < 0:
             continue
-        pieces.counted[:many] = False
-        pieces.counted[first] = True
-        length = _long(pieces.ends[first])
-        for end in (0, 2):
-            length += _onwards(pieces, many, first, end, gap)
-        connected[i] = length
-        for k in range(many):
+        beyond[i] = _through(pieces, many, first, gap)
+        connected[i] = length = _through(pieces, mine, first, gap)
+        for k in range(mine):
             if not pieces.counted[k]:
                 length += _long(pieces.ends[k])
         whole[i] = length
