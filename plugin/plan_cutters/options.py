@@ -16,7 +16,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
-from plan_cutters.domain.own_process import OwnProcess
+from plan_cutters.domain.own_process import OwnProcess, operations_requested
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
@@ -24,7 +24,7 @@ from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
-from plan_cutters.machines.requested_operations import operations_requested, process_requested
+from plan_cutters.machines.read import process_requested
 from plan_cutters.option_table import OPTIONS, Option
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
