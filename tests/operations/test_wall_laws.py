@@ -13,7 +13,8 @@ from cad_io.arrays import SurfaceSamples
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.operations.passes import Extents, Paths, flank_of
-from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, serves
 from tests.support.sheets import around

@@ -16,7 +16,8 @@ from plan_cutters.domain.operations import STRATEGIES
 from plan_cutters.kernels.linear import sections as rulings
 from plan_cutters.kernels.linear.sections import OneFace, extents
 from plan_cutters.operations.passes import Extents, Paths, flank_of, flat_of
-from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.obstacles import Obstacles

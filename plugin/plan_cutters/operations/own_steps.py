@@ -13,8 +13,9 @@ from plan_cutters.domain.own_process import Nearest, OwnProcess, OwnResult, OwnS
 from plan_cutters.domain.verdicts import UNJUDGED
 from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
-from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.task import Problems, Task
+from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]

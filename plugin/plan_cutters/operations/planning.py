@@ -46,9 +46,10 @@ from plan_cutters.operations.plans import (
     small_pieces,
     worth_their_turn,
 )
-from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.task import Problems, Task, at_some, thinned
+from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared

@@ -19,8 +19,9 @@ from plan_cutters.operations.labels import Seams
 from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.orientations import Indexing, Orientations
 from plan_cutters.operations.passes import Paths, cut_by_tip
-from plan_cutters.operations.probes import Probes, Walls
+from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.symmetry import Symmetry
+from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
