@@ -63,14 +63,14 @@ def crossings(p: Floats, q: Floats) -> Crossings:
         order = np.lexsort((k, i))
         i, j = i[order], near[k[order]]
         a, b, c, d = p[i, 0], p[i, 1], q[j, 0], q[j, 1]
-        of_c, of_d, of_a, of_b = _left(a, b, c), _left(a, b, d), _left(c, d, a), _left(c, d, b)
+        of_c, of_d, of_a, of_b = _turning(a, b, c), _turning(a, b, d), _turning(c, d, a), _turning(c, d, b)
         hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
         i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
         result.append(Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d)))
     return Crossings(*(np.concatenate(each) for each in zip(*result, strict=True)))
 
 
-def _left(a: Floats, b: Floats, p: Floats) -> Floats:
+def _turning(a: Floats, b: Floats, p: Floats) -> Floats:
     """Positive where p lies left of the line from a to b."""
     return np.asarray((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))
 

@@ -24,7 +24,6 @@ from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
-from plan_cutters.machines.read import process_requested
 from plan_cutters.option_table import OPTIONS, Option
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
@@ -154,6 +153,15 @@ _DEFAULTS: dict[str, Any] = {
     "rotation": (0.0, 2 * math.pi), "jobs": field(default_factory=cores), "answers": (), "placement": None,
     "other_placements": (), "propose": False,
 }  # fmt: skip
+
+
+def _own_process(value: Any) -> OwnProcess | None:
+    if value is None:
+        return None
+    # Readers of machine files load pydantic.
+    from plan_cutters.machines.read import process_requested
+
+    return process_requested(value)
 
 
 def _with_defaults(made: type[_Class]) -> type[_Class]:
@@ -319,7 +327,7 @@ class Options:
         take(machine=machine_option(self.machine))
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
                             propose=flag(self.propose, "propose")))  # fmt: skip
-        take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=process_requested(self.process))
+        take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))
         take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
         for word, each in OPTIONS.items():
             value = getattr(self, word)

@@ -296,7 +296,7 @@ def end_within(seconds: float) -> None:
 def process_status(number: int | str | None) -> list[str]:
     """What Linux says of a process, from its state on (`man proc_pid_stat`, field 3); empty where the system does not tell."""
     try:
-        with open(f"/proc/{number}/stat", encoding="ascii", errors="replace") as file:
+        with open(f"/proc/{number}/stat", encoding="utf-8", errors="replace") as file:
             return file.read().rpartition(")")[2].split()
     except OSError:
         return []

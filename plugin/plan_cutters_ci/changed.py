@@ -1,4 +1,4 @@
-"""Find the parts that changed in a git repository, compare their plans, and tell what became of each."""
+"""Find the parts that changed in a git repository, and compare their plans, part by part."""
 
 import hashlib
 import json

@@ -164,9 +164,8 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
     solids, tool = material.sheet(waves.tree_of(speck[None])), waves.flat(1.0, LENGTH, SAFE)
 
     def swept(past):
-        proof = place.Proof(np.zeros(0), 0.0, solids)
-        return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, sweep.WITHOUT_END, (0, -1.0), TURNS, past, proof,
-                           place.search_workspace())  # fmt: skip
+        side = sweep.Side(tool, solids, 0.25, 1e-5, sweep.WITHOUT_END, place.Proof(np.zeros(0), 0.0, solids))
+        return sweep.sweep(contact, 0, RANGES, side, (0, -1.0), TURNS, past, place.search_workspace())
 
     full = sweep.memory(TURNS, 1, False)
     full.given[0], full.pool[:] = given, 1e4

@@ -96,7 +96,7 @@ def choose(
 def repeated_groups(
     part: "Part", repeated: Mapping[int, int]
 ) -> tuple[list[tuple[int, tuple[int, ...], int, tuple[int, ...]]], frozenset[int]]:
-    """What is left out because it lies where others of the part lie.
+    """List bodies and faces that are no targets because they lie where others of the part lie.
 
     Returns `bodies` list of (int, tuple of int, int, tuple of int): a body and its faces, and the body that stands for it and its
     faces; `faces`: faces of none of these bodies.
