@@ -252,7 +252,7 @@ def in_order(steps: Sequence[Step], known: Sequence[Cutter]) -> list[Step]:
 
 
 def needed(step: Step, known: Sequence[Cutter]) -> int:
-    """How much a step needs, by its costliest change: a place in NEEDS; a new tool held out farther than usual is a place, too."""
+    """How much a step needs, by its costliest change: a place in NEEDS; a tool held out farther than usual is a place, too."""
     usual = max([USUAL, *map(slenderness, known)]) * (1.0 + 1e-9)
     unusual = any(slenderness(each) > usual for each in step.cutters if each not in known)
     return max(_UNUSUAL * unusual, *(NEEDS[move.means] for move in step.moves), 0)
