@@ -21,22 +21,11 @@ Describe = Callable[[Plan], Plan]
 class Interim:
     """An interim holds the verdicts of a part, and what was found besides.
 
-    Parameters
-    ----------
-    clock : Clock
-        Its seconds are those of the results.
-    stands : callable, optional
-        Given a result as soon as all verdicts have their reasons, and after each stage that another one follows.
-    begins : callable, optional
-        Called once, as soon as the verdicts stand: from then on `interrupted` has a result.
-    looks : callable, optional
-        Given what a first look at the first part that is ready says, if it is much sooner than all verdicts.
-
-    Attributes
-    ----------
-    answers : Answers
-    between : dict
-        Of `JudgedPart.between`.
+    `clock`: its seconds are those of the results.
+    `stands`: given a result as soon as all verdicts have their reasons, and after each stage that another one follows.
+    `begins`: called once, as soon as the verdicts stand: from then on `interrupted` has a result.
+    `looks`: given what a first look at the first part that is ready says, if it is much sooner than all verdicts.
+    `between`: of `JudgedPart.between`.
     """
 
     def __init__(

@@ -51,67 +51,31 @@ ExplainedIn = tuple[Explained, Ints]
 
 @dataclass(frozen=True, slots=True)
 class JudgedCutter:
-    """The verdicts of one cutter, over all setups and in the first one, with its line in the plan.
+    """The verdicts of one cutter, over all setups and in the first one, with its line in the plan."""
 
-    Attributes
-    ----------
-    verdicts : Verdicts
-        Over all setups, with the reasons that can be acted on.
-    which : (n,) int32
-        The setup that serves each sample, -1 for none.
-    here : Verdicts
-        In the first setup alone; the same where there is no other one.
-    entry : CutterEntry
-        Its line in the plan.
-    strips : list of SharpEdgeEntry
-        Sharp inside edges at which it leaves a fillet.
-    """
-
-    verdicts: Verdicts
-    which: Ints
-    here: Verdicts
-    entry: CutterEntry
-    strips: list[SharpEdgeEntry]
+    verdicts: Verdicts  #: Over all setups, with the reasons that can be acted on.
+    which: Ints  #: (n,) int32: the setup that serves each sample, -1 for none.
+    here: Verdicts  #: In the first setup alone; the same where there is no other one.
+    entry: CutterEntry  #: Its line in the plan.
+    strips: list[SharpEdgeEntry]  #: Sharp inside edges at which it leaves a fillet.
 
 
 @dataclass(frozen=True, eq=False)
 class JudgedPart:
-    """A part of which the verdicts stand.
-
-    Attributes
-    ----------
-    ready : Prepared
-    cutters : mapping
-        What is known of each cutter.
-    other_setups : sequence
-        Of each other setup its axis, and what each cutter reaches there by its id.
-    travels : dict
-        Cutter id -> where the linear axes stand; empty where that is not judged.
-    searched : Work
-        The work of all searches, which bounds that between the samples unless a budget was requested.
-    started : datetime
-        When the work began.
-    carried : (m, 3) int64
-        Of each motion of the whole part, as `JudgeOnce.carried` counts.
-    unexplained : tuple of str
-        Ids of the cutters whose reasons were not looked for: they are those that the search of postures found. Of a cutter
-        that reaches all there are none.
-    witnessed : bool
-        Whether each cutter has its witnesses.
-    later : tuple
-        Axes of setups that are judged later, and of which this part knows nothing.
-    """
+    """A part of which the verdicts stand."""
 
     ready: Prepared
-    cutters: Mapping[Cutter, JudgedCutter]
-    other_setups: Sequence[OtherSetup]
-    travels: dict[str, Travel]
-    searched: Work
-    started: datetime.datetime
-    carried: NDArray[np.int64]
+    cutters: Mapping[Cutter, JudgedCutter]  #: What is known of each cutter.
+    other_setups: Sequence[OtherSetup]  #: Of each other setup its axis, and what each cutter reaches there by its id.
+    travels: dict[str, Travel]  #: Cutter id -> where the linear axes stand; empty where that is not judged.
+    searched: Work  #: The work of all searches, which bounds that between the samples unless a budget was requested.
+    started: datetime.datetime  #: When the work began.
+    carried: NDArray[np.int64]  #: (m, 3) int64: of each motion of the whole part, as `JudgeOnce.carried` counts.
+    #: Ids of the cutters whose reasons were not looked for: they are those that the search of postures found. Of a cutter that
+    #: reaches all there are none.
     unexplained: tuple[str, ...] = ()
-    witnessed: bool = True
-    later: tuple[Axis, ...] = ()
+    witnessed: bool = True  #: Whether each cutter has its witnesses.
+    later: tuple[Axis, ...] = ()  #: Axes of setups that are judged later, and of which this part knows nothing.
 
     @classmethod
     def of(
@@ -220,15 +184,9 @@ class JudgedPart:
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
     """Put the result together: the choice, the area between the samples, what was answered, the plan, without its text.
 
-    Parameters
-    ----------
-    part : JudgedPart
-    clock : Clock
-        Its seconds are those of the plan.
-    answers : Answers
-        As far as there are any.
-    between : mapping
-        Of `JudgedPart.between`; empty where that was not looked at.
+    `clock`: its seconds are those of the plan.
+    `answers`: as far as there are any.
+    `between`: of `JudgedPart.between`; empty where that was not looked at.
     """
     ready, judged = part.ready, part.cutters
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]

@@ -19,45 +19,23 @@ from plan_cutters.plan_file.operations import OperationsEntry
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
-    """One operation of a plan, with its samples.
+    """One operation of a plan, with its samples."""
 
-    Attributes
-    ----------
-    name : str
-        `op1`, `op2`, ... by share, the largest first.
-    mode : str
-        `fixed`: one tool axis for all its contacts; `simultaneous`: each contact has its own.
-    cutter : Cutter
-    setup : int
-        0 for the first.
-    axis : (3,) float, optional
-        Unit, part coordinates; None where it is simultaneous.
-    angle, other_angle : (2,) float, optional
-        Positions of the rotary axes, deg, and those of the other solution, where there is one.
-    rows : (r,) int64
-        Samples that go with it.
-    step : int
-        Its number in the planner's own process; 0: it was planned.
-    orbit : int
-        Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
-    moving : ((n, 3) float, (n,) int32), optional
-        Of a simultaneous one: the unit tool axis of the proposed field at each sample, nan where there is none; and the connected
-        proved piece about it, the largest first, -1: nothing is proved there.
-    fields : mapping
-        Of its entry in the plan file, by their names, as far as they are known by now.
-    """
-
-    name: str
-    mode: Mode
+    name: str  #: `op1`, `op2`, ... by share, the largest first.
+    mode: Mode  #: `fixed`: one tool axis for all its contacts; `simultaneous`: each contact has its own.
     cutter: Cutter
-    setup: int
-    axis: Floats | None
+    setup: int  #: 0 for the first.
+    axis: Floats | None  #: (3,) float: unit, part coordinates; None where it is simultaneous.
+    #: (2,) float: positions of the rotary axes, deg, and those of the other solution, where there is one.
     angle: Floats | None
     other_angle: Floats | None
-    rows: NDArray[np.int64]
-    step: int = 0
-    orbit: int = -1
+    rows: NDArray[np.int64]  #: (r,) int64: samples that go with it.
+    step: int = 0  #: Its number in the planner's own process; 0: it was planned.
+    orbit: int = -1  #: Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
+    #: ((n, 3) float, (n,) int32): of a simultaneous one: the unit tool axis of the proposed field at each sample, nan where
+    #: there is none; and the connected proved piece about it, the largest first, -1: nothing is proved there.
     moving: tuple[Floats, Ints] | None = None
+    #: Of its entry in the plan file, by their names, as far as they are known by now.
     fields: Mapping[str, Any] = field(default_factory=dict)
 
     def with_fields(self, moving: tuple[Floats, Ints] | None = None, **fields: Any) -> "Operation":
@@ -67,62 +45,33 @@ class Operation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OperationPlan:
-    """A plan in arrays: its operations, and the one that each sample goes with.
+    """A plan in arrays: its operations, and the one that each sample goes with."""
 
-    Attributes
-    ----------
-    name : str
-        `fewest` or `fastest`; `process`: the planner's own steps, and those planned behind them.
-    operations : tuple of Operation
-    label : (n,) int32
-        Index into the operations, -1 for none.
-    serves : (n, k) bool
-        Which operations serve each sample.
-    strip : (n,) float
-        Width of the strip that a path cuts there, mm; nan where it is not known.
-    length : (n,) float
-        Path of the tool's centre, mm.
-    seconds : (n,) float
-        Cutting time, s: that of the path at the feed; nan without a feed.
-    region : (n,) int32
-        Number of the connected samples of one operation that each belongs to, -1 for none: from 0 by operation, the largest
-        first.
-    lean : (n, 3) float
-        Unit direction in which the tool leans, across its contact's normal; where it stands upright, the side of its bottom that
-        touches. nan where there is no operation.
-    strategy : (n,) uint8
-        How each sample is cut, an index into STRATEGIES; 0 where there is no operation.
-    contact : (n, 3) float
-        Where the tool touches while it cuts a sample of a wall, mm: at the lower end of its strip, where its flutes begin to be
-        straight. nan where it touches at the sample itself.
-    link : (n,) float
-        Seconds of links between passes, as the share of each sample; nan without a feed.
-    cutting, links, other : float
-        Seconds of all cutting, nan where one of them is not known; of all links, to the pieces of operations too; and of all
-        orientations, of changes of cutters and of setups.
-    short : (m,) int64
-        Samples that are left because a step for them would be hardly any.
-    marks : float
-        Seconds that borders on free-form faces count where plans are compared (`--border-cost`).
-    """
-
-    name: str
+    name: str  #: `fewest` or `fastest`; `process`: the planner's own steps, and those planned behind them.
     operations: tuple[Operation, ...]
-    label: Ints
-    serves: NDArray[np.bool_]
-    strip: Floats
-    length: Floats
-    seconds: Floats
+    label: Ints  #: (n,) int32: index into the operations, -1 for none.
+    serves: NDArray[np.bool_]  #: (n, k) bool: which operations serve each sample.
+    strip: Floats  #: (n,) float: width of the strip that a path cuts there, mm; nan where it is not known.
+    length: Floats  #: (n,) float: path of the tool's centre, mm.
+    seconds: Floats  #: (n,) float: cutting time, s: that of the path at the feed; nan without a feed.
+    #: (n,) int32: number of the connected samples of one operation that each belongs to, -1 for none: from 0 by operation, the
+    #: largest first.
     region: Ints
+    #: (n, 3) float: unit direction in which the tool leans, across its contact's normal; where it stands upright, the side of
+    #: its bottom that touches. nan where there is no operation.
     lean: Floats
-    strategy: NDArray[np.uint8]
+    strategy: NDArray[np.uint8]  #: (n,) uint8: how each sample is cut, an index into STRATEGIES; 0 where there is no operation.
+    #: (n, 3) float: where the tool touches while it cuts a sample of a wall, mm: at the lower end of its strip, where its flutes
+    #: begin to be straight. nan where it touches at the sample itself.
     contact: Floats
-    link: Floats
+    link: Floats  #: (n,) float: seconds of links between passes, as the share of each sample; nan without a feed.
+    #: Seconds of all cutting, nan where one of them is not known; of all links, to the pieces of operations too; and of all
+    #: orientations, of changes of cutters and of setups.
     cutting: float
     links: float
     other: float
-    short: NDArray[np.int64]
-    marks: float = 0.0
+    short: NDArray[np.int64]  #: (m,) int64: samples that are left because a step for them would be hardly any.
+    marks: float = 0.0  #: Seconds that borders on free-form faces count where plans are compared (`--border-cost`).
 
     @property
     def total(self) -> float:
@@ -161,54 +110,25 @@ class OperationPlan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operations:
-    """The plan of operations as the plan file has it, with the arrays behind it.
-
-    Attributes
-    ----------
-    entry : OperationsEntry
-    cutters : tuple of Cutter
-        Those whose operations were compared; columns count in them.
-    plans : tuple of OperationPlan
-        In the order of `entry.plans`.
-    candidates : Columns
-        That the proof of the fewest is about; none beside a process of the planner's own.
-    chosen : (k,) int64
-        Of the candidates.
-    own : tuple of OwnResult
-        What the planner's own steps do, in their order; empty where all steps were planned.
-    """
+    """The plan of operations as the plan file has it, with the arrays behind it."""
 
     entry: OperationsEntry
-    cutters: tuple[Cutter, ...]
-    plans: tuple[OperationPlan, ...]
-    candidates: Columns
-    chosen: NDArray[np.int64]
-    own: tuple[OwnResult, ...] = ()
+    cutters: tuple[Cutter, ...]  #: Those whose operations were compared; columns count in them.
+    plans: tuple[OperationPlan, ...]  #: In the order of `entry.plans`.
+    candidates: Columns  #: That the proof of the fewest is about; none beside a process of the planner's own.
+    chosen: NDArray[np.int64]  #: (k,) int64: of the candidates.
+    own: tuple[OwnResult, ...] = ()  #: What the planner's own steps do, in their order; empty where all steps were planned.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Answers:
-    """The answers that are computed after the plan, where the user asked for them.
+    """The answers that are computed after the plan, where the user asked for them."""
 
-    Attributes
-    ----------
-    stick_outs : mapping
-        Cutter id -> StickOut.
-    radius_maps : tuple of RadiusMap
-        For flat ends, and for ball ends.
-    mends : mapping
-        Cutter id -> Advice, of those that do not finish the part, or of the nearest of them.
-    not_mended : tuple of str
-        Ids of the others of them, where that was asked.
-    least_set : LeastSet, optional
-        The fewest of the given cutters and setups that reach all that any of them reaches; None where there is but one of each.
-    operations : Operations, optional
-        The plan of operations.
-    """
-
-    stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
-    radius_maps: tuple[RadiusMap, ...] = ()
+    stick_outs: Mapping[str, StickOut] = field(default_factory=dict)  #: Cutter id -> StickOut.
+    radius_maps: tuple[RadiusMap, ...] = ()  #: For flat ends, and for ball ends.
+    #: Cutter id -> Advice, of those that do not finish the part, or of the nearest of them.
     mends: Mapping[str, Advice] = field(default_factory=dict)
-    not_mended: tuple[str, ...] = ()
+    not_mended: tuple[str, ...] = ()  #: Ids of the others of them, where that was asked.
+    #: The fewest of the given cutters and setups that reach all that any of them reaches; None where there is but one of each.
     least_set: LeastSet | None = None
-    operations: Operations | None = None
+    operations: Operations | None = None  #: The plan of operations.

@@ -44,13 +44,8 @@ def refusal(folder: str | Path) -> str:
 def whole(path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None) -> Iterator[Path]:
     """Give a path in the same folder to write to; it is renamed to `path` when the block ends well, removed when it does not.
 
-    Parameters
-    ----------
-    path
-    error
-        Raised in place of an `OSError`: the folder cannot be written to, or the file cannot be written or take its place.
-    named
-        Called with the path to write to before it exists, so that whoever ends this process can take it away.
+    `error`: raised in place of an `OSError`: the folder cannot be written to, or the file cannot be written or take its place.
+    `named`: called with the path to write to before it exists, so that whoever ends this process can take it away.
     """
     path = Path(path)
     temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")

@@ -39,10 +39,7 @@ def question_of(
 ) -> Question:
     """Put the part, the options and the files of a plan into the form that the checker takes.
 
-    Raises
-    ------
-    OptionError
-        The plan is of another part or of other options, or has no operations.
+    Raises OptionError: the plan is of another part or of other options, or has no operations.
     """
     require_operations(document)
     cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
@@ -58,10 +55,7 @@ def question_of(
 def stated_by(question: Question, options: Options) -> Question:
     """The question with what plan.json must say by the user's own command, and by the program's words for the plan's numbers.
 
-    Raises
-    ------
-    OptionError
-        The command says otherwise.
+    Raises OptionError: the command says otherwise.
     """
     names = {each.id: (each.name, each.holder.name if each.holder else "") for each in options.judged}
     stated: dict[str, Any] = {
@@ -139,10 +133,7 @@ def _where(fixture: Fixture, setup: int, document: Mapping[str, Any]) -> tuple[F
 def _grip(wanted: Fixture, placed: Fixture, faces: tuple[str, ...], setup: int) -> Grip:
     """A vise or chuck that was to be placed, for the checker to see whether it holds the part.
 
-    Raises
-    ------
-    OptionError
-        It is another one than the user asked for.
+    Raises OptionError: it is another one than the user asked for.
     """
     clamping, sizes = placed.clamping, wanted.grips
     same = placed.kind == wanted.kind and clamping is not None and not placed.to_place

@@ -32,10 +32,7 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
     What is not done after so many seconds is listed as not checked, with how much was; all samples of the labels are looked at in
     the order of a random draw with seed 0.
 
-    Raises
-    ------
-    OptionError
-        The plan has no operations.
+    Raises OptionError: the plan has no operations.
     """
     require_operations(question.document)
     wrong = [Finding(False, each) for each in faults(question)]

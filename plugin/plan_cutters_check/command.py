@@ -63,10 +63,7 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
     """Check the operations of a plan.json; 0: all that was checked holds, 1: not all, or not by the tolerance that is wanted.
 
-    Raises
-    ------
-    OptionError
-        The file is no plan with operations, or one of another part or of other options.
+    Raises OptionError: the file is no plan with operations, or one of another part or of other options.
     """
     from cad_io import read_part
     from plan_cutters.errors import OptionError

@@ -177,10 +177,7 @@ def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats)
 def require_operations(document: Mapping[str, Any], file: str | None = None) -> None:
     """See to it that a plan.json has operations to check.
 
-    Raises
-    ------
-    OptionError
-        It has none.
+    Raises OptionError: it has none.
     """
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations", file=file)

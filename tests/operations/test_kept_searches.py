@@ -369,7 +369,7 @@ def test_strips(keeps):
         samples = SimpleNamespace(normal=normal, curvature=bend, direction_max=along)
         for accuracy, scallop in ((math.radians(0.1), 0.013), (0.31, 1.9)):
             # Faces whose extents are not known.
-            endless = SimpleNamespace(along=lambda rows, way: np.full((2, len(rows)), np.nan), longest=along.__getitem__)
+            endless = SimpleNamespace(along=lambda rows, way: np.full((3, len(rows)), np.nan), longest=along.__getitem__)
             paths = passes.Paths(scallop, 0.61, {cutter: 870.0}, accuracy, endless)
             cut = passes.cut_by_tip(cutter, samples, np.arange(len(normal)), axis, paths)
             found[f"{name} tip {scallop}"] = [*cut, passes.flat_of(cutter), passes.flank_of(cutter)]

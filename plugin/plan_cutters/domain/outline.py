@@ -26,26 +26,14 @@ _WIDEST = math.pi / 8
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A straight line or an arc of an outline.
+    """A straight line or an arc of an outline."""
 
-    Attributes
-    ----------
-    part : str
-        `flutes`, `neck`, `shank` or `holder`. The face of a step belongs to the wider part.
-    start, end : (float, float)
-    centre : (float, float), optional
-        Of an arc. None: a straight line.
-    radius : float
-        Of an arc, mm; 0 for a line.
-    turn : float
-        Angle of an arc about its centre from start to end, rad: positive where it bulges out of the tool. 0 for a line.
-    """
-
-    part: AnyPart
+    part: AnyPart  #: `flutes`, `neck`, `shank` or `holder`. The face of a step belongs to the wider part.
     start: Point
     end: Point
-    centre: Point | None = None
-    radius: float = 0.0
+    centre: Point | None = None  #: (float, float): of an arc. None: a straight line.
+    radius: float = 0.0  #: Of an arc, mm; 0 for a line.
+    #: Angle of an arc about its centre from start to end, rad: positive where it bulges out of the tool. 0 for a line.
     turn: float = 0.0
 
     @property

@@ -272,23 +272,13 @@ _LOOKED_AT, _PAIRS, _LEAST, _WORTH = 400, 4_000, 100, 40_000
 
 @dataclass(frozen=True)
 class FirstLook:
-    """A first look has the share of area that each cutter reaches at some samples, and that they reach together.
+    """A first look has the share of area that each cutter reaches at some samples, and that they reach together."""
 
-    Attributes
-    ----------
-    setup : (3,) float64
-        The setup axis.
-    samples, of : int
-        How many were looked at, of how many.
-    shares : tuple of (Cutter, float)
-        In the order of the request.
-    together : float
-    """
-
-    setup: Floats
+    setup: Floats  #: (3,) float64: the setup axis.
+    #: How many were looked at, of how many.
     samples: int
     of: int
-    shares: tuple[tuple[Cutter, float], ...]
+    shares: tuple[tuple[Cutter, float], ...]  #: In the order of the request.
     together: float
 
 

@@ -115,27 +115,16 @@ def supervise(
     An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing; where verdicts stand, within
     WRITING, in which it writes them, and a second one ends it at once. So does the end of `timeout`.
 
-    Parameters
-    ----------
-    words, name
-        Its arguments, and the command's name as `entry.begin` takes it.
-    read_timeout
-        Seconds that reading one part may take; the limits of later stages follow from it.
-    memory
-        Bytes of address space that the child may use.
-    display
-        Told what the child tells.
-    timeout, since
-        Seconds that the whole of a part may take; when the first part began (`time.monotonic`), default now.
-    done, excluded
-        As of `Assignment`.
-    leave
-        Called once with the exit code and the output of the one part, when its summary was shown and models are all that is left.
+    `words`, `name`: its arguments, and the command's name as `entry.begin` takes it.
+    `read_timeout`: seconds that reading one part may take; the limits of later stages follow from it.
+    `memory`: bytes of address space that the child may use.
+    `display`: told what the child tells.
+    `timeout`, `since`: seconds that the whole of a part may take; when the first part began (`time.monotonic`), default now.
+    `done`, `excluded`: as of `Assignment`.
+    `leave`: called once with the exit code and the output of the one part, when its summary was shown and models are all that is
+      left.
 
-    Raises
-    ------
-    Supervised
-        It crashed or was stopped; `Stuck` where this was at a face, `OutOfTime` by the `timeout`.
+    Raises Supervised: it crashed or was stopped; `Stuck` where this was at a face, `OutOfTime` by the `timeout`.
     """
     watch = _Watch(read_timeout, display, began=since)
     child: Worker | None = None
