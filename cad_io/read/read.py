@@ -6,7 +6,6 @@ refers to are looked at each by itself: the kernel leaves out in silence what it
 
 import math
 import os
-import pickle
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -47,14 +46,14 @@ def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -
     file.
     """
 
-    def answered() -> bytes:
+    def answered() -> dict[str, Any]:
         try:
-            return pickle.dumps(packed(find()))
+            return packed(find())
         except CadIoError as error:
-            return pickle.dumps({"error": (error.cause, error.file, error.face)})
+            return {"error": (error.cause, error.file, error.face)}
 
     try:
-        answer = pickle.loads(limited(answered, timeout))
+        answer = limited(answered, timeout)
     except TimeLimit:
         raise ReadError(
             f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
@@ -142,18 +141,18 @@ def _miss(referred: Referred, name: str, why: str) -> None:
 def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:
     """How many faces a file itself has, what is missing there, and whether it is risky; in a copy of the process."""
 
-    def look() -> bytes:
+    def look() -> str | tuple[int, list[tuple[str, str, str]], bool]:
         try:
             with translated("reading the file", error=ReadError, file=file):
                 loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
                 read = loaded.transfer()
                 count = step.distinct_faces(read.shape) - foreign
-                return pickle.dumps((count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky))
+                return count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky
         except ReadError as error:
-            return pickle.dumps(error.cause)
+            return error.cause
 
     try:
-        answer = pickle.loads(limited(look, timeout))
+        answer = limited(look, timeout)
     except TimeLimit:
         raise ReadError(f"is not read within {timeout:g} s", file=file) from None
     except ChildDied as died:

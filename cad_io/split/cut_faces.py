@@ -9,9 +9,8 @@ seconds (`plan_cutters_base.forks`): what comes out does not depend on how busy 
 
 import mmap
 import os
-import pickle
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -101,6 +100,8 @@ def in_words(error: Exception) -> str:
     raise error
 
 
+#: The numbers of the faces of a component, and the component with their pieces, as bytes.
+_Packed = tuple[list[int], bytes]
 #: Relative error of a face's parameter area that is still the same area.
 _SAME_AREA = 1e-5
 
@@ -252,7 +253,7 @@ class Attempt:
             arrangement.sound.add(mark)
         return made
 
-    def packed(self) -> tuple[list[int], bytes] | None:
+    def packed(self) -> _Packed | None:
         """Numbers of the faces, and the component with their pieces: sharing survives. None if nothing changed."""
         if self._placed is None:
             return None
@@ -314,7 +315,8 @@ def cut_faces(
             break
         watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
         try:
-            answer = limited(partial(_answer, shape, faces, rest, surface_of, worst, watch, careful), watch.whole, processor=True)
+            work = partial(_answer, shape, faces, rest, surface_of, worst, watch, careful)
+            units, pieces = limited(work, watch.whole, processor=True)
         except (TimeLimit, ChildDied) as error:
             seen = watch.seen() & rest.keys()
             if careful or len(seen) < 2:
@@ -322,7 +324,7 @@ def cut_faces(
                 failed |= dict.fromkeys(seen or rest, why)
             careful = careful or len(seen) > 1
             continue
-        result, pieces = _unpacked(answer, shape)
+        result = _unpacked(units, pieces, shape)
         pieces.failed |= failed
         return result, pieces
     return shape, CutFaces(failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed})
@@ -358,8 +360,8 @@ def _answer(
     worst: int,
     watch: _Watch,
     careful: bool,
-) -> bytes:
-    """Cut the faces, and return the pickled result that `_unpacked` reads."""
+) -> tuple[list[_Packed | None], CutFaces]:
+    """Cut the faces: the packed components, which `_unpacked` reads, and all else."""
     answer = CutFaces()
     base, faces = copied(shape, faces)
     drawings: dict[int, Drawing] = {}
@@ -373,7 +375,7 @@ def _answer(
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
     done: dict[int, Drawing] = {}
-    units: list[tuple[list[int], bytes] | None] = []
+    units: list[_Packed | None] = []
     # Components share no edge: what is wrong with one is no reason to build the others again.
     for part_unit, unit in zip(components(shape), components(base), strict=True):
         inside = shape_map(unit, TopAbs_FACE)
@@ -385,7 +387,7 @@ def _answer(
     answer.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in done.items()}
     answer.missed = {n: d.missed for n, d in done.items() if d.missed}
     answer.joined = {n: d.joined for n, d in done.items() if d.joined}
-    return pickle.dumps((units, answer))
+    return units, answer
 
 
 def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, result: CutFaces) -> Attempt:
@@ -422,8 +424,8 @@ def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, result: Cut
             return attempt
 
 
-def _unpacked(answer: bytes, shape: Any) -> tuple[Any, CutFaces]:
-    units, pieces = pickle.loads(answer)
+def _unpacked(units: Sequence[_Packed | None], pieces: CutFaces, shape: Any) -> Any:
+    """The whole of its components, cut or as they were; `pieces` takes the faces."""
     made: list[Any] = []
     for old, unit in zip(components(shape), units, strict=True):
         if unit is None:
@@ -432,4 +434,4 @@ def _unpacked(answer: bytes, shape: Any) -> tuple[Any, CutFaces]:
         result, *groups = children(of_bytes(unit[1]))
         made += children(result)
         pieces.faces |= {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(unit[0], groups, strict=True)}
-    return (as_one(made) if any(units) else shape), pieces
+    return as_one(made) if any(units) else shape

@@ -5,7 +5,6 @@ surface is a wish (0.107 mm was found where 0.01 was asked), so points are evalu
 of the process, face by face: on some faces it never ends.
 """
 
-import pickle
 import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -137,12 +136,8 @@ def kernel_start(part: Part, number: int, deflection: float, angle: float, secon
     """
 
     face = part.face(number)
-
-    def call() -> bytes:
-        return pickle.dumps(under_mesh(face, deflection, angle, partial(_taken, face)))
-
     try:
-        taken, spent = pickle.loads(limited(call, seconds, processor=True))
+        taken, spent = limited(lambda: under_mesh(face, deflection, angle, partial(_taken, face)), seconds, processor=True)
     except ChildDied:
         return None, 0.0
     if taken is None:

@@ -8,9 +8,7 @@ it.
 """
 
 import contextlib
-import json
 import os
-import pickle
 import re
 import tempfile
 import unicodedata
@@ -92,15 +90,15 @@ def write_step(
     styles = {id(piece): style(piece) for piece in split.pieces}
     with whole(path, WriteError) as temporary:
 
-        def write() -> bytes:
+        def write() -> tuple[str, str | None] | None:
             try:
                 with translated("writing STEP", error=WriteError, file=file):
                     _write(split, temporary, lambda piece: styles[id(piece)], product, tree, layers or {}, schema, others, file)
             except WriteError as error:
-                return pickle.dumps((error.cause, error.face))
+                return error.cause, error.face
             except OSError as error:
-                return pickle.dumps((f"cannot be written: {error.strerror}", None))
-            return b""
+                return f"cannot be written: {error.strerror}", None
+            return None
 
         try:
             failed = limited(write, SECONDS + _A_FACE * len(split.pieces), processor=True)
@@ -108,8 +106,8 @@ def write_step(
             raise WriteError("the CAD kernel does not come to an end of writing STEP", file=file) from None
         except ChildDied as died:
             raise WriteError(f"the CAD kernel fails to write STEP ({died})", file=file) from None
-        if failed:
-            cause, face = pickle.loads(failed)
+        if failed is not None:
+            cause, face = failed
             raise WriteError(cause, file=file, face=face)
 
 
@@ -460,7 +458,7 @@ def changed_by_step(part: Part) -> Mapping[int, float]:
     part.changed_by_step = {}
     if numbers:
         with contextlib.suppress(TimeLimit, ChildDied):
-            areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _BACK + _BACK_A_FACE * len(numbers)))
+            areas = limited(lambda: _areas(part, numbers), _BACK + _BACK_A_FACE * len(numbers))
             pairs = zip(numbers, areas, strict=True)
             part.changed_by_step = {n: there for n, (here, there) in pairs if abs(there - here) > _SAME * here}
     return part.changed_by_step

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
+from cad_io.graphs import connected
 from plan_cutters.domain.answers import Patch, weights
 from plan_cutters.scene.preparation import Prepared
 
@@ -67,8 +66,7 @@ def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Pat
     at[rows] = np.arange(len(rows))
     one, other = at[samples.neighbours[:, 0]], at[samples.neighbours[:, 1]]
     both = (one >= 0) & (other >= 0)
-    graph = coo_array((np.ones(int(both.sum()), np.int8), (one[both], other[both])), shape=(len(rows), len(rows)))
-    group = connected_components(graph, directed=False)[1]
+    group = connected(len(rows), np.column_stack([one[both], other[both]]))
     sequence = np.argsort(group, kind="stable")
     each = np.split(rows[sequence], np.flatnonzero(np.diff(group[sequence])) + 1)
     return sorted((_patch(samples, finished, mine) for mine in each), key=lambda patch: (-patch.area, patch.place))

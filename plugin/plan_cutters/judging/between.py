@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
+from cad_io.graphs import connected as groups
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.judging.axes import AxisField
@@ -63,8 +62,7 @@ def connected(field: Field, cells: CellContacts, level: Indices, *, turning: boo
     cut, neighbours = np.where(cells.whole[a[one]], b[one], a[one]), np.where(cells.whole[a[one]], a[one], b[one])
     cut, first = np.unique(cut, return_index=True)
     tail, head = np.concatenate([a[both], cut]), np.concatenate([b[both], neighbours[first]])
-    graph = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(m, m))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+    return groups(m, np.column_stack([tail, head])).astype(np.int64)
 
 
 def _key(level: Indices, tile: Indices, tiles: Indices) -> Indices:

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
+from cad_io.graphs import connected
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
     CONCAVE,
@@ -55,9 +54,7 @@ def regions(samples: SurfaceSamples, surface_class: NDArray[np.uint8]) -> Ints:
     """
     a, b = samples.neighbours.T
     same = surface_class[a] == surface_class[b]
-    n = len(samples)
-    graph = coo_array((np.ones(int(same.sum()), np.int8), (a[same], b[same])), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
+    return connected(len(samples), samples.neighbours[same])
 
 
 def decompose(
@@ -106,9 +103,7 @@ def march_differs(samples: SurfaceSamples, convex: NDArray[np.bool_], region: In
     rim[a[~inside]] = rim[b[~inside]] = True
     blocked = convex & ~interference_free
     both = inside & blocked[a] & blocked[b]
-    graph = coo_array((np.ones(int(both.sum()), np.int8), (a[both], b[both])), shape=(n, n))
-    count, island = connected_components(graph, directed=False)
-    reached = np.zeros(count, bool)
+    island, reached = connected(n, samples.neighbours[both]), np.zeros(n, bool)
     reached[island[blocked & rim]] = True
     marched = ~(blocked & reached[island])
     return int((marched[convex] != interference_free[convex]).sum())

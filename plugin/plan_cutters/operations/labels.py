@@ -18,9 +18,10 @@ from itertools import cycle, islice
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components, maximum_flow
+from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
 from cad_io.arrays import Floats, Ints
+from cad_io.graphs import connected
 from plan_cutters.domain.preference import is_bent
 from plan_cutters.scene.preparation import Prepared
 
@@ -161,9 +162,7 @@ def _expanded(
 def pieces(label: Ints, edge: Ints) -> Ints:
     """Connected samples of one operation (n,), numbered from 0; -1 where there is none."""
     same = (label[edge[:, 0]] == label[edge[:, 1]]) & (label[edge[:, 0]] >= 0)
-    a, b = edge[same].T
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(len(label), len(label)))
-    components = connected_components(graph, directed=False)[1]
+    components = connected(len(label), edge[same])
     number = np.full(len(label), -1, np.int32)
     mine = label >= 0
     number[mine] = np.unique(components[mine], return_inverse=True)[1]

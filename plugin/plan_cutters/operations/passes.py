@@ -12,6 +12,7 @@ second order stands for the section.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -73,6 +74,13 @@ class Extents:
         first = self._samples.direction_max[rows]
         return first, cross(self._samples.normal[rows], first)
 
+    @cached_property
+    def _unit(self) -> Floats:
+        """Unit normals (t, 3) of the triangles, either way."""
+        vertex = self._obstacles.triangles.vertex
+        wide = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+        return np.asarray(wide / np.maximum(1e-300, np.linalg.norm(wide, axis=1, keepdims=True)))
+
     def _measure(self, rows: Rows) -> None:
         from scipy.spatial import cKDTree
 
@@ -83,14 +91,12 @@ class Extents:
             every = np.flatnonzero(face == number)
             self._measured[every] = True
             known = every[np.isfinite(samples.direction_max[every]).all(axis=1) & np.isfinite(samples.normal[every]).all(axis=1)]
-            vertex = triangles.vertex[triangles.face == number]
-            if not len(known) or not len(vertex):
+            own = self._obstacles.rows_of([number])
+            if not len(known) or not len(own):
                 continue
-            own, smooth = len(vertex), self._pairs[(self._pairs == number).any(axis=1)]
-            others = np.isin(triangles.face, smooth[smooth != number])
-            vertex = np.concatenate([vertex, triangles.vertex[others]])
-            wide = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
-            unit = wide / np.maximum(1e-300, np.linalg.norm(wide, axis=1, keepdims=True))
+            smooth = self._pairs[(self._pairs == number).any(axis=1)]
+            all_of = np.concatenate([own, self._obstacles.rows_of(smooth[smooth != number].tolist())])
+            vertex, unit = triangles.vertex[all_of], self._unit[all_of]
             most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
             some = known[:: 1 + len(known) // most]
             first, second = self._frame(some)
@@ -101,7 +107,7 @@ class Extents:
                 turn = k * math.pi / DIRECTIONS
                 along = np.ascontiguousarray(math.cos(turn) * first + math.sin(turn) * second)
                 lengths = np.empty((3, len(some)))
-                sections(point, along, normal, vertex, unit, own, _GOES_ON, near, near, *lengths)
+                sections(point, along, normal, vertex, unit, len(own), _GOES_ON, near, near, *lengths)
                 self._length[:, known, k] = lengths[:, nearest]
             # A sample has its area there: what the triangles about a border say is no less than that allows.
             longest = np.nan_to_num(self._length[0, known]).max(axis=1)

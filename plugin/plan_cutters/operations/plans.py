@@ -287,9 +287,9 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     samples, options, number = task.ready.samples, task.ready.options, made.number
     area, operations = np.nan_to_num(samples.area), list(made.operations)
     # The faces of free form that several operations cut, the largest first.
-    size, pairs = np.bincount(samples.face, area), np.unique(np.column_stack([samples.face, number])[number >= 0], axis=0)[:, 0]
-    several = np.unique(pairs[1:][pairs[1:] == pairs[:-1]])
-    sculptured = several[np.isin(several, sampled_faces(task.ready, "sculptured".__eq__))].tolist()
+    size, pairs = np.bincount(samples.face, area), np.unique(np.column_stack([samples.face, number])[number >= 0], axis=0)
+    face, count = np.unique(pairs[:, 0], return_counts=True)
+    sculptured = np.intersect1d(face[count > 1], sampled_faces(task.ready, "sculptured".__eq__)).tolist()
     free_form = sorted(sculptured, key=lambda each: -size[each])
     if len(free_form) and options.index_step is None and own is None:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}

@@ -6,10 +6,9 @@ from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.graphs import connected
 from plan_cutters.document.build import counts, degrees
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.cutter import Cutter
@@ -92,8 +91,7 @@ def _shown_at(plan: OperationPlan, samples: SurfaceSamples) -> list[int]:
     """
     label, edge = plan.label, samples.neighbours
     same = edge[label[edge[:, 0]] == label[edge[:, 1]]]
-    graph = coo_array((np.ones(len(same), np.int8), tuple(same.T)), shape=(len(label), len(label)))
-    piece = connected_components(graph, directed=False)[1]
+    piece = connected(len(label), same)
     area, samples_shown = np.nan_to_num(samples.area), []
     for k in range(len(plan.operations)):
         rows = np.flatnonzero(label == k)
