@@ -13,6 +13,7 @@ from plan_cutters_check.check import check
 from plan_cutters_check.findings import leaves, pattern
 from tests.support.forging import forged, put
 from tests.support.unchecked import UNCHECKED, listed
+from tests.support.written_plan import WORDS, Written, write
 
 #: Entries for which the checker puts many tools down.
 _SLOW = ("plans[].operations[].clearance_mm", "fewest.alone")
@@ -223,9 +224,13 @@ class TestTheForgeriesOfTheTrial:
         assert not found(written, document).holds
 
     @pytest.mark.slow("checks a plan many times")
-    def test_more_chosen_than_the_plan_needs(self, written):
-        """At least 50 by branch and bound, with 50 chosen: the plan itself does with fewer."""
+    def test_more_chosen_than_the_plan_needs(self, tmp_path):
+        """At least 50 by branch and bound, with 50 chosen: the plan itself does with one, and none of its steps moves."""
+        words = {**WORDS, "faces": "1"}
+        write(tmp_path, words)
+        written = Written(tmp_path, words=words)
         document, arrays = written.copies()
+        assert [each["mode"] for each in document["operations"]["plans"][0]["operations"]] == ["fixed"]
         few = document["operations"]["fewest"]
         chosen = arrays["operations.npz"]["chosen"]
         more = np.setdiff1d(np.arange(50 + len(chosen)), chosen)[: 50 - len(chosen)]

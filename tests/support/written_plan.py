@@ -25,9 +25,9 @@ TYPED = ("--cutter", "R3L40rc1F12S3", "--cutter", "R2L40rc2F10S3", "--holder", "
 FILES = ("operations.npz", "samples.npz")
 
 
-def write(folder: Path) -> None:
+def write(folder: Path, words: dict | None = None) -> None:
     """Plan, and write what the checker reads."""
-    plan(PART, operations="both", feed=2000, area_budget=2000, **WORDS).write(folder, ["json", "npz"])
+    plan(PART, operations="both", feed=2000, area_budget=2000, **(words or WORDS)).write(folder, ["json", "npz"])
 
 
 class Written:
