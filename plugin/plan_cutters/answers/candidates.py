@@ -5,14 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
 
 from cad_io.arrays import Floats, Record, Triangles, rows_by_face
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.setups.bearing import Bearing, centre_of_mass
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
 #: Triangles of a face whose heights are reckoned at once.
 _AT_ONCE = 10_000
+#: Planes whose areas differ by less than this factor are as large, and heights by this share of the lowest.
+_LARGER, _LOWER = 1.1, 1e-3
 #: Directions nearer than this are one: cosine of 0.1 deg.
 _ONE = float(np.cos(np.radians(0.1)))
 
@@ -29,14 +34,39 @@ class Candidates(Record):
     stands_on: tuple[tuple[int, ...], ...]
     lowest: Floats
     tall: Floats
+    bearing: tuple[Bearing, ...]  #: How the part stands on these planes.
 
     @classmethod
     def of(cls, ready: Prepared) -> "Candidates":
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
         triangles, planar = _of_part(ready)
+        vertex, sign = triangles.vertex, ready.scene.orientation.sign[triangles.face - 1]
         axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
         reach = _Reach.of(triangles, axis)
-        return cls(axis, reach.stood_on(ready, planar), reach.lowest, reach.high.max(axis=0) - reach.lowest)
+        stands_on, tall = reach.stood_on(ready, planar), reach.high.max(axis=0) - reach.lowest
+        corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)
+        centre = centre_of_mass(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
+        try:
+            outline = corner[ConvexHull(corner).vertices]
+        except QhullError:
+            outline = corner
+        bearing = []
+        for k, faces in enumerate(stands_on):
+            across = frame_of(axis[k])[:2].T
+            below = np.concatenate([np.zeros((0, 3)), *(vertex[rows[n]].reshape(-1, 3) for n in faces)])
+            bearing.append(Bearing.of(outline @ across, below @ across, centre @ across, float(tall[k])))
+        return cls(axis, stands_on, reach.lowest, tall, tuple(bearing))
+
+    def preferred(self, every: Sequence[int]) -> list[int]:
+        """Some of them in the order in which one would stand the part: firmly, on a large plane, low, along its own axes."""
+
+        def place(k: int) -> tuple[object, ...]:
+            mine, least = self.bearing[k], max(1e-300, min(each.slender for each in self.bearing))
+            large = round(np.log(mine.area) / np.log(_LARGER)) if mine.firm else 0
+            off = np.abs(self.axis[k]).max() < _ONE
+            return not mine.firm, -large, round(mine.slender / (_LOWER * least)) if np.isfinite(mine.slender) else np.inf, off, k
+
+        return sorted(every, key=place)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

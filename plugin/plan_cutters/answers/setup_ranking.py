@@ -8,6 +8,7 @@ chuck as well. It promises; the plan of that setup decides.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -45,6 +46,7 @@ class Held:
     `hidden`: area of the target faces that jaws touch, mm2.
     `words`: what it is and what it grips; empty for a table.
     `why`: why it was taken; empty where only one was tried.
+    `soft`: why the part needs soft jaws or a nest; empty where it stands, or is gripped, as it is.
     """
 
     fixture: Fixture
@@ -54,6 +56,7 @@ class Held:
     hidden: float = 0.0
     words: str = ""
     why: str = ""
+    soft: str = ""
 
     @property
     def kind(self) -> Any:
@@ -77,7 +80,7 @@ def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surrounding
     held, hold = Held(placed.fixture, among(surroundings)), placed.hold
     if hold is None:
         return held
-    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words)
+    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words, soft=hold.soft)
 
 
 def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
@@ -88,13 +91,15 @@ def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Hel
     """
     whole = max(1e-300, float(weight.sum()))
     share = {each.kind: float(weight @ each.served) / whole for each in tried}
-    gripping = [each for each in tried if each.kind != TABLE]
-    best = max(gripping or tried, key=lambda each: share[each.kind])
-    if share[best.kind] < _GRIPPED_FOR * share.get(TABLE, 0.0):
-        best = next(each for each in tried if each.kind == TABLE)
+    able = [each for each in tried if not each.soft] or tried
+    gripping = [each for each in able if each.kind != TABLE]
+    best = max(gripping or able, key=lambda each: share[each.kind])
+    if any(each.kind == TABLE for each in able) and share[best.kind] < _GRIPPED_FOR * share[TABLE]:
+        best = next(each for each in able if each.kind == TABLE)
     served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
     served[0] += " of the samples' area"
-    nothing = [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
+    nothing = [f"a {each.kind} needs soft jaws or a nest ({each.soft})" for each in tried if each.soft]
+    nothing += [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
     left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
     return replace(best, why=f"{', '.join([*served, *nothing])}{left}")
 
@@ -106,12 +111,14 @@ Table = NDArray[np.bool_]
 COMPARED, _FIRST, _MORE = 400, 10, 6
 #: Heights over the table are told apart in so many steps; shares nearer than the second are equal.
 _HEIGHTS, _EVEN = 12, 0.002
-#: Directions in which the part lies lowest are searched, too, at most so many; heights nearer than this share are equal.
-_LOW, _EVEN_HEIGHT = 2, 1e-3
+#: Directions in which one would stand the part are searched, too, at most so many; and another one is taken for this share of the
+#: area and more.
+_STOOD, _TURNED_FOR = 2, 0.02
 #: Where a tool is found below the table, postures that lean so far from the setup axis at most are tried, rad.
 _UPRIGHT = float(np.radians(60.0))
-#: A setup that stands on no plane counts so much: it needs more to hold it than a table.
-_ON_NO_PLANE = 0.75
+#: A setup in which the part does not stand by itself counts so much in a search; one in which nothing holds it firmly, without
+#: soft jaws or a nest, is taken where the others serve less than this share of what it serves.
+_UNSTEADY, _SOFT = 0.75, 0.5
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
 
@@ -177,6 +184,7 @@ class Ranking:
     held: dict[int, Held | None] = field(default_factory=dict)
     settled: set[int] = field(default_factory=set)
     refused: dict[str, None] = field(default_factory=dict)
+    gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.
 
     @classmethod
     def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,)) -> "Ranking":
@@ -216,7 +224,7 @@ class Ranking:
 
     def search(self, open_rows: NDArray[np.bool_], most: int) -> None:
         """Search the directions that may serve most of what is left (r,), at most so many, while they may beat what was found."""
-        worth = np.array([1.0 if each else _ON_NO_PLANE for each in self.candidates.stands_on])
+        worth = np.array([1.0 if each.firm else _UNSTEADY for each in self.candidates.bearing])
         upper = worth * self.share(self.bound & open_rows[:, None])
         order = np.lexsort((np.arange(len(upper)), -np.round(upper / _EVEN)))
         best, tried = 0.0, 0
@@ -226,15 +234,24 @@ class Ranking:
             tried += k not in self.held
             best = max(best, float(worth[k] * self.share((self._searched(k) & open_rows)[:, None])[0]))
 
-    def search_lowest(self) -> None:
-        """Search the directions in which the part lies lowest on a plane, as one would clamp it if nothing speaks against it."""
+    def search_stood(self) -> None:
+        """Search the directions in which one would stand the part if nothing speaks against it."""
         flat = [k for k, planes in enumerate(self.candidates.stands_on) if planes and self.bound[:, k].any()]
-        for k in self._lowest_first(flat)[:_LOW]:
+        for k in self.candidates.preferred(flat)[:_STOOD]:
             self._searched(k)
 
-    def _lowest_first(self, every: Sequence[int]) -> list[int]:
-        least = max(1e-300, float(self.candidates.tall.min()))
-        return sorted(every, key=lambda k: (round(float(self.candidates.tall[k]) / (_EVEN_HEIGHT * least)), k))
+    def steady(self, k: int) -> bool:
+        """Whether something holds the part in a direction that was searched without soft jaws or a nest."""
+        held = self.held[k]
+        if held is None or not held.soft:
+            return held is not None
+        if k not in self.gripped:
+            self.gripped[k] = False
+            for word in self.words[1:] if self.over_table and k not in self.settled else ():
+                with suppress(NothingToGripError):
+                    x, y, z = self.candidates.axis[k].tolist()
+                    self.gripped[k] |= not self.ready.scene.hold(Fixture.each_of(word)[0], (x, y, z)).soft
+        return self.gripped[k]
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture in a direction, of the rows (r,); nowhere if nothing can hold the part."""
@@ -280,7 +297,15 @@ class Ranking:
             for usual in (True, False):
                 rows = self.rows[self.bound[:, k] & (self.usual == usual)]
                 reached |= _reached(self.ready, rows[~reached[rows]], conditions, usual=usual, above=above)
-        return Held(Fixture.each_of(TABLE)[0], reached[self.rows])
+        return Held(Fixture.each_of(TABLE)[0], reached[self.rows], soft=self._stands_soft(k))
+
+    def _stands_soft(self, k: int) -> str:
+        """Why a part that lies on a table in a direction needs a nest; empty where it stands by itself."""
+        mine = self.candidates.bearing[k]
+        if mine.firm:
+            return ""
+        on = f"{area(mine.area)} that it stands on" if mine.broad else f"it stands on {area(mine.area)}"
+        return f"{on} do not carry it" if mine.broad else on
 
     def _held_by(self, k: int, word: str, bound: NDArray[np.bool_]) -> Held:
         x, y, z = self.candidates.axis[k].tolist()
@@ -292,19 +317,29 @@ class Ranking:
                 reached |= _reached(self.ready, self.rows[bound & (self.usual == usual)], conditions, usual=usual)
             return reached[self.rows]
 
-        return held_by(self.ready, (x, y, z), word, among)
+        held = held_by(self.ready, (x, y, z), word, among)
+        return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
 
-        Of as many that serve as much, those are taken in which the part lies lower.
+        Of as many that serve as much, those are taken in which one would rather stand the part; and such a one instead of
+        another, if less than 2 % of the area speaks against it.
 
         `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
-        every = self._lowest_first([k for k, held in self.held.items() if held is not None and k not in without])
-        flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
-        free = self._chosen(every, most)
-        return self._worth(flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free)
+        every = self.candidates.preferred([k for k, held in self.held.items() if held is not None and k not in without])
+        steady = [k for k in every if self.steady(k)]
+        firm, free = self._chosen(steady, most), self._chosen(every, most)
+        if self._together(firm) < _SOFT * self._together(free):
+            return self._worth(free)
+        chosen, least = list(self._worth(firm)), self._together(firm) - _TURNED_FOR
+        for i, k in enumerate(chosen):
+            for other in steady[: steady.index(k)]:
+                if other not in chosen and self._together([*chosen[:i], other, *chosen[i + 1 :]]) >= least:
+                    chosen[i] = other
+                    break
+        return tuple(chosen)
 
     def _worth(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
         """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again."""
@@ -385,7 +420,7 @@ def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,)) -> Ran
     """
     ranking = Ranking.of(ready, words)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
-    ranking.search_lowest()
+    ranking.search_stood()
     for number in range(1, most):
         chosen = ranking.choose(number)
         done = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)

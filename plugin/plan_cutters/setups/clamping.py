@@ -34,6 +34,7 @@ class Hold:
     `rests_on`: numbers of the planar faces with which the part rests in it.
     `hidden`: area of the faces to machine that its jaws touch, mm2.
     `words`: what it is and what it grips, for people.
+    `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
     """
 
     fixture: Fixture
@@ -41,6 +42,7 @@ class Hold:
     rests_on: tuple[int, ...]
     hidden: float
     words: str
+    soft: str = ""
 
     @property
     def faces(self) -> tuple[int, ...]:
@@ -66,9 +68,8 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
     places.sort(
-        key=lambda each: (each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above, round(each.off, 6),
-                          -round(each.size, 6), each.apart,
-                          each.grips)
+        key=lambda each: (each.soft != "", each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above,
+                          round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
     searched = 0
     for place in places:
@@ -126,7 +127,8 @@ def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place)
     left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
     what, across = _called(clamping)
     words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
-    return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}; {left}")
+    soft = f"; it needs soft jaws or a nest: {place.soft}" if place.soft else ""
+    return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}{soft}; {left}", place.soft)
 
 
 def _rests_on(part: Workpiece, place: Place) -> tuple[int, ...]:

@@ -143,6 +143,8 @@ _WALLS = 300
 _TOUCHED, _ALONG = 0.2, 0.5
 #: A part stands at most so many times as high over the jaws as what they touch of it is long.
 _TALL = 6.0
+#: Plain jaws touch so much of the part's length along them, mm or as a share; less of its footprint between them is a lug.
+_LONG, _LONG_SHARE, _LUG = 15.0, 1.0 / 3.0, 0.25
 
 
 def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
@@ -223,7 +225,8 @@ def _at(
         wide = f"{names} are {mm(right - left)} apart, and the vise opens to {mm(widest)}"
         return [], wide if right - left > widest else f"{names} begin too high above its lowest point for the jaws"
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
-    tall = float(part.vertex[..., 2].max())
+    tall, bearing = float(part.vertex[..., 2].max()), part.bearing(0.0, above)
+    lug = (right - left) * (end - start) < _LUG * bearing.footprint
     places, why = list[Place](), apart
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
     for middle in middles:
@@ -237,9 +240,18 @@ def _at(
         hidden = sum(area_of(vertex[np.isin(face, list(part.targets))]) for vertex, face in touched)
         grips = tuple(sorted({int(n) for _, face in touched for n in face}))
         origin = 0.5 * (left + right) * x + middle * y + np.array([0.0, 0.0, above])
+        soft = ""
+        if lug:
+            soft = "what they grip is a lug"
+        elif not (left < part.centre @ x < right and abs(part.centre @ y - middle) < half):
+            soft = "the middle of the part is not between them"
+        elif least / reach < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
+            soft = f"they touch {mm(least / reach)} of its length"
+        elif not bearing.broad:
+            soft = "hardly any plane of the part rests in them"
         place = Place(
             vise, x, origin, grips, least, hidden, above, size, float(np.linalg.norm((origin - part.middle)[:2])),
-            float(np.abs((part.outline - origin) @ x).max()),
+            float(np.abs((part.outline - origin) @ x).max()), soft,
         )  # fmt: skip
         if above > 0.0 or on_ledges(vise, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             places.append(place)

@@ -18,6 +18,7 @@ from cad_io.part.bodies import Body
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import frame_of
+from plan_cutters.setups.bearing import Bearing, centre_of_mass
 
 #: Faces that are off the setup axis, or off each other, by a smaller sine are parallel: 0.1 deg.
 PARALLEL = float(np.sin(np.radians(0.1)))
@@ -98,6 +99,17 @@ class Workpiece(Record):
             return corner
 
     @cached_property
+    def centre(self) -> Floats:
+        """Its centre of mass (3,)."""
+        return centre_of_mass(self.vertex, self.normal)
+
+    def bearing(self, *heights: float) -> Bearing:
+        """How it stands on its planar faces that look down at some heights."""
+        level = np.logical_or.reduce([self.level(each) for each in heights])
+        below = self.vertex[level].reshape(-1, 3)[:, :2]
+        return Bearing.of(self.outline[:, :2], below, self.centre[:2], float(self.vertex[..., 2].max()))
+
+    @cached_property
     def lowest_rows(self) -> NDArray[np.int64]:
         """Rows of the triangles that touch its lowest point's height."""
         return np.flatnonzero(self.vertex[..., 2].min(axis=1) <= self.flat)
@@ -132,6 +144,7 @@ class Place:
     `size`: area of what could be gripped if jaws were as large, on the side where that is less, mm2.
     `off`: how far its middle is from the middle of the part, seen from above, mm.
     `farthest`: how far the part reaches from its middle across the jaws, mm.
+    `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
     """
 
     clamping: Clamping
@@ -144,6 +157,7 @@ class Place:
     size: float
     off: float
     farthest: float
+    soft: str = ""
 
     @property
     def rank(self) -> tuple[bool, float]:
