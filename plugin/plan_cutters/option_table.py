@@ -93,6 +93,12 @@ _MACHINE = (
         "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
         "can grip there. With --setup auto all three are tried, or the one that is given. Repeatable.",
     ),
+    Option(
+        "stock", str, None, brief="What the first setup grips: box, cylinder, FILE, part.",
+        help="What the part is made of: `box[:X,Y,Z]`, margins on each side and below, mm; `cylinder[:R,Z]` along the setup "
+        "axis; a STEP file or mesh; or `part`: it is there but for its last cut. A vise or chuck of the first setup grips the "
+        "stock below the part, and hides none of its faces.  [default: box where --setup auto places a vise, else part]",
+    ),
 )  # fmt: skip
 
 _FACES = (
@@ -220,6 +226,10 @@ _OPERATIONS = (
     ),
     Option("change_time", float, 20.0, "Seconds that another cutter takes.", unit="s", limits=(0.0, 1e5)),
     Option("setup_time", float, 300.0, "Seconds that another setup takes.", unit="s", limits=(0.0, 1e6)),
+    Option(
+        "removal_rate", float, None, unit="cm3/min", limits=_POSITIVE,
+        help="Of roughing, so that its minutes are told.  [default: the volume alone]",
+    ),
     Option("overlap", float, 2.0, "Overlap of operations at a common border.", unit="mm", limits=(0.0, 1e3)),
     Option("link_time", float, 1.0, "Seconds from the end of a pass to the next.", unit="s", limits=(0.0, 1e4)),
     Option(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import Angle, choice, degrees_too, did_you_mean, flag, not_empty, number, shown, whole
+from plan_cutters.domain.clamping import VISE
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.fixture import Fixture
@@ -21,6 +22,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.standard_tools import builtin
+from plan_cutters.domain.stock import BOX, PART, Stock
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
@@ -94,6 +96,7 @@ class PlanOptions(SceneOptions, total=False):
     index_time: float | None
     change_time: float
     setup_time: float
+    removal_rate: float | None
     overlap: float
     link_time: float
     border_cost: float
@@ -108,6 +111,7 @@ class PlanOptions(SceneOptions, total=False):
     placement: Placement | None
     other_placements: Sequence[Placement | None]
     propose: bool
+    stock: str | None
 
 
 def machine_option(value: Any) -> Machine:
@@ -228,6 +232,8 @@ class Options:
         How the part stands in `setup`, and in each of `other_setups`, where more than the axis is known.
     propose : bool
         The setups are to be proposed: as `setup="auto"` says it.
+    stock : str
+        What the first setup grips, in the words of the command line. `part` unless it is given, or a vise may be proposed.
 
     Raises
     ------
@@ -277,6 +283,7 @@ class Options:
     index_time: float | None
     change_time: float
     setup_time: float
+    removal_rate: float | None
     overlap: float
     link_time: float
     border_cost: float
@@ -292,6 +299,7 @@ class Options:
     placement: Placement | None
     other_placements: tuple[Placement | None, ...]
     propose: bool
+    stock: str  #: As given, with all its numbers; `part` unless it was given or a vise is proposed.
 
     if TYPE_CHECKING:
 
@@ -325,8 +333,11 @@ class Options:
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
         take(machine=machine_option(self.machine))
+        stock = None if self.stock is None else Stock.of(self.stock)
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
-                            propose=flag(self.propose, "propose")))  # fmt: skip
+                            propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
+        vise = self.propose and (not self.fixtures or self.fixtures[0].kind == VISE)
+        take(stock=(stock or Stock.of(BOX if vise else PART)).text)
         take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))
         take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
         for word, each in OPTIONS.items():

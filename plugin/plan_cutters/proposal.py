@@ -17,6 +17,7 @@ from plan_cutters.domain.clamping import CHUCK, VISE
 from plan_cutters.domain.figures import exact, percent
 from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
+from plan_cutters.domain.stock import PART, Stock
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
 from plan_cutters.options import Options
@@ -83,11 +84,11 @@ def judged_proposed(
         In no direction is anything within the limits or reached, or no proposal can be planned.
     """
     words = _words(options)
-    unproposed = replace(options, propose=False, fixtures=())
+    unproposed, stock = replace(options, propose=False, fixtures=(), stock=PART), Stock.of(options.stock)
     ready = stages.prepare(part, unproposed)
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with stages.clock.stage("proposal"):
-        ranking = ranked(ready, MOST_PROPOSED, words)
+        ranking = ranked(ready, MOST_PROPOSED, words, stock if stock.solid else None)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
@@ -193,15 +194,17 @@ def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder
     first, *others = (
         Placement(
             _axis(ranking, k),
-            clamped=_rests_on(ranking, k),
-            fixtures=(_held(ranking, k).fixture,),
+            clamped=() if _held(ranking, k).stock else _rests_on(ranking, k),
+            fixtures=tuple(each for each in (_held(ranking, k).stock, _held(ranking, k).fixture) if each is not None),
             stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or below)}),
             file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
             proposed=True,
         )
         for number, (k, below) in enumerate(zip(chosen, touched, strict=True), 1)
     )
-    return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
+    stock = _held(ranking, chosen[0]).stock
+    words = PART if stock is None or stock.stock is None else stock.stock.text
+    return replace(options, setup=first.z, placement=first, stock=words, other_setups=tuple(each.z for each in others),
                    other_placements=tuple(others), unit=None)  # fmt: skip
 
 
@@ -249,12 +252,13 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
     held = _held(ranking, k)
     return ProposedSetup(
         axis=_axis(ranking, k),
-        stands_on=list(_rests_on(ranking, k)),
+        stands_on=[] if held.stock else list(_rests_on(ranking, k)),
         clamping=held.kind,
         grips=list(_named(held.grips)),
         hidden_mm2=held.hidden,
         how_held=held.words,
-        fixtures=[held.fixture.text],
+        fixtures=[each.text for each in (held.stock, held.fixture) if each is not None],
+        soft=held.soft,
         why_held=held.why,
         left_for=left,
         promised=promised,
@@ -262,6 +266,8 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
 
 
 def _stands(setup: ProposedSetup) -> str:
+    if len(setup.fixtures) > 1:
+        return f"in a {setup.clamping} that grips the stock"
     if setup.clamping != TABLE:
         return f"in a {setup.clamping} that grips {', '.join(setup.grips)}"
     return f"on {', '.join(setup.stands_on)}" if setup.stands_on else "on no plane"
@@ -287,4 +293,9 @@ def _described(
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
-    return noted(plan, setup_proposed(where, why), setup_proposal=entry)
+    process = plan.process
+    if process is not None:
+        # Where it was placed by the search, the plan knows the jaws, and not why they are soft.
+        stands = [s.model_copy(update={"soft": each.soft}) for s, each in zip(process.setups, setups, strict=False)]
+        process = process.model_copy(update={"setups": stands})
+    return noted(plan, setup_proposed(where, why), setup_proposal=entry, process=process)

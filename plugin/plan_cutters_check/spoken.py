@@ -12,7 +12,7 @@ from plan_cutters_check.paper import without_posture
 from plan_cutters_check.reckoned import Reckoned
 
 _HEAD = re.compile(
-    r"(?P<share>[<>]?[\d.]+) % of the (?P<area>[\d,.]+) (?P<unit>mm|in)² to machine"
+    r"finish(?:es)? (?:(?P<share>[<>]?[\d.]+) % of|any of|all) (?P<area>[\d,.]+) (?P<unit>mm|in)²"
     r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?\.$"
 )
 _STEP = re.compile(
@@ -45,7 +45,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     if head is not None:
         size = 25.4**2 if head["unit"] == "in" else 1.0
         pairs = [
-            ("share", _share(head["share"]), process["finished_share"]),
+            ("share", _share(head["share"] or ("0" if "finishes any of" in head[0] else "100")), process["finished_share"]),
             ("area", _span(head["area"]), process["asked_mm2"] / size),
             ("time", _time(head["took"]), process["seconds"]),
             ("time to clamp", _time(head["again"]), process["setup_seconds"] or None),

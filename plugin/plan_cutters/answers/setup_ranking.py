@@ -22,6 +22,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area, percent
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.preference import group_of
+from plan_cutters.domain.stock import Stock
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.limits import within_limits
@@ -57,6 +58,7 @@ class Held:
     words: str = ""
     why: str = ""
     soft: str = ""
+    stock: Fixture | None = None  #: What is gripped, if that is stock.
 
     @property
     def kind(self) -> Any:
@@ -69,15 +71,17 @@ class Held:
         return (*self.grips, *self.rests_on)
 
 
-def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]]) -> Held:
-    """Hold a part along an axis by a table, vise or chuck, and find where a posture is among it.
+def held_by(
+    ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]], stock: Stock | None = None
+) -> Held:
+    """Hold a part, or its stock, along an axis by a table, vise or chuck, and find where a posture is among it.
 
     `axis` (float, float, float). `word`: `table`, or the word of a vise or chuck. `among`: where any cutter has a posture among
     some obstacles, (r,). Raises NothingToGripError.
     """
-    surroundings = ready.scene.surround_held(axis, word)
-    (placed,) = surroundings.fixtures
-    held, hold = Held(placed.fixture, among(surroundings)), placed.hold
+    surroundings = ready.scene.surround_held(axis, word, stock)
+    *blank, placed = surroundings.fixtures
+    held, hold = Held(placed.fixture, among(surroundings), stock=blank[0].fixture if blank else None), placed.hold
     if hold is None:
         return held
     return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words, soft=hold.soft)
@@ -184,11 +188,13 @@ class Ranking:
     held: dict[int, Held | None] = field(default_factory=dict)
     settled: set[int] = field(default_factory=set)
     refused: dict[str, None] = field(default_factory=dict)
+    stock: Stock | None = None  #: What the first setup grips; None: the part.
+    stocked: dict[int, Held] = field(default_factory=dict)  #: By candidate that was the first: how its stock is gripped.
     gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.
 
     @classmethod
-    def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,)) -> "Ranking":
-        """Rank the directions of a part by the bound; `words` as the attribute.
+    def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None) -> "Ranking":
+        """Rank the directions of a part by the bound; `words` and `stock` as the attributes.
 
         Raises OptionError: in no direction does the machine hold any axis at which a cutter touches.
         """
@@ -211,7 +217,7 @@ class Ranking:
         if len(_usual(ready.cutters)) < len(ready.cutters):
             free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
         every = free[rows] if free.any() else np.ones(len(rows), bool)
-        return cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words)
+        return cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words, stock=stock)
 
     @property
     def area(self) -> Floats:
@@ -269,7 +275,10 @@ class Ranking:
         return np.zeros(len(self.rows), bool) if held is None else held.served
 
     def settle(self, chosen: Sequence[int]) -> None:
-        """Try in directions that were chosen whatever may hold the part, and take what holds it best."""
+        """Try in directions that were chosen whatever may hold the part, and take what holds it best; in the first one its stock
+        is gripped."""
+        if chosen and self.stock is not None:
+            self._settle_stock(chosen[0])
         # What was searched with a vise or chuck is known with it; a table was only a plane.
         words = self.words if self.over_table else self.words[1:]
         for k in [k for k in chosen if k not in self.settled and words]:
@@ -281,6 +290,16 @@ class Ranking:
                 except NothingToGripError as error:
                     refused[word] = error.why
             self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
+
+    def _settle_stock(self, k: int) -> None:
+        """Grip the stock in a direction, if what is named can."""
+        for word in [each for each in self.words if each != TABLE] if k not in self.stocked else ():
+            with suppress(NothingToGripError):
+                # Beside what stands below the part a tool may be lower than it.
+                bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                self.held[k] = self.stocked[k] = self._held_by(k, word, bound, self.stock)
+                self.settled.add(k)
+                return
 
     @property
     def over_table(self) -> bool:
@@ -307,7 +326,7 @@ class Ranking:
         on = f"{area(mine.area)} that it stands on" if mine.broad else f"it stands on {area(mine.area)}"
         return f"{on} do not carry it" if mine.broad else on
 
-    def _held_by(self, k: int, word: str, bound: NDArray[np.bool_]) -> Held:
+    def _held_by(self, k: int, word: str, bound: NDArray[np.bool_], stock: Stock | None = None) -> Held:
         x, y, z = self.candidates.axis[k].tolist()
 
         def among(surroundings: Surroundings) -> NDArray[np.bool_]:
@@ -317,7 +336,7 @@ class Ranking:
                 reached |= _reached(self.ready, self.rows[bound & (self.usual == usual)], conditions, usual=usual)
             return reached[self.rows]
 
-        held = held_by(self.ready, (x, y, z), word, among)
+        held = held_by(self.ready, (x, y, z), word, among, stock)
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
@@ -412,13 +431,13 @@ def _reached(
     return reached
 
 
-def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,)) -> Ranking:
+def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
     `ready`: in any setup, without fixtures. `most`: setups that may be proposed together. `words`: what may hold the part: as the
-    attribute of `Ranking`. Raises OptionError: as for `Ranking.of`.
+    attribute of `Ranking`, as `stock`. Raises OptionError: as for `Ranking.of`.
     """
-    ranking = Ranking.of(ready, words)
+    ranking = Ranking.of(ready, words, stock)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
     ranking.search_stood()
     for number in range(1, most):

@@ -140,7 +140,7 @@ def _process(ready: Prepared) -> dict[str, Any] | None:
 
 def as_requested(options: Options, name: str) -> Any:
     """The option of an entry's name."""
-    value = getattr(options, re.sub("_(mm|deg|s|mm_min)$", "", name))
+    value = getattr(options, re.sub("_(mm|deg|s|mm_min|cm3_min)$", "", name))
     if value is None or not name.endswith("_deg"):
         return value
     return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))

@@ -12,11 +12,12 @@ from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.checks import did_you_mean, name, number, numbers, shown
 from plan_cutters.domain.clamping import CHUCK, FORMS, VISE, Clamping, Requested, requested
+from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import FixtureError
 
 #: Simple fixtures by words: what each number is.
-WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", **FORMS}
-TABLE = "table"
+WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", "stock": "STOCK", **FORMS}
+TABLE, STOCK = "table", "stock"
 _WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|({TABLE}|{VISE}|{CHUCK})", re.IGNORECASE | re.DOTALL)
 #: Suffixes of files that are known, and what they are.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -144,7 +145,7 @@ class Fixture:
     @property
     def follows_setup(self) -> bool:
         """Whether where it lies depends on the setup axis: a table that is not turned by angles, or what is to be placed."""
-        return self.to_place or (self.kind == "table" and not any(self.placement[3:]))
+        return self.to_place or self.kind == STOCK or (self.kind == TABLE and not any(self.placement[3:]))
 
     @property
     def grips(self) -> Requested | None:
@@ -153,6 +154,11 @@ class Fixture:
             return None
         _, colon, numbers = self.source.partition(":")
         return requested(self.kind, numbers if colon else None, UNITS[self.unit or "mm"], str(self))
+
+    @property
+    def stock(self) -> Stock | None:
+        """What the first setup grips, if it is that: of it, what is below the part stands in the way. Raises OptionError."""
+        return Stock.of(self.source.partition(":")[2]) if self.kind == STOCK else None
 
     @property
     def to_place(self) -> bool:
@@ -171,6 +177,8 @@ class Fixture:
         """Numbers of a word, mm; none for files, objects and a table right below the part."""
         if (grips := self.grips) is not None:
             return grips.numbers
+        if (stock := self.stock) is not None:
+            return stock.margins
         match = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
         if match is None or match[1] is None:
             return ()

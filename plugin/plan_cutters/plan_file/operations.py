@@ -396,6 +396,33 @@ class ProcessStep(Frozen):
     own: OwnStepEntry | None = Field(default=None, description="null: the step was planned")
 
 
+class ProcessSetup(Frozen):
+    """How the part stands in a setup, and what holds it."""
+
+    number: int = Field(description="1 for the first setup")
+    up: Vector = Field(description="unit direction of the part along the spindle")
+    stands_on: list[str] | Literal["stock"] | None = Field(
+        description="planar faces below it, on the table or the ledges of jaws; stock: what the first setup grips; null: none"
+    )
+    held: str | None = Field(description="vise, chuck, table, or the name of a fixture; null: nothing was given")
+    grips: list[str] = Field(default=[], description="faces that jaws touch; none of stock")
+    apart_mm: float | None = Field(default=None, description="between the jaws of a vise; what a chuck grips is so wide")
+    grip_mm: float | None = Field(default=None, description="how high jaws reach over what the part rests on")
+    clamping: str | None = Field(default=None, description="what holds it, as --fixture takes it")
+    soft: str = Field(default="", description="why soft jaws or a nest are needed; empty: the part is held as it is")
+    text: str = ""
+
+
+class StockEntry(Frozen):
+    """What the first setup grips, and how much of it is to be roughed."""
+
+    word: str = Field(description="as --stock takes it")
+    size_mm: Vector = Field(description="of the box about it in the frame of the first setup, z along its axis")
+    volume_mm3: float
+    remove_mm3: float = Field(description="its volume less that of the part")
+    seconds: float | None = Field(description="of roughing, by --removal-rate; null: none was given")
+
+
 class NextEntry(Frozen):
     """A change that would finish more, with its effect."""
 
@@ -411,6 +438,8 @@ class ProcessEntry(Frozen):
         description="the planner's own first, then by setup; in a setup by cutter, the largest first, and with a cutter floors, "
         "walls, other fixed orientations, simultaneous motion"
     )
+    setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
+    stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")
     plan: str = Field(default="", description="the name of the plan of operations that the steps are; empty: no operations")
     finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float

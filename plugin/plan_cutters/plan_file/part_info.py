@@ -277,6 +277,7 @@ class ProposedSetup(Frozen):
     fixtures: list[str] = Field(default=["table"], description="what holds the part, as --fixture takes it")
     hidden_mm2: float = Field(default=0.0, description="area of the faces to machine that the jaws touch: for another setup")
     how_held: str = Field(default="", description="what the vise or chuck is and what it grips; empty for a table")
+    soft: str = Field(default="", description="why soft jaws or a nest are needed; empty: the part is held as it is")
     why_held: str = Field(default="", description="why it is held so; empty where nothing else was tried")
     left_for: list[HiddenFaces] = Field(default=[], description="which other setups machine what it stands on and grips")
     promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")

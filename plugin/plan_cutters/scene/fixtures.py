@@ -22,13 +22,14 @@ from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
 from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.figures import mm
-from plan_cutters.domain.fixture import CAD, MESH, Fixture, no_format
+from plan_cutters.domain.fixture import CAD, MESH, STOCK, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
+from plan_cutters.domain.stock import StockBody
 from plan_cutters.errors import FixtureError, UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
 from plan_cutters.scene.triangles import AddedTriangles, divided, pieces
-from plan_cutters.setups.clamping import Hold
+from plan_cutters.setups.clamping import Hold, held_stock
 from plan_cutters.setups.solids import box, cylinder, insides, sides_of, triangles_of
 from plan_cutters.setups.workpiece import material_bodies, unheld_bodies
 
@@ -119,11 +120,20 @@ def joined(
         return surroundings
     near = np.array(surroundings.possible.corners)
     placed_fixtures, bodies = [], []
+    blank = next((stock_body(each, across, surroundings, chord, cache) for each, across in placed if each.kind == STOCK), None)
+    below = 0.0 if blank is None else blank.part_low - float(blank.low[2])
     for number, (requested, across) in enumerate(placed, 1):
-        held = None if hold is None or not requested.to_place else hold(requested, across)
+        held = None
+        if requested.to_place and blank is not None:
+            held = held_stock(requested, blank, across, sides_of(blank.radius or 1.0, chord))
+        elif requested.to_place and hold is not None:
+            held = hold(requested, across)
         fixture = requested if held is None else held.fixture
-        bed = _bed(fixture, surroundings, across, near) if fixture.kind == "table" else None
-        body = _body(fixture, chord, cache) if bed is None else _solid(bed(TABLE), 0.0)
+        bed = _bed(fixture, surroundings, across, near, below) if fixture.kind == "table" else None
+        if blank is not None and fixture.kind == STOCK:
+            body = _foot(blank, across, chord)
+        else:
+            body = _body(fixture, chord, cache) if bed is None else _solid(bed(TABLE), 0.0)
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
         if (clamping := fixture.clamping) is not None:
             shown, _ = triangles_of(clamping, chord, shown=True)
@@ -241,10 +251,37 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     return _Body(boundary.possible, boundary.certain, tuple(missing), (*part.warnings, *notes))
 
 
-def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:
+def stock_body(
+    fixture: Fixture, setup: Sequence[float], surroundings: Surroundings, chord: float, cache: FixtureCache
+) -> StockBody:
+    """The stock about a part in the frame of a setup. Raises ReadError, OptionError: a file's is none, or does not enclose it."""
+    stock, frame = fixture.stock, frame_of(np.asarray(setup, float))
+    assert stock is not None, "only stock is made of its word"
+    part = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
+    given = None
+    if stock.file:
+        given = _body(Fixture(stock.file), chord, cache).possible.triangles.vertex.reshape(-1, 3) @ frame.T
+    return StockBody.about(stock, part.triangles.vertex.reshape(-1, 3) @ frame.T, given)
+
+
+def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:
+    """What of stock is below the part."""
+    frame, high = frame_of(np.asarray(setup, float)), np.append(blank.high[:2], blank.part_low)
+    if blank.radius is None:
+        return _solid(np.ascontiguousarray(box(blank.low, high) @ frame), 0.0)
+    sides = sides_of(blank.radius, chord)
+    middle = np.append(0.5 * (blank.low + blank.high)[:2], blank.low[2])
+    vertex = (cylinder(blank.radius, float(high[2] - blank.low[2]), sides) + middle) @ frame
+    return _solid(np.ascontiguousarray(vertex), blank.radius * (1.0 - math.cos(math.pi / sides)))
+
+
+def _bed(
+    fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats, below: float
+) -> Callable[[float], Floats]:
     """A table in its own frame, as a slab that goes so far beyond the part as is asked, mm, and is as thick.
 
-    It lies across the setup axis; if it is turned by angles, across its own z. Without a height it lies right below the part.
+    It lies across the setup axis; if it is turned by angles, across its own z. Without a height it lies right below the part, or
+    below the stock that reaches so far `below` it, mm.
     """
     # Rows: across, across and up, in the table's own frame.
     frame = frame_of(np.asarray(setup, float)) if fixture.follows_setup else np.eye(3)
@@ -258,7 +295,7 @@ def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], n
         # What surely is the part: what only stands for something missing may reach lower than anything does.
         part = surroundings.certain.lowest((fixture.rotation @ frame.T)[:, 2])
         # Its shift comes on top, as for any fixture.
-        top = float(heights(part + fixture.shift)[..., 2].min())
+        top = float(heights(part + fixture.shift)[..., 2].min()) - below
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     own = heights(corners)
 

@@ -13,9 +13,10 @@ from cad_io.part.patterns import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number, spelled_out
 from plan_cutters.domain.clamping import Clamping
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.fixture import STOCK, Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import plane_of, unit
+from plan_cutters.domain.stock import Stock
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.option_table import MOST_TOLERANCE
@@ -271,9 +272,9 @@ class Scene(Record):
         """The same part in another setup, the sides of its faces as they are, without fixtures: it is not tessellated again."""
         return self._sharing(setup=setup, fixtures=())
 
-    def surround_held(self, setup: tuple[float, float, float], word: str) -> Surroundings:
+    def surround_held(self, setup: tuple[float, float, float], word: str, stock: Stock | None = None) -> Surroundings:
         """Gather the obstacles where the part stands on a `table` across a setup axis, or in a vise or chuck, and nothing else
-        holds it.
+        holds it; or where its stock does so.
 
         The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused.
 
@@ -285,7 +286,8 @@ class Scene(Record):
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
-        return self._joined(memory.alone, Fixture.each_of(word), chord, setup)
+        blank = [] if stock is None else [Fixture(f"{STOCK}:{stock.text}")]
+        return self._joined(memory.alone, Fixture.each_of([*blank, word]), chord, setup)
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
         """Place a vise or chuck for a unit setup axis; `surround` must have been called.

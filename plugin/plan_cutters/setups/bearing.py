@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Triangles
 
 #: Of the footprint: the least share that the hull of what it stands on has, and how far inside that the centre of mass is, as a
 #: share of the side of a square as large.
@@ -76,6 +76,14 @@ def centre_of_mass(vertex: Floats, normal: Floats) -> Floats:
             return np.asarray(centre)
     size = np.linalg.norm(turned, axis=1)
     return np.asarray(size @ vertex.mean(axis=1) / max(1e-300, float(size.sum())))
+
+
+def volume(triangles: Triangles, sign: Floats) -> float:
+    """What triangles of a part enclose, mm3; `sign` (faces,): side of each face that is out of the material. 0 where none is."""
+    mine = triangles.face > 0
+    vertex, turned = triangles.vertex[mine], sign[triangles.face[mine] - 1]
+    own = vertex - vertex.mean(axis=(0, 1))
+    return max(0.0, float(turned @ (own[:, 0] * np.cross(own[:, 1], own[:, 2])).sum(axis=1)) / 6.0)
 
 
 def _hull(points: Floats) -> ConvexHull | None:

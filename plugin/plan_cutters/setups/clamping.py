@@ -4,7 +4,7 @@ No safety rests on the place (`docs/operations_proof.md`, lemma K1); how deep ja
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +13,11 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
 from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.placement import axis_words
+from plan_cutters.domain.placement import axis_words, frame_of
+from plan_cutters.domain.stock import StockBody
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups.places import chuck_places, vise_places
+from plan_cutters.setups.solids import box, cylinder
 from plan_cutters.setups.workpiece import Place, Refused, Workpiece, held_bodies, on_ledges
 
 
@@ -85,6 +87,37 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched += 1
     raise _nothing(fixture, requested, part, min(refused, key=lambda each: each.rank).why)
+
+
+def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides: int) -> Hold:
+    """Place a vise or chuck on stock, all below the part.
+
+    `fixture`: with `to_place`. `body`: in the frame of the setup. `sides`: of a cylinder as triangles. Raises NothingToGripError:
+    it cannot grip that.
+    """
+    requested = fixture.grips
+    assert requested is not None, "only a vise or chuck is placed"
+    foot = body.part_low - float(body.low[2])
+    if requested.grip > foot:
+        raise NothingToGripError(
+            f"{fixture}: its jaws grip {mm(requested.grip)} high, and the stock reaches {mm(foot)} below the part; give more "
+            "with --stock, or grip less"
+        )
+    across = frame_of(np.asarray(setup, float))
+    if body.radius is None:
+        vertex, planes = box(body.low, body.high), range(1, 7)
+        face = np.tile(np.arange(1, 7, dtype=np.int32), 2)
+    else:
+        high = float(body.high[2] - body.low[2])
+        vertex = cylinder(body.radius, high, sides) + np.append(0.5 * (body.low + body.high)[:2], body.low[2])
+        face, planes = np.repeat(np.array([1, 1, 2, 3], np.int32), sides), range(2, 4)
+    piece = Workpiece.of(vertex @ across, face, np.ones(6), planes, (), setup)
+    hold = held(fixture, piece, lambda placed, clamping: False, lambda placed, clamping: False)
+    clamping = hold.fixture.clamping
+    assert clamping is not None, "what was placed is in its place"
+    what, apart = _called(clamping)
+    words = f"{what}; it grips the stock, {apart}; the jaws reach {mm(requested.grip)} above where it rests"
+    return Hold(hold.fixture, (), (), 0.0, words)
 
 
 def _nothing(fixture: Fixture, requested: Requested, part: Workpiece, why: str) -> NothingToGripError:

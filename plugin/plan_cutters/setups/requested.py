@@ -6,9 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 from plan_cutters.domain.checks import items, shown
-from plan_cutters.domain.fixture import TABLE, Fixture
+from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along, plane_of, unit
+from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import OptionError
 
 #: The word that asks for setups to be proposed.
@@ -38,17 +39,22 @@ def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fix
 
 
 def setups_requested(
-    setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool
-) -> dict[str, Any]:
+    setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool,
+    stock: Stock | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """Give the values of the options about setups by their names.
 
     `setup`, `placement`, `others`, `other_placements`, `fixtures`: as `Options` takes them. `propose`: setups are to be proposed.
+    `stock`: what the first setup grips, if its setups are named.
     Raises OptionError: a value has no meaning, or setups are to be proposed beside some that are given.
     """
     common = Fixture.each_of(fixtures)
     if is_auto(setup):
         setup, propose = (0.0, 0.0, 1.0), True
     axis, placed = _setup(setup, placement)
+    known_stock = [each for each in (*common, *(placed.fixtures if placed else ())) if each.kind == STOCK]
+    if stock is not None and stock.solid and not propose and not known_stock:
+        placed = _holding((axis, placed), (Fixture(f"{STOCK}:{stock.text}"),))
     if placed is not None:
         if placed is not placement:
             # What stands in all setups is not this one's own.

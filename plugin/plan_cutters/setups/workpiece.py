@@ -271,6 +271,16 @@ def on_ledges(clamping: Clamping, vertex: Floats, face: Ints, flat: float) -> fr
     return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach > inner]))
 
 
+def faces_in_jaws(clamping: Clamping, vertex: Floats, face: Ints, slack: float) -> frozenset[int]:
+    """Faces that jaws touch.
+
+    `clamping`, `vertex`, `face`: as for `at_jaws`. `slack`: how far triangles may be off, mm.
+    """
+    inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
+    each = at_jaws(clamping, vertex, face, 0.0, clamping.grip)
+    return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach >= inner]))
+
+
 def held_bodies(clamping: Clamping, vertex: Floats, face: Ints, bodies: Sequence[frozenset[int]], slack: float) -> frozenset[int]:
     """Which bodies jaws hold, as numbers in `bodies`: all jaws touch them.
 

@@ -10,6 +10,7 @@ from plan_cutters.domain.figures import capital, count, duration, joined, listed
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
 from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
+from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, Scope
 from plan_cutters.plan_file.shares import part_of, reached_share
 from plan_cutters.plan_file.words.names import described
@@ -452,7 +453,8 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 
     def take(name: str, why: str, *, where: str = "") -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
-        return Headline(f"Take {names[name]}", True, about, why + could_not(plan))
+        whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process and process.finished_share >= 1.0 else ""
+        return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
 
     late = _comes_last(plan)
     if process is None or process.finished:
@@ -486,23 +488,21 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 
 
 def _title(plan: Plan, share: float, *, finished: bool) -> str:
-    """The part, on which machine, on what it stands where that was proposed; how much is finished, and in what time."""
-    proposed = plan.setup_proposal.setups if plan.setup_proposal else []
+    """The part, on which machine; in how many steps and setups how much is finished, and in what time."""
     machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
-    setups, where = 1 + len(plan.effective.other_setups), ""
-    if len(proposed) == 1 and proposed[0].clamping != "table":
-        where = f", in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
-    elif len(proposed) == 1 and proposed[0].stands_on:
-        where = f", stood on {listed(proposed[0].stands_on, 2)}"
-    elif setups > 1:
-        where = f", in {setups} setups"
-    process = plan.process
+    process, setups = plan.process, 1 + len(plan.effective.other_setups)
     whole = process.asked_mm2 if process else math.nan
-    of = f"the {mm2(whole)} to machine" if math.isfinite(whole) else "the area to machine"
-    took = f", {duration(process.seconds)}" if process and process.seconds is not None else ""
-    again = f" and {duration(process.setup_seconds)} to clamp it again" if process and process.setup_seconds else ""
+    of = mm2(whole) if math.isfinite(whole) else "the area to machine"
     much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
-    return f"{sized(plan, plan.part.file or 'part')}{machine}{where}: {much} of {of}{took}{again}"
+    steps = len(process.steps) if process else 0
+    where = f" in {setups} setups" if setups > 1 else ""
+    what = f"{count(steps, 'step')}{where} finish{'es' * (steps == 1)} {much} of" if steps else "no step finishes any of"
+    return f"{sized(plan, plan.part.file or 'part')}{machine}: {what} {of}{'' if process is None else _took(process)}"
+
+
+def _took(process: ProcessEntry) -> str:
+    took = "" if process.seconds is None else f", {duration(process.seconds)}"
+    return f"{took} and {duration(process.setup_seconds)} to clamp it again" if process.setup_seconds else took
 
 
 def every(plan: Plan) -> str:

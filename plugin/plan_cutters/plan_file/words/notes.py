@@ -302,7 +302,8 @@ def _held(plan: Plan) -> Iterator[str]:
     process = plan.process
     if process is None or not plan.machine.rotary:
         return
-    holds = {setup for fixture in plan.fixtures for setup in fixture.setups}
+    # A table lies below the part, and holds it against nothing that comes from there.
+    holds = {each.number - 1 for each in process.setups if each.held not in (None, "table")}
     below = [k for k, step in enumerate(process.steps, 1) if step.below_mm2 > 0.0 and step.setup not in holds]
     if not below:
         return
@@ -311,7 +312,7 @@ def _held(plan: Plan) -> Iterator[str]:
     which = f"step {below[0]} comes" if len(below) == 1 else f"steps {_runs(below)} come"
     setups = {step.setup for step in steps}
     where = f" in setup {setups.pop() + 1}" if holds and len(setups) == 1 else ""
-    yield f"No fixture was given{where}: {which} {'partly ' if partly else ''}from below."
+    yield f"Nothing holds the part{where}: {which} {'partly ' if partly else ''}from below."
 
 
 def _unheld(plan: Plan) -> Iterator[str]:

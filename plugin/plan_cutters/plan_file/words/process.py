@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, some
+from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, size, some
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
@@ -20,6 +21,7 @@ from plan_cutters.plan_file.operations import (
     OperationPlanEntry,
     OperationsEntry,
     ProcessEntry,
+    ProcessSetup,
     ProcessStep,
     RemainingEntry,
 )
@@ -282,7 +284,8 @@ _MINOR = 0.001
 class StepRow(NamedTuple):
     """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
 
-    `alone` is what is gone if it is left out, empty where that is not known, and `operation` the id of its operation.
+    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, and `at` its
+    setup, counted from 0.
     """
 
     number: str
@@ -294,15 +297,19 @@ class StepRow(NamedTuple):
     faces: list[str]
     alone: str
     operation: str
+    at: int
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps and how many more there are, sentences on the planner's own steps and on what is left,
-    next steps, and clearance. The first `much` of those on what is left are of more than a little.
+    """A process in words: rows of steps, how the part stands in each setup, and how many more steps there are; sentences on the
+    planner's own steps and on what is left, next steps, and clearance. The first `much` of those on what is left are of more than
+    a little.
     """
 
     rows: tuple[StepRow, ...]
+    stands: tuple[str, ...]
+    roughing: str
     more: str
     own: tuple[str, ...]
     remaining: tuple[str, ...]
@@ -311,19 +318,24 @@ class ProcessStory:
     clearance: str
 
     def table(self) -> list[str]:
-        """Rows in lines of at most 80 columns, as many faces in each as fit into a width."""
-        rows = [row[:6] for row in self.rows]
+        """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
+        each setup."""
+        rows = [(row.number, *row[2:6]) for row in self.rows]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        lines = []
+        stands, lines, setup = dict(enumerate(self.stands)), list[str](), None if self.rows else -1
         for row, texts in zip(self.rows, rows, strict=True):
+            if row.at != setup:
+                setup = row.at
+                lines += wrapped([stands.pop(setup, f"Setup {setup + 1} again:")], 2)
             cells = [
-                f"{text:>{width}}" if k in (0, 4, 5) else f"{text:<{width}}"
+                f"{text:>{width}}" if k in (0, 3, 4) else f"{text:<{width}}"
                 for k, (text, width) in enumerate(zip(texts, wide, strict=True))
                 if width
             ]
             line = "  " + "  ".join(cells)
             lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
-        return [*lines, *([f"  {self.more}"] if self.more else [])]
+        idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
+        return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
 
 
 def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
@@ -346,6 +358,8 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
     return ProcessStory(
         rows=rows,
+        stands=tuple(each.text for each in process.setups),
+        roughing=roughing(process),
         more=more,
         own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
@@ -364,7 +378,14 @@ def with_process_words(plan: Plan) -> Plan:
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
         for k, step in enumerate(plan.process.steps, 1)
     ]
-    words = {"steps": steps, "left": needed, "doubts": doubts(plan), "next": list(_next_entries(plan, plan.process, needed))}
+    setups = [each.model_copy(update={"text": stand_text(plan, each)}) for each in plan.process.setups]
+    words = {
+        "steps": steps,
+        "setups": setups,
+        "left": needed,
+        "doubts": doubts(plan),
+        "next": list(_next_entries(plan, plan.process, needed)),
+    }
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
@@ -389,7 +410,42 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         faces=step.faces,
         alone="" if step.alone_mm2 is None else area(step.alone_mm2),
         operation=step.operation,
+        at=step.setup,
     )
+
+
+def stand_text(plan: Plan, setup: ProcessSetup) -> str:
+    """Say which way is up, what holds the part, and what it stands on."""
+    along = [f"{sign}{name}" for name, each in zip("XYZ", setup.up, strict=True) for sign in "+-" if each == float(f"{sign}1")]
+    up = along[0] if along else axis_words(setup.up)
+    on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
+    if setup.grip_mm is not None:
+        what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
+        across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' else 'wide'}"
+        rests = f", rests on {on}" if setup.grips and on else ""
+        how = f"in a {setup.held}{what}, {across}, jaws {mm(setup.grip_mm)} high{rests}"
+    elif setup.held is None:
+        how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
+    else:
+        held = "on a table" if setup.held == "table" else f"held by {setup.held}"
+        how = f"{held}, {f'stands on {on}' if on else 'on no plane'}"
+    if on == "stock" and plan.process is not None and plan.process.stock is not None:
+        how = f"stock of {size(plan.process.stock.size_mm)} {how}"
+    soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
+    return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
+
+
+def roughing(process: ProcessEntry) -> str:
+    """How much of the stock is to be roughed, and in what time if that is known; empty where there is none."""
+    stock = process.stock
+    if stock is None:
+        return ""
+    took = "" if stock.seconds is None else f", {duration(stock.seconds)}"
+    return f"Roughing: {stock.remove_mm3 / 1000.0:,.3g} of {stock.volume_mm3 / 1000.0:,.3g} cm³ of stock{took}."
+
+
+def _is_are(setup: ProcessSetup) -> str:
+    return "is" if len(setup.stands_on or ()) == 1 else "are"
 
 
 def _fitting(faces: list[str], width: int) -> str:

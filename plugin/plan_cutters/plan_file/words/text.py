@@ -189,6 +189,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         wrapped(plan.process.doubts if plan.process else [], 2),
         [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
         wrapped([in_summary(plan)] if process and in_summary(plan) else [], 2),
+        [process.roughing] if process and process.roughing else [],
         process.table() if process else [],
         wrapped([named(plan, one_more(plan.operations))] if plan.process and plan.process.plan == "fewest" else [], 3),
         wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],

@@ -1,0 +1,107 @@
+"""Stock: what the first setup grips, and what of it is below the part there."""
+
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.figures import text_of
+from plan_cutters.errors import OptionError
+
+#: Margins unless they are given: on each side, and below, mm; lengths beyond the second number are rather a mistake.
+_BESIDE, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
+_FORM = "box[:X,Y,Z], cylinder[:R,Z] (margins in mm), FILE (STEP or a mesh) or part"
+PART, BOX, CYLINDER = "part", "box", "cylinder"
+_WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER})(?::(.*))?", re.IGNORECASE | re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Stock:
+    """What a part is made of.
+
+    >>> Stock.of("box").text, Stock.of("cylinder:2,8").below, Stock.of("part").solid
+    ('box:1,1,5', 8.0, False)
+    """
+
+    kind: str  #: `box`, `cylinder`, `part`, or `file`.
+    margins: tuple[float, ...] = ()  #: Across the setup axis, and below the part, mm; none of a file.
+    file: str = ""
+
+    @classmethod
+    def of(cls, text: object) -> "Stock":
+        """Read the word of an option. Raises OptionError."""
+        if not isinstance(text, str) or not text.strip():
+            raise OptionError(f"stock {shown(text)} is none: give {_FORM}")
+        word = _WORD.fullmatch(text.strip())
+        if word is None:
+            if not Path(text).suffix:
+                raise OptionError(f"stock {text!r} is none: give {_FORM}")
+            return cls("file", (), text)
+        kind, numbers = word[1].lower(), word[2]
+        usual = {PART: (), BOX: (_BESIDE, _BESIDE, _BELOW), CYLINDER: (_BESIDE, _BELOW)}[kind]
+        if numbers is None:
+            return cls(kind, usual)
+        try:
+            margins = tuple(float(each) for each in numbers.split(","))
+        except ValueError:
+            margins = ()
+        if len(margins) != len(usual) or not all(0.0 <= each <= _FARTHEST for each in margins) or margins[-1:] == (0.0,):
+            raise OptionError(f"stock {text!r}: give {_FORM}, the last one greater than 0")
+        return cls(kind, margins)
+
+    @property
+    def solid(self) -> bool:
+        """Whether there is more than the part."""
+        return self.kind != PART
+
+    @property
+    def below(self) -> float:
+        """How far it reaches below the part, mm; not a number where a file says it."""
+        return self.margins[-1] if self.margins else math.nan
+
+    @property
+    def text(self) -> str:
+        """As on a command line."""
+        if self.kind == "file":
+            return self.file
+        return self.kind + (":" + ",".join(map(text_of, self.margins)) if self.margins else "")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StockBody:
+    """Stock about a part in the frame of a setup, z along its axis from the part's origin, mm."""
+
+    low: Floats  #: (3,) the least corner of its box; z is its foot.
+    high: Floats  #: (3,) the other one; z is the top of the part.
+    part_low: float  #: z of the part's lowest point.
+    radius: float | None = None  #: Of a cylinder about the middle of the box.
+
+    @classmethod
+    def about(cls, stock: Stock, part: Floats, body: Floats | None = None) -> "StockBody":
+        """About the corners of a part (n, 3) in that frame; `body`: those of a file's stock.
+
+        Raises OptionError: a file's stock does not reach below the part or is narrower than it.
+        """
+        low, high = part.min(axis=0), part.max(axis=0)
+        if body is not None:
+            lowest, highest = body.min(axis=0), body.max(axis=0)
+            if not lowest[2] < low[2] or (lowest > low + 1e-6)[:2].any() or (highest < high - 1e-6)[:2].any():
+                raise OptionError(f"stock {stock.file!r} does not enclose the part and reach below it along the setup axis")
+            return cls(lowest, np.array([*highest[:2], max(high[2], highest[2])]), float(low[2]))
+        foot = low[2] - stock.below
+        if stock.kind == BOX:
+            beside = np.array(stock.margins[:2])
+            return cls(np.array([*(low[:2] - beside), foot]), np.array([*(high[:2] + beside), high[2]]), float(low[2]))
+        middle = 0.5 * (low + high)[:2]
+        radius = float(np.linalg.norm(part[:, :2] - middle, axis=1).max()) + stock.margins[0]
+        return cls(np.array([*(middle - radius), foot]), np.array([*(middle + radius), high[2]]), float(low[2]), radius)
+
+    @property
+    def volume(self) -> float:
+        """In mm3."""
+        x, y, z = (self.high - self.low).tolist()
+        return float(x * y * z if self.radius is None else math.pi * self.radius**2 * z)
