@@ -337,7 +337,8 @@ class Options:
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
                             propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
         vise = self.propose and (not self.fixtures or self.fixtures[0].kind == VISE)
-        take(stock=(stock or Stock.of(BOX if vise else PART)).text)
+        known = next((each.stock for each in self.fixtures if each.stock), None)
+        take(stock=(stock or known or Stock.of(BOX if vise else PART)).text)
         take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))
         take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
         for word, each in OPTIONS.items():

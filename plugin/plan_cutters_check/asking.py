@@ -151,11 +151,12 @@ def _setups(part: Part, options: Options, document: Mapping[str, Any]) -> tuple[
     setups, grips = [], list[Grip]()
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
         x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
-        bodies = list[Body]()
+        bodies, stock = list[Body](), s == 0 and any(each.stock for each in options.fixtures)
         for wanted in options.fixtures if s == 0 else (*options.shared_fixtures, *own):
             placed, faces = _where(wanted, s, document) if wanted.to_place else (wanted, ())
             bodies += bodies_of(placed)
-            grips += [_grip(wanted, placed, faces, s)] if wanted.to_place else []
+            # Jaws below the part, on its stock, are not for its faces.
+            grips += [_grip(wanted, placed, faces, s)] if wanted.to_place and not stock else []
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
         setups.append(Setup(z, x, origin, tuple(bodies), clamped_faces(part, place)))
     return tuple(setups), tuple(grips)

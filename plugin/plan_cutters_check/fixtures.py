@@ -48,7 +48,10 @@ class PlacedFixture:
         rotation, shift = rotation_of(body), np.array(body.placement[:3], float)
         mesh = body.source.lower().endswith(_MESH) if isinstance(body.source, str) else is_mesh(body.source)
         self.known, self._vertex, self.sources = bool(body.kind or mesh), np.zeros((0, 3, 3)), list[Source]()
-        if self.known:
+        if body.kind == "stock" and not body.sizes:
+            # Of stock in a file it is not known where it ends.
+            self.known = False
+        elif self.known:
             own = _word(body, setup, rotation, shift, low, high) if body.kind else read_mesh(body.source, body.unit).vertex
             self._vertex = own @ rotation.T + shift
             self.sources.append(Triangles(self._vertex, self.name))
@@ -71,6 +74,14 @@ class PlacedFixture:
         return np.asarray(np.abs(inside) > 2.0 * math.pi)
 
 
+def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
+    """What of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup, as two corners; of a cylinder
+    what surely is in it: it is as wide as the part everywhere.
+    """
+    beside = np.array(margins[:2]) if len(margins) == 3 else np.zeros(2)
+    return (*(low[:2] - beside).tolist(), float(low[2]) - margins[-1], *(high[:2] + beside).tolist(), float(low[2]))
+
+
 def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats, high: Floats) -> Floats:
     """Triangles (n, 3, 3), in its own frame, of a fixture that is described by a word."""
     if body.kind == "box":
@@ -84,6 +95,8 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
         b, up, middle = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height]), np.zeros_like(a)
         sides = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
         return np.concatenate([np.stack(each, axis=1) for each in sides])
+    if body.kind == "stock":
+        return np.asarray(_box(np.array(body.sizes[:3]), np.array(body.sizes[3:])) @ frame_of(setup))
     if body.kind == "prism":
         return _prism(body.sizes[0], body.sizes[1], np.array(body.sizes[2:]).reshape(2, -1, 2))
     # A table lies across the setup axis or, if it is turned, across its own z; all below its top is in the way.

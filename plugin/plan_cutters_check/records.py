@@ -328,12 +328,22 @@ class _Process:
         strips = np.where(self.question.samples["inside_bodies"], 0.0, self.reckoned.sampled)
         edges = Weights(self.question.samples, strips, requested)
         return {
+            "setups": [self._stand(k, each.z) for k, each in enumerate(self.question.setups)],
             "steps": steps, "plan": self.plan.entry["name"], "left": left, "finished_mm2": finished, "asked_mm2": requested,
             "finished_share": 1.0 if not left else share if self.done.any() else 0.0,
             "seconds": None if seconds is None else seconds - clamping,
             "setup_seconds": None if seconds is None else clamping,
             "exempt": self._remaining("sharp_edge", exempt, edges, self.written.get("exempt")) if len(exempt) else None,
         }  # fmt: skip
+
+    def _stand(self, setup: int, up: tuple[float, float, float]) -> dict[str, Any]:
+        """How the part stands in a setup, as far as the fixtures say it: whether jaws are there is looked at by itself."""
+        stand: dict[str, Any] = {"number": setup + 1, "up": list(up)}
+        jaws = [each for each in self.question.document["fixtures"] if each["clamping"] and setup in each["setups"]]
+        if jaws:
+            stand |= {"held": jaws[0]["clamping"].partition(":")[0], "clamping": jaws[0]["clamping"]}
+            stand |= {"grips": jaws[0]["grips"]} if jaws[0]["grips"] else {}
+        return stand
 
     def _steps(self) -> list[dict[str, Any]]:
         """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""

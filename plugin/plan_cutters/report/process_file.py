@@ -100,7 +100,7 @@ def setup_toml(setup: ProposedSetup) -> str:
     """
     first = "add the vise or the clamps to `fixtures`."
     if setup.clamping != "table":
-        first = f"the {setup.clamping} grips {', '.join(setup.grips)}; put your own into `fixtures`."
+        first = f"the {setup.clamping} grips {', '.join(setup.grips) or 'the stock'}; put your own into `fixtures`."
     return (
         f'# Proposed by --setup auto: {first}\nunit = "mm"\naxis = {json.dumps(list(setup.axis))}\n'
         f"clamped = {json.dumps(setup.stands_on)}\nfixtures = {json.dumps(setup.fixtures)}\n"
