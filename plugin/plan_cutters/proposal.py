@@ -95,6 +95,7 @@ def judged_proposed(
         chosen = ranking.choose(MOST_PROPOSED, failed)
         with stages.clock.stage("proposal"):
             ranking.settle(chosen)
+            chosen = ranking.completed(chosen, MOST_PROPOSED)
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break

@@ -265,7 +265,7 @@ class Bench:
     ) -> tuple[float, str] | None:
         """The least distance of what does not cut from anything, mm, at contacts, and which part comes nearest."""
         tip = tool.tips(at.point, at.normal, axis, at.tilt_direction, self.accuracy, self.question.tolerance)
-        return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
+        return nearest(self.cells, self.root[setup], tool.idle(), tip, axis, beyond, self.grain, clock)
 
 
 class _Places:

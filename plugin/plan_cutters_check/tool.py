@@ -113,10 +113,11 @@ class Tool:
     wide: float
     straight: bool
 
-    def above(self, height: float) -> tuple[Solid, ...]:
-        """Give what is above a height over the tip: flutes cut off there, and all other sections."""
-        above = [each for each in self.solids if each.part != "flutes" or each.high > height]
-        return tuple(_cut(each, height) if each.part == "flutes" else each for each in above)
+    def idle(self) -> tuple[Solid, ...]:
+        """Give what does not cut: neck, shank and holder; of a bare cutter its flutes, cut off their diameter above the tip."""
+        idle = [each for each in self.solids if each.part != "flutes"]
+        height = 2.0 * self.radius
+        return tuple(idle or [_cut(each, height) for each in self.solids if each.high > height])
 
     @property
     def flat(self) -> float:

@@ -281,7 +281,7 @@ class Trials:
                 self.tell(f"{plan.entry['name']}: the clearance of {each['id']}")
                 rows = plan.rows(i)
                 axis, there = self._axes(each, rows, plan["moving_axis"])
-                if not tool.above(2.0 * tool.radius):
+                if not tool.idle():
                     into["clearance_mm"] = None
                     continue
                 if len(there) < len(rows) or clock.over or (claimed is None and doubtful):

@@ -19,7 +19,7 @@ from plan_cutters_check.asking import sizes_of
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, other_angles
 from plan_cutters_check.surface import FREE, MET, Cells, Clock, Face, met, nearest
-from plan_cutters_check.tool import tool_of
+from plan_cutters_check.tool import _cut, tool_of
 from tests.support.places import ROOT
 
 PEAKS = str(ROOT / "samples/peaks_and_valleys.step")
@@ -79,7 +79,8 @@ def test_what_is_above_a_height_ends_there(cutter, share):
     rest = np.concatenate([[(0.0, height), (edge, height)], border[border[:, 1] > height]])
     rng = np.random.default_rng(0)
     q, h = rng.uniform(0.0, 1.5 * tool.wide, 1500), rng.uniform(0.0, tool.high, 1500)
-    deep = np.max([solid.depth(q, h)[0] for solid in tool.above(height)], axis=0)
+    flutes = [_cut(each, height) for each in tool.solids if each.part == "flutes" and each.high > height]
+    deep = np.max([solid.depth(q, h)[0] for solid in (*flutes, *(s for s in tool.solids if s.part != "flutes"))], axis=0)
     away, _ = polyline_distance(rest, q, h)
     within = (h > height) & polyline_distance(border, q, h)[1]
     outside = ~within & (away > 1e-2)
@@ -111,7 +112,7 @@ def test_the_depth_lies_below_its_tangent_planes(cutter):
     rng = np.random.default_rng(1)
     tool = tool_of(sizes_of(cutter))
     p, r = (rng.uniform(-1.0, 1.0, (3000, 3)) * [2 * tool.wide, 2 * tool.wide, tool.high] for _ in range(2))
-    for solid in (*tool.solids, *tool.above(2.0 * tool.radius)):
+    for solid in (*tool.solids, *tool.idle()):
         there, (deep, g_q, g_h) = solid.depth(np.hypot(*r.T[:2]), r[:, 2])[0], solid.depth(np.hypot(*p.T[:2]), p[:, 2])
         unit = p[:, :2] / np.hypot(*p.T[:2])[:, None]
         gradient = np.column_stack([g_q[:, None] * unit, g_h])

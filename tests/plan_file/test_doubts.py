@@ -125,7 +125,10 @@ def test_steps_from_below_need_something_that_holds_the_part():
     part, under = box(20, 20, 20), {"faces": "F5"}
     free = plan(part, cutters=["D6L60"], machine="trunnion-ac", setup=(0.0, 0.6, 0.8), **FEW | under).plan
     assert free.process.steps[0].below_mm2 == pytest.approx(400.0)
-    assert free.process.doubts == ["No fixture was given: step 1 comes from below."]
+    assert free.process.doubts == ["Nothing holds the part: step 1 comes from below."]
+    # A table lies below the part, far below here.
+    table = plan(part, cutters=["D6L60"], machine="trunnion-ac", setup=(0.0, 0.6, 0.8), fixtures="table:-90", **FEW | under).plan
+    assert table.process.doubts == free.process.doubts
     held = plan(
         part, cutters=["D6L60"], machine="trunnion-ac", setup=(0.0, 0.6, 0.8), fixtures="box:5,5,5@100,0,0", **FEW | under
     )

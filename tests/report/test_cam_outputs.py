@@ -50,7 +50,7 @@ def to_band(q, w, low, high, lower, upper):
 def bands(cutter):
     """What of an end mill counts, as truncated cones."""
     low, top = working_height(cutter), flute_length(cutter)
-    flutes = [(low, top, cutter.radius, cutter.radius)] if top > low else []
+    flutes = [(low, top, cutter.radius, cutter.radius)] if top > low and not cutter.stages else []
     return flutes + [(at, at + s.length, s.radius, s.upper_radius) for _, at, s in cutter.stages]
 
 

@@ -279,27 +279,53 @@ class Ranking:
         is gripped."""
         if chosen and self.stock is not None:
             self._settle_stock(chosen[0])
+        for k in chosen:
+            self._settle(k)
+
+    def _settle(self, k: int) -> None:
+        """Try in a direction whatever may hold the part, unless that was done before."""
         # What was searched with a vise or chuck is known with it; a table was only a plane.
         words = self.words if self.over_table else self.words[1:]
-        for k in [k for k in chosen if k not in self.settled and words]:
-            self.settled.add(k)
-            tried, refused = [held for held in [self.held[k]] if held is not None and not self.over_table], {}
-            for word in words:
-                try:
-                    tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
-                except NothingToGripError as error:
-                    refused[word] = error.why
-            self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
+        if k in self.settled or not words:
+            return
+        self.settled.add(k)
+        tried, refused = [held for held in [self.held[k]] if held is not None and not self.over_table], {}
+        for word in words:
+            try:
+                tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
+            except NothingToGripError as error:
+                refused[word] = error.why
+        self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
-        """Grip the stock in a direction, if what is named can."""
+        """Grip the stock in a direction, if what is named can, and what is below the part keeps tools off little of it."""
+        least = _GRIPPED_FOR * float(self.share(self.served(k)[:, None])[0])
         for word in [each for each in self.words if each != TABLE] if k not in self.stocked else ():
             with suppress(NothingToGripError):
                 # Beside what stands below the part a tool may be lower than it.
                 bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
-                self.held[k] = self.stocked[k] = self._held_by(k, word, bound, self.stock)
-                self.settled.add(k)
+                self.stocked[k] = self._held_by(k, word, bound, self.stock)
+                if float(self.share(self.stocked[k].served[:, None])[0]) >= least:
+                    self.held[k] = self.stocked[k]
+                    self.settled.add(k)
                 return
+
+    def completed(self, chosen: tuple[int, ...], most: int) -> tuple[int, ...]:
+        """Chosen directions, held as they are by now, and those that serve more of what these do not."""
+        failed = frozenset[int]()
+        while 0 < len(chosen) < most:
+            open_rows = ~np.logical_or.reduce([self.served(k) for k in chosen])
+            others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed) and self.steady(k)]
+            gain = self.share(np.stack([self.served(k) & open_rows for k in others], axis=1)) if others else np.zeros(0)
+            if not (gain >= _CLAMPED_FOR).any():
+                break
+            more = others[int(np.round(gain / _EVEN).argmax())]
+            self._settle(more)
+            if float(self.share((self.served(more) & open_rows)[:, None])[0]) >= _CLAMPED_FOR:
+                chosen = (*chosen, more)
+            else:
+                failed |= {more}
+        return chosen
 
     @property
     def over_table(self) -> bool:

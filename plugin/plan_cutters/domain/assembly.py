@@ -300,13 +300,14 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     return most
 
 
-#: All of a cutter counts for its clearance but the lowest of its flutes, up to their diameter over the tip, where it works.
+#: Neck, shank and holder count for a clearance: flutes lie along the walls that they cut. Of a bare cutter its flutes count, but
+#: for the lowest of them, up to their diameter over the tip, where it works.
 #: Clearances are looked for up to this, mm, and told to this share of them, or to `FINEST`, whichever is more.
 MOST, SHARE, FINEST = 100.0, 0.02, 0.005
 
 
 def working_height(cutter: Cutter) -> float:
-    """Height over the tip, mm, above which the flutes count, too: their diameter."""
+    """Height over the tip, mm, above which flutes of a bare cutter count: their diameter."""
     return 2.0 * cutter.radius
 
 
@@ -317,9 +318,9 @@ def grown(cutter: Cutter, by: float) -> Assembly:
 
     `cutter`: its own allowance and clearance are not counted in. `by`: not negative.
     """
-    rows = [_from(row, working_height(cutter) - by) for row in pieces.flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
-    if flute_length(cutter) <= working_height(cutter):
-        rows = []
+    rows, low = list[list[float]](), working_height(cutter)
+    if not cutter.stages and flute_length(cutter) > low:
+        rows = [_from(row, low - by) for row in pieces.flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
     for part, low, stage in cutter.stages:
         rows += pieces.alone(Band(PARTS[part], low, stage, -by))
     table = np.array([row for row in rows if pieces.solid(row)], float).reshape(-1, COLUMNS)

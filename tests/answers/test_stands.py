@@ -1,0 +1,103 @@
+"""How a part is stood and held by a proposal: what nobody would do is not proposed, and what has to be is named."""
+
+import cadquery as cq
+import numpy as np
+import pytest
+
+from plan_cutters import Options, plan
+from plan_cutters.answers.setup_ranking import Held, best_hold, ranked
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.stock import Stock
+from plan_cutters.pipeline import prepare
+
+HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
+WORDS = ("table", "vise", "chuck")
+
+
+def proposed(shape, words=WORDS, stock=None, **options):
+    """The ranking of a shape, and the directions that are chosen, held as they are."""
+    ready = prepare(shape, Options(**{**HOW, **options}))
+    ready = ready.__class__(**{**_fields(ready), "scene": ready.scene.for_targets(ready.chosen.targets)})
+    ranking = ranked(ready, 3, words, stock)
+    chosen = ranking.choose(3)
+    ranking.settle(chosen)
+    return ranking, ranking.completed(chosen, 3)
+
+
+def _fields(record):
+    return {name: getattr(record, name) for name in record.__dataclass_fields__ if record.__dataclass_fields__[name].init}
+
+
+def bracket():
+    """A plate and an upright of it, with a lug of 14 x 8 mm at the plate's end."""
+    plate = cq.Workplane().box(80, 50, 10).union(cq.Workplane().box(10, 50, 60).translate((-35, 0, 25)))
+    return plate.union(cq.Workplane().box(14, 8, 10).translate((47, 0, 0))).val().wrapped
+
+
+def spiked():
+    """A disk with eight thin pins on it: its plane and the tips of the pins are below in turn."""
+    pins = cq.Workplane().polarArray(30, 0, 360, 8).circle(0.5).extrude(12)
+    return cq.Workplane().circle(40).extrude(8).union(pins).val().wrapped
+
+
+def chamfered():
+    return cq.Workplane().box(80, 50, 30).edges(">X and >Z").chamfer(4).val().wrapped
+
+
+@pytest.mark.parametrize("shape", [bracket, spiked, chamfered])
+def test_each_setup_stands_or_is_gripped_without_a_nest(shape):
+    ranking, chosen = proposed(shape())
+    assert chosen
+    for k in chosen:
+        assert not ranking.held[k].soft
+        assert ranking.held[k].kind != "table" or ranking.candidates.bearing[k].firm
+
+
+def test_a_part_stands_on_no_chamfer_for_a_little_more_area():
+    ranking, chosen = proposed(chamfered())
+    # Along the axes of the block alone: the chamfer's normal lies between two of them.
+    assert all(np.abs(ranking.candidates.axis[k]).max() > 0.999 for k in chosen)
+
+
+def test_no_lug_is_gripped_where_the_body_can_be():
+    ready = prepare(bracket(), Options(**HOW))
+    for axis in ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0)):
+        hold = ready.scene.hold(Fixture("vise"), axis)
+        lug = {f"F{f.number}" for f in ready.scene.part.faces if abs(f.area - 140.0) < 1e-6}
+        assert not lug & {f"F{n}" for n in hold.grips} or hold.soft
+
+
+def test_what_is_gripped_by_a_lug_alone_says_that_it_needs_a_nest():
+    """A ball on a block of 14 x 15 mm: the block is all that has planes."""
+    part = cq.Workplane().sphere(30).union(cq.Workplane().box(14, 15, 20).translate((0, 0, -35))).val().wrapped
+    hold = prepare(part, Options(**HOW)).scene.hold(Fixture("vise"), (0.0, 0.0, 1.0))
+    assert hold.soft == "what they grip is a lug"
+    assert "it needs soft jaws or a nest: what they grip is a lug" in hold.words
+
+
+def test_a_firm_table_is_taken_before_soft_jaws():
+    served = np.array([True, True])
+    table, vise = (Held(Fixture.each_of(word)[0], served, soft=soft) for word, soft in (("table", ""), ("vise", "a lug")))
+    weight = np.ones(2)
+    assert best_hold([table, vise], {}, weight).kind == "table"
+    assert "a vise needs soft jaws or a nest (a lug)" in best_hold([table, vise], {}, weight).why
+    soft_table = Held(table.fixture, served, soft="it stands on nothing")
+    assert best_hold([soft_table, vise], {}, weight).kind == "vise"
+
+
+def test_the_first_setup_grips_the_stock_and_the_last_one_faces_the_bottom():
+    block = cq.Workplane().box(60, 40, 20).val().wrapped
+    ranking, chosen = proposed(block, stock=Stock.of("box"))
+    first, last = (ranking.held[k] for k in chosen)
+    assert (first.kind, first.grips, first.stock.text) == ("vise", (), "stock:box:1,1,5")
+    assert last.stock is None
+    assert len(last.grips) == 2
+    assert np.allclose(ranking.candidates.axis[chosen[0]], -ranking.candidates.axis[chosen[1]])
+    assert (ranking.served(chosen[0]) | ranking.served(chosen[1]))[ranking.free].all()
+
+
+def test_a_plan_says_what_is_below_where_nothing_holds_the_part():
+    setup = plan(cq.Workplane().box(30, 20, 10).val().wrapped, **HOW).plan.process.setups[0]
+    assert (setup.held, setup.clamping, setup.grips) == (None, None, [])
+    assert len(setup.stands_on) == 1
+    assert setup.text == f"Setup 1: +Z up, nothing holds it yet; {setup.stands_on[0]} is below."
