@@ -228,7 +228,7 @@ _OPERATIONS = (
     Option("setup_time", float, 300.0, "Seconds that another setup takes.", unit="s", limits=(0.0, 1e6)),
     Option(
         "removal_rate", float, None, unit="cm3/min", limits=_POSITIVE,
-        help="Of roughing, so that its minutes are told.  [default: the volume alone]",
+        help="Of roughing, for its minutes.  [default: the volume alone]",
     ),
     Option("overlap", float, 2.0, "Overlap of operations at a common border.", unit="mm", limits=(0.0, 1e3)),
     Option("link_time", float, 1.0, "Seconds from the end of a pass to the next.", unit="s", limits=(0.0, 1e4)),

@@ -75,11 +75,11 @@ class PlacedFixture:
 
 
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
-    """What of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup, as two corners; of a cylinder
-    what surely is in it: it is as wide as the part everywhere.
+    """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup, as two corners; of
+    a cylinder what surely is in it: it is as wide as the part everywhere.
     """
-    beside = np.array(margins[:2]) if len(margins) == 3 else np.zeros(2)
-    return (*(low[:2] - beside).tolist(), float(low[2]) - margins[-1], *(high[:2] + beside).tolist(), float(low[2]))
+    margin = np.array(margins[:2]) if len(margins) == 3 else np.zeros(2)
+    return (*(low[:2] - margin).tolist(), float(low[2]) - margins[-1], *(high[:2] + margin).tolist(), float(low[2]))
 
 
 def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats, high: Floats) -> Floats:

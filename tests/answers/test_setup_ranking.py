@@ -109,7 +109,7 @@ HOW = {"cutters": "R2L60", "faces": "all", "grid": 3, "area_budget": 0}
 
 
 def test_a_proposal_stands_on_faces_and_holds_what_it_promised():
-    found = plan(box(), setup="auto", machine="trunnion-ac", **HOW)
+    found = plan(box(), setup="auto", stock="part", machine="trunnion-ac", **HOW)
     said = found.plan.setup_proposal
     first, second = said.setups
     assert (said.held, said.tried) == (True, 1)

@@ -170,7 +170,7 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     said = shown(capsys, planned, verbose=True)
-    assert said.startswith("Take flat end D12 x 80.\nAn open shell: ")
+    assert said.startswith("Take flat end D12 x 80: it finishes all 7,010 mm².\nAn open shell: ")
     assert "\nFor peaks_and_valleys.step, 28.67 x 111.5 x 58.51 mm: R6L80, " in said
     assert "without a holder" in in_lines(said)
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
@@ -189,7 +189,7 @@ def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
 def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     said = shown(capsys, failing, verbose=True)
     assert in_lines(said).startswith(
-        "pocket_top.step, 60 x 40 x 24.51 mm, on tilt:20, in 2 setups: 99.6 % of the 9,040 mm² to machine."
+        "pocket_top.step, 60 x 40 x 24.51 mm, on tilt:20: 2 steps in 2 setups finish 99.6 % of 9,040 mm²."
     )
     assert "--answers mend" in in_lines(said)
     assert "Each alone reaches: " in in_lines(shown(capsys, failing))
@@ -447,14 +447,14 @@ def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
 
 def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tmp_path):
     done = run(GROOVE, *QUICK, *FILES, cwd=tmp_path)
-    assert done.stdout.startswith("Take flat end D12 x 80.\nAn open shell: ")
+    assert done.stdout.startswith("Take flat end D12 x 80: it finishes all 13,300 mm².\nAn open shell: ")
     assert "\nFor v_groove.step" in done.stdout
     assert "\nWritten to out: plan.json" in done.stdout
     assert done.stderr
     assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in done.stderr.splitlines())
     done = run(GROOVE, *QUICK, "--json", "-", cwd=tmp_path)
     assert json.loads(done.stdout)["selected"] == "R6L80"
-    assert "\nTake flat end D12 x 80.\nAn open shell: " in done.stderr
+    assert "\nTake flat end D12 x 80: it finishes all 13,300 mm².\nAn open shell: " in done.stderr
 
 
 @pytest.mark.slow("starts commands and ends them on the way", only=(">",))

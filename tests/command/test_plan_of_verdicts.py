@@ -88,7 +88,7 @@ def unfinished(folder, *absent, alone=True):
 def told(done, code, *absent):
     """The last line of a command that was ended: it says where the plan is, and what that is without, as the summary does."""
     assert done.returncode == code
-    assert done.stdout.startswith("Take flat end D12 x 80.\nThe run was ")
+    assert done.stdout.startswith("Take flat end D12 x 80: it finishes all 13,300 mm².\nThe run was ")
     assert all(each in in_lines(done.stdout) for each in absent)
     last = done.stderr.splitlines()[-1]
     assert "the plan of the verdicts is in " in last
@@ -185,7 +185,7 @@ def test_an_interrupt_of_the_writing_waits_for_the_files(tmp_path, monkeypatch):
     monkeypatch.setattr(models, "split_result", split)
     done = run(PART, "--cutter", "R6L80", "--grid", "3", "--area-budget", "0", "-o", "out", cwd=tmp_path)
     assert done.returncode == 130
-    assert done.stdout.startswith("Take flat end D12 x 80.\n")
+    assert done.stdout.startswith("Take flat end D12 x 80: it finishes all 13,300 mm².\n")
     assert done.stderr.splitlines()[-1].startswith("plan-cutters: interrupted; its plan is in ")
     assert leftovers(tmp_path / "out") == WRITTEN
 

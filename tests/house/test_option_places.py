@@ -99,7 +99,7 @@ def test_the_commands_declare_an_option_alike():
 
 def test_every_option_is_in_the_plan():
     """As it is, by its name and unit, or as what was made of it."""
-    entries = {re.sub("_(mm|deg|s|mm_min)$", "", name) for name in Effective.model_fields}
+    entries = {re.sub("_(mm|deg|s|mm_min|cm3_min)$", "", name) for name in Effective.model_fields}
     # Libraries are an entry of their own; the number of threads changes nothing.
     assert WORDS - entries == {"libraries", "jobs"}
     found = plan(ROOT / "samples/v_groove.step", cutters="R6L80", grid=5, area_budget=0, allowance=0.1, tilt=(0.1, 1.0)).plan

@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, QhullError
 from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.bearing import Bearing, centre_of_mass
+from plan_cutters.setups.bearing import Bearing, enclosed
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
@@ -45,7 +45,7 @@ class Candidates(Record):
         reach = _Reach.of(triangles, axis)
         stands_on, tall = reach.stood_on(ready, planar), reach.high.max(axis=0) - reach.lowest
         corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)
-        centre = centre_of_mass(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
+        _, centre = enclosed(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
         try:
             outline = corner[ConvexHull(corner).vertices]
         except QhullError:

@@ -14,7 +14,6 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.fixtures import stock_body
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import PlacedFixture
-from plan_cutters.setups.bearing import volume
 from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
 
 
@@ -44,7 +43,7 @@ def process_setups(ready: Prepared) -> Iterator[ProcessSetup]:
 
 
 def stock_entry(ready: Prepared) -> StockEntry | None:
-    """What the first setup grips, its volume and that of the part; None where that is the part."""
+    """Find what the first setup grips, its volume and how much is to be roughed; None where it grips the part."""
     conditions, options = ready.setups[0], ready.options
     surroundings = conditions.surroundings
     blank = next((each.fixture for each in surroundings.fixtures if each.fixture.stock), None)
@@ -52,8 +51,7 @@ def stock_entry(ready: Prepared) -> StockEntry | None:
         return None
     alone = surroundings.alone or surroundings
     body = stock_body(blank, vector(conditions.setup), alone, CHORD_REQUESTED * ready.scene.asked, {})
-    part = volume(alone.certain.triangles, ready.scene.orientation.sign)
-    remove = max(0.0, body.volume - part)
+    remove = max(0.0, body.volume - _workpiece(ready, conditions, alone.certain.triangles).enclosed[0])
     rate = options.removal_rate
     return StockEntry(
         word=blank.stock.text, size_mm=vector(body.high - body.low), volume_mm3=body.volume, remove_mm3=remove,

@@ -157,7 +157,7 @@ class Fixture:
 
     @property
     def stock(self) -> Stock | None:
-        """What the first setup grips, if it is that: of it, what is below the part stands in the way. Raises OptionError."""
+        """Read the stock that the first setup grips; None where it is no stock. Raises OptionError."""
         return Stock.of(self.source.partition(":")[2]) if self.kind == STOCK else None
 
     @property

@@ -13,7 +13,7 @@ from plan_cutters.domain.figures import text_of
 from plan_cutters.errors import OptionError
 
 #: Margins unless they are given: on each side, and below, mm; lengths beyond the second number are rather a mistake.
-_BESIDE, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
+_SIDES, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
 _FORM = "box[:X,Y,Z], cylinder[:R,Z] (margins in mm), FILE (STEP or a mesh) or part"
 PART, BOX, CYLINDER = "part", "box", "cylinder"
 _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER})(?::(.*))?", re.IGNORECASE | re.DOTALL)
@@ -21,7 +21,7 @@ _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER})(?::(.*))?", re.IGNORECASE | re.D
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """What a part is made of.
+    """Stock is what a part is made of.
 
     >>> Stock.of("box").text, Stock.of("cylinder:2,8").below, Stock.of("part").solid
     ('box:1,1,5', 8.0, False)
@@ -42,7 +42,7 @@ class Stock:
                 raise OptionError(f"stock {text!r} is none: give {_FORM}")
             return cls("file", (), text)
         kind, numbers = word[1].lower(), word[2]
-        usual = {PART: (), BOX: (_BESIDE, _BESIDE, _BELOW), CYLINDER: (_BESIDE, _BELOW)}[kind]
+        usual = {PART: (), BOX: (_SIDES, _SIDES, _BELOW), CYLINDER: (_SIDES, _BELOW)}[kind]
         if numbers is None:
             return cls(kind, usual)
         try:
@@ -94,8 +94,8 @@ class StockBody:
             return cls(lowest, np.array([*highest[:2], max(high[2], highest[2])]), float(low[2]))
         foot = low[2] - stock.below
         if stock.kind == BOX:
-            beside = np.array(stock.margins[:2])
-            return cls(np.array([*(low[:2] - beside), foot]), np.array([*(high[:2] + beside), high[2]]), float(low[2]))
+            margin = np.array(stock.margins[:2])
+            return cls(np.array([*(low[:2] - margin), foot]), np.array([*(high[:2] + margin), high[2]]), float(low[2]))
         middle = 0.5 * (low + high)[:2]
         radius = float(np.linalg.norm(part[:, :2] - middle, axis=1).max()) + stock.margins[0]
         return cls(np.array([*(middle - radius), foot]), np.array([*(middle + radius), high[2]]), float(low[2]), radius)

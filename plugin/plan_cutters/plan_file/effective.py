@@ -82,7 +82,7 @@ class Effective(Frozen):
     index_time_s: float = Field(5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
     change_time_s: float = 20.0
     setup_time_s: float = 300.0
-    removal_rate_cm3_min: float | None = Field(None, description="of roughing; null: its minutes are not told")
+    removal_rate_cm3_min: float | None = Field(None, description="of roughing; null: its minutes are not known")
     overlap_mm: float = Field(2.0, description="of operations at a common border")
     link_time_s: float = Field(1.0, description="from the end of a pass to the next one")
     border_cost: float = Field(0.05, description="seconds that a mm of border on a free-form face counts in comparisons")

@@ -414,7 +414,7 @@ class ProcessSetup(Frozen):
 
 
 class StockEntry(Frozen):
-    """What the first setup grips, and how much of it is to be roughed."""
+    """The first setup grips stock, and some of it is to be roughed."""
 
     word: str = Field(description="as --stock takes it")
     size_mm: Vector = Field(description="of the box about it in the frame of the first setup, z along its axis")

@@ -258,10 +258,10 @@ def stock_body(
     stock, frame = fixture.stock, frame_of(np.asarray(setup, float))
     assert stock is not None, "only stock is made of its word"
     part = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
-    given = None
+    blank = None
     if stock.file:
-        given = _body(Fixture(stock.file), chord, cache).possible.triangles.vertex.reshape(-1, 3) @ frame.T
-    return StockBody.about(stock, part.triangles.vertex.reshape(-1, 3) @ frame.T, given)
+        blank = _body(Fixture(stock.file), chord, cache).possible.triangles.vertex.reshape(-1, 3) @ frame.T
+    return StockBody.about(stock, part.triangles.vertex.reshape(-1, 3) @ frame.T, blank)
 
 
 def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:

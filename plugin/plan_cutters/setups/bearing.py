@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from cad_io.arrays import Floats, Triangles
+from cad_io.arrays import Floats
 
 #: Of the footprint: the least share that the hull of what it stands on has, and how far inside that the centre of mass is, as a
 #: share of the side of a square as large.
@@ -29,9 +29,9 @@ class Bearing:
     def of(cls, outline: Floats, stood_on: Floats, centre: Floats, tall: float) -> "Bearing":
         """Of corners of the part (n, 2), of what it stands on (m, 2), and its centre of mass (2,), seen along the axis, mm.
 
-        >>> square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
-        >>> Bearing.of(square, square, np.array([5.0, 5.0]), 30.0)
-        Bearing(area=100.0, footprint=100.0, width=10.0, inside=5.0, tall=30.0)
+        >>> square = np.array([[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]])
+        >>> Bearing.of(square, square, np.array([4.0, 4.0]), 30.0).firm
+        False
         """
         whole, below = _hull(outline), _hull(stood_on)
         footprint = 0.0 if whole is None else float(whole.volume)
@@ -57,10 +57,11 @@ class Bearing:
         return self.tall / math.sqrt(self.footprint) if self.footprint > 0.0 else math.inf
 
 
-def centre_of_mass(vertex: Floats, normal: Floats) -> Floats:
-    """Of what triangles (n, 3, 3) with outward normals (n, 3) enclose, (3,) mm; of their surface where that is no volume.
+def enclosed(vertex: Floats, normal: Floats) -> tuple[float, Floats]:
+    """Find what triangles (n, 3, 3) with outward normals (n, 3) enclose: volume, mm3, and centre of mass (3,), mm.
 
-    `normal`: of any length, for it tells the side alone.
+    Of a surface that is no closed skin the volume is 0, and the centre that of the surface. `normal`: of any length, for it tells
+    the side alone.
     """
     turned = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
     outward = np.where((turned * normal).sum(axis=1) < 0.0, -1.0, 1.0)
@@ -73,17 +74,9 @@ def centre_of_mass(vertex: Floats, normal: Floats) -> Floats:
     if 0.0 < whole <= 1.001 * float(np.prod(high - low)):
         centre = middle + volume @ own.sum(axis=1) / (4.0 * whole)
         if ((centre >= low) & (centre <= high)).all():
-            return np.asarray(centre)
+            return whole, np.asarray(centre)
     size = np.linalg.norm(turned, axis=1)
-    return np.asarray(size @ vertex.mean(axis=1) / max(1e-300, float(size.sum())))
-
-
-def volume(triangles: Triangles, sign: Floats) -> float:
-    """What triangles of a part enclose, mm3; `sign` (faces,): side of each face that is out of the material. 0 where none is."""
-    mine = triangles.face > 0
-    vertex, turned = triangles.vertex[mine], sign[triangles.face[mine] - 1]
-    own = vertex - vertex.mean(axis=(0, 1))
-    return max(0.0, float(turned @ (own[:, 0] * np.cross(own[:, 1], own[:, 2])).sum(axis=1)) / 6.0)
+    return 0.0, np.asarray(size @ vertex.mean(axis=1) / max(1e-300, float(size.sum())))
 
 
 def _hull(points: Floats) -> ConvexHull | None:

@@ -143,7 +143,7 @@ _WALLS = 300
 _TOUCHED, _ALONG = 0.2, 0.5
 #: A part stands at most so many times as high over the jaws as what they touch of it is long.
 _TALL = 6.0
-#: Plain jaws touch so much of the part's length along them, mm or as a share; less of its footprint between them is a lug.
+#: Plain jaws touch so much of the part's length along them, mm or as a share; less of its mean section between them is a lug.
 _LONG, _LONG_SHARE, _LUG = 15.0, 1.0 / 3.0, 0.25
 
 
@@ -226,7 +226,8 @@ def _at(
         return [], wide if right - left > widest else f"{names} begin too high above its lowest point for the jaws"
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
     tall, bearing = float(part.vertex[..., 2].max()), part.bearing(0.0, above)
-    lug = (right - left) * (end - start) < _LUG * bearing.footprint
+    centre = part.enclosed[1]
+    lug = (right - left) * (end - start) < _LUG * part.section
     places, why = list[Place](), apart
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
     for middle in middles:
@@ -243,7 +244,7 @@ def _at(
         soft = ""
         if lug:
             soft = "what they grip is a lug"
-        elif not (left < part.centre @ x < right and abs(part.centre @ y - middle) < half):
+        elif not (left < centre @ x < right and abs(centre @ y - middle) < half):
             soft = "the middle of the part is not between them"
         elif least / reach < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
             soft = f"they touch {mm(least / reach)} of its length"

@@ -18,7 +18,7 @@ from cad_io.part.bodies import Body
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.setups.bearing import Bearing, centre_of_mass
+from plan_cutters.setups.bearing import Bearing, enclosed
 
 #: Faces that are off the setup axis, or off each other, by a smaller sine are parallel: 0.1 deg.
 PARALLEL = float(np.sin(np.radians(0.1)))
@@ -99,15 +99,21 @@ class Workpiece(Record):
             return corner
 
     @cached_property
-    def centre(self) -> Floats:
-        """Its centre of mass (3,)."""
-        return centre_of_mass(self.vertex, self.normal)
+    def enclosed(self) -> tuple[float, Floats]:
+        """Its volume, mm3, 0 where its faces enclose none, and its centre of mass (3,)."""
+        return enclosed(self.vertex, self.normal)
+
+    @property
+    def section(self) -> float:
+        """Its mean section across the setup axis, mm2; where it has no volume, what is seen of it from above."""
+        volume, tall = self.enclosed[0], float(self.vertex[..., 2].max())
+        return volume / tall if volume > 0.0 and tall > 0.0 else self.bearing(0.0).footprint
 
     def bearing(self, *heights: float) -> Bearing:
         """How it stands on its planar faces that look down at some heights."""
         level = np.logical_or.reduce([self.level(each) for each in heights])
         below = self.vertex[level].reshape(-1, 3)[:, :2]
-        return Bearing.of(self.outline[:, :2], below, self.centre[:2], float(self.vertex[..., 2].max()))
+        return Bearing.of(self.outline[:, :2], below, self.enclosed[1][:2], float(self.vertex[..., 2].max()))
 
     @cached_property
     def lowest_rows(self) -> NDArray[np.int64]:
