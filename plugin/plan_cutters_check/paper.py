@@ -25,8 +25,7 @@ _OF_PLAN: _Arrays = {
     "exclusive": ((), "b"), "lean": ((3,), "f"), "strategy": ((), "u"), "contact": ((3,), "f"), "moving_axis": ((3,), "f"),
     "moving_piece": ((), "i"),
 }  # fmt: skip
-_OF_CANDIDATES: _Arrays = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_angle": ((2,), "f"),
-                           "candidate_axis": ((3,), "f")}  # fmt: skip
+_OF_CANDIDATES: _Arrays = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_axis": ((3,), "f")}
 _OF_SAMPLES: _Arrays = {"point": ((3,), "f"), "normal": ((3,), "f"), "direction_max": ((3,), "f"), "uv": ((2,), "f"),
                         "face": ((), "i"), "area": ((), "f"), "inside_bodies": ((), "b")}  # fmt: skip
 _OF_CUTTERS: _Arrays = {"verdict": ((), "u"), "axis": ((3,), "f"), "lean": ((3,), "f"), "reason": ((), "u")}
@@ -54,9 +53,10 @@ def faults(question: Question) -> Iterator[str]:
     yield from _shaped("samples.npz", samples, _OF_SAMPLES, n)
     for cutter in question.document["cutters"]:
         yield from _shaped("samples.npz", samples, {f"{k}_{cutter['id']}": v for k, v in _OF_CUTTERS.items()}, n)
-    yield from _shaped("operations.npz", arrays, _OF_CANDIDATES, len(arrays.get("candidate_cutter", ())))
+    of_candidates = _OF_CANDIDATES | {"candidate_angle": ((len(question.machine.names),), "f")}
+    yield from _shaped("operations.npz", arrays, of_candidates, len(arrays.get("candidate_cutter", ())))
     yield from _shaped("operations.npz", arrays, {"chosen": ((), "i")}, len(arrays.get("chosen", ())))
-    every = {*_OF_CANDIDATES, "chosen"}
+    every = {*of_candidates, "chosen"}
     for k, plan in enumerate(entry["plans"]):
         mine = {f"{name}{suffix(k, plan['name'])}": form for name, form in _OF_PLAN.items()}
         every |= {*mine}
@@ -162,7 +162,7 @@ class Paper:
         low_high = np.clip(np.degrees(question.machine.limits), -180.0, 180.0)
         worst, missing, tried = 0.0, 0, 0
         for s, each in enumerate(question.setups):
-            angle = self.rng.uniform(low_high[:, 0], low_high[:, 1], (_TRIED, 2))
+            angle = self.rng.uniform(low_high[:, 0], low_high[:, 1], (_TRIED, len(low_high)))
             wanted = axes_of(question.machine, each, angle[allowed(question.machine, each, angle)])
             if not len(wanted) or not len(normal):
                 continue

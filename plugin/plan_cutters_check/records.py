@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters_check.findings import Between, Exactly, Loose
-from plan_cutters_check.question import axes_of, carried, degrees_of, frame_of, other_angles
+from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
@@ -63,7 +63,7 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
             "rotary": [
                 {"name": name, "limits_deg": None if np.isinf(limits).any() else np.degrees(limits).tolist()}
                 for name, limits in zip(machine.names, machine.limits, strict=True)
-            ] if document["machine"]["rotary"] else None,
+            ] if machine.names != FREE else None,
         },
         "process": _Process(reckoned).entry(),
         "cutters": made,
@@ -105,7 +105,7 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
     same = [plan["name"] for plan in written["plans"]] == names
     plans = [_plan(reckoned, plan) for plan in reckoned.plans] if same else [{"name": n} for n in names]
     stated, source = effective["index_time_s"], written["assumed"]["index_from"]
-    rates = source != "given" and question.machine.rates
+    rates = question.machine.rates and (source != "given" or not question.machine.names)
     feed, known = effective["feed_mm_min"], written["assumed"]["feed_mm_min"]
     # By library: each of the cutters has a feed, or none has.
     feeds = feed if feed is not None else None if known is None else _ANY

@@ -252,7 +252,7 @@ def _simultaneous(
     """Give what no fixed operation takes to simultaneous ones: number, what serves, paces and operations."""
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
     pieces = [(step, c, s, rows, task.moving.widest(c, s, rows)[1]) for step, c, s, rows in (own.moving if own else ())]
-    if own is None or not own.leave:
+    if task.moves and (own is None or not own.leave):
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
         motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
         for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
@@ -291,7 +291,7 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     face, count = np.unique(pairs[:, 0], return_counts=True)
     sculptured = np.intersect1d(face[count > 1], sampled_faces(task.ready, "sculptured".__eq__)).tolist()
     free_form = sorted(sculptured, key=lambda each: -size[each])
-    if len(free_form) and options.index_step is None and own is None:
+    if len(free_form) and options.index_step is None and own is None and task.moves:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}
         operations += [
             Operation("", "simultaneous", cutter, s, None, None, None, task.rows[:0])

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Columns
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.fastest import Costs, Problem
 from plan_cutters.operations.labels import Seams
@@ -155,6 +155,16 @@ class Task:
         """Where what each column stands for serves: (rows, columns)."""
         served = self.probes.table(rows, self.images(columns))
         return np.asarray(served.reshape(len(rows), len(columns), self.times).any(axis=2))
+
+    @property
+    def no_columns(self) -> Columns:
+        """None of the columns that there may be."""
+        return columns_of(np.zeros((0, 3)), np.zeros((0, len(self.orientations[0].names))))
+
+    @property
+    def moves(self) -> bool:
+        """Whether an axis can turn the tool while it cuts."""
+        return self.orientations[0].turning > 0
 
     @property
     def times(self) -> int:

@@ -101,7 +101,8 @@ class OperationEntry(Frozen):
     setup: int = Field(description="0 for the first setup, then the others in their order")
     axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null if simultaneous")
     angles_deg: dict[str, float] | None = Field(
-        description="of the rotary axes by name; of a machine without any the azimuth about the setup axis and the tilt from it"
+        description="of every rotary axis by name, none on three axes; where the machine names no axes the azimuth about the "
+        "setup axis and the tilt from it"
     )
     other_angles_deg: dict[str, float] | None = Field(description="the other solution with the same axis; null: none")
     samples: int
@@ -269,7 +270,7 @@ class OperationsEntry(Frozen):
     """Operations with fixed orientations that finish together all that is reached. All is about samples, at their contacts."""
 
     asked: Literal["fewest", "fastest", "both"]
-    rotary: tuple[str, str] = Field(description="names of the angles")
+    rotary: tuple[str, ...] = Field(description="names of the angles: of the rotary axes, none on three axes")
     plans: list[OperationPlanEntry]
     fewest: FewestEntry | None = Field(default=None, description="null with the planner's own process")
     fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
