@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.domain.control_words import control_words
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
@@ -64,7 +65,15 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
             assert angle is not None, "a fixed axis has angles"
             x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
             frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
-            planned[i] = operations[i].with_fields(frame=frame, index_s=seconds, index_from=indexing.source)
+            own, other = (
+                None if each is None else dict(zip(where.names, each.tolist(), strict=True))
+                for each in (angle if conditions.machine.turns else None, operations[i].other_angle)
+            )
+            words = control_words(conditions.frame, np.array([x, np.cross(axis, x), axis]), own, other)
+            planned[i] = operations[i].with_fields(
+                frame=frame, index_s=seconds, index_from=indexing.source, g68_2=words.g68_2, g53_1=words.g53_1,
+                rotary_words=words.rotary,
+            )  # fmt: skip
     return planned
 
 

@@ -163,7 +163,7 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", *(f"{name}_deg" for name in entry.rotary),
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "link_seconds", "faces"])  # fmt: skip
+                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
@@ -172,7 +172,8 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                 rows.writerow([plan.name, each.id, each.mode, each.strategy, each.cutter, each.setup + 1, *turned, *axis,
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
-                               " ".join(face.face for face in each.faces)])  # fmt: skip
+                               " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
+                               each.rotary_words or ""])  # fmt: skip
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:
