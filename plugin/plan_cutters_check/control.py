@@ -61,7 +61,7 @@ def _taken(machine: MachineAxes, each: Mapping[str, Any], other: Mapping[str, An
     if machine.names == FREE or other is None:
         return read[1] == "0"
     name = machine.names[0]
-    way = {"0": lambda a: min(a % 360.0, -a % 360.0), "1": lambda a: a % 360.0, "2": lambda a: -a % 360.0}[read[1]]
+    way = {"0": lambda a: min(a % 360.0, -a % 360.0), "1": lambda a: a % 360.0, "2": lambda a: 360.0 - a % 360.0}[read[1]]
     if all(abs(float(each["angles_deg"][one]) - float(other[one])) <= _ONE for one in machine.names[1:]):
         return read[1] == "0"
     mine, others = (way(float(angles[name])) for angles in (each["angles_deg"], other))

@@ -59,8 +59,8 @@ def test_the_plane_has_the_axis_of_the_angles_and_the_turn_takes_them(name, up, 
         assert words.g53_1 == "G53.1 P0"
     elif other is not None:
         # As LinuxCNC takes it: the way from zero that is nearest either way, or in one direction alone.
-        way = {0: lambda a: min(a % 360, -a % 360), 1: lambda a: a % 360, 2: lambda a: -a % 360}[int(words.g53_1[-1])]
-        assert way(degrees[0]) < way(round(other[0], 6)) + 1e-9
+        way = {0: lambda a: min(a % 360, -a % 360), 1: lambda a: a % 360, 2: lambda a: 360 - a % 360}[int(words.g53_1[-1])]
+        assert way(degrees[0]) < way(round(other[0], 3)) + 1e-9
 
 
 @pytest.mark.parametrize(("z", "expected"), [((0, 0, 1), (30.0, 0.0, 0.0)), ((0, 0, -1), (30.0, 180.0, 0.0))])
