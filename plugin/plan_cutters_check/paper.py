@@ -229,15 +229,19 @@ class Paper:
         question, strategy, known = self.reckoned.question, plan["strategy"], np.isfinite(plan["contact"])
         scallop, accuracy = (float(question.document["effective"][name]) for name in ("scallop_mm", "axis_accuracy_deg"))
         on_wall = strategy == WALL
-        off = (strategy > WALL) | ((strategy > 0) & (plan.label < 0)) | (on_wall != known.all(axis=1))
-        odd = int((off | (~on_wall & known.any(axis=1))).sum())
+        # A tool may slide to a contact that is written: then the sample lies on it all the same.
+        slid = known.all(axis=1) & (strategy == 0) & (plan.label >= 0)
+        off = (strategy > WALL) | ((strategy > 0) & (plan.label < 0)) | (on_wall != (known.all(axis=1) & ~slid))
+        odd = int((off | (~on_wall & ~slid & known.any(axis=1))).sum())
         wrong, count = list[str](), {FLOOR: 0, WALL: 0}
         for i, each in enumerate(plan.operations):
             mine = {kind: np.flatnonzero((plan.label == i) & (strategy == kind)) for kind in count}
             if each["axis"] is None:
-                odd += sum(map(len, mine.values()))
+                odd += sum(map(len, mine.values())) + int(((plan.label == i) & slid).sum())
                 continue
             axis = axes_of(question.machine, question.setups[each["setup"]], degrees_of(question, each))[0]
+            if (rows := np.flatnonzero((plan.label == i) & slid)).size:
+                wrong += [f"{each['id']}: {words}" for words in self._slid(plan, each, rows, axis)]
             for kind, claim in ((FLOOR, self._floor), (WALL, self._wall)):
                 count[kind] += len(mine[kind])
                 if len(mine[kind]) and not odd:
@@ -253,6 +257,18 @@ class Paper:
                 f"{plan}: {count[FLOOR]} samples lie under the flat of a tip and {count[WALL]} along flutes, within the "
                 f"scallop height; strips are no wider than these.{text}",
             )
+
+    def _slid(self, plan: Planned, each: Mapping[str, Any], rows: Rows, axis: Floats) -> Iterator[str]:
+        """What is wrong with samples that lie elsewhere on a tool than its contact."""
+        question = self.reckoned.question
+        tool, axes = tool_of(question.tools[each["cutter"]]), np.repeat(axis[None], len(rows), axis=0)
+        at = contacts_at(question, plan, each, rows, axes)
+        away = question.samples["point"][rows] - tool.tips(at.point, at.normal, axes, at.tilt_direction)
+        height = (away * axis).sum(axis=1)
+        depth = tool.solids[0].depth(np.linalg.norm(away - height[:, None] * axis, axis=1), height)[0]
+        keeps = question.tools[each["cutter"]].allowance
+        if not (np.abs(depth + keeps) <= question.tolerance + _SAME_MM).all():
+            yield "a sample beside a contact does not lie on the flutes"
 
     def _floor(
         self, plan: Planned, each: Mapping[str, Any], rows: Rows, axis: Floats, scallop: float, accuracy: float
@@ -327,8 +343,9 @@ def contacts_at(question: Question, plan: Planned, each: Mapping[str, Any], rows
         same = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
         point[same] += question.shift(each["cutter"])[rows[same]]
     tilt_direction = plan["lean"][rows].copy()
+    written = np.isfinite(plan["contact"][rows]).all(axis=1)
+    point[written] = plan["contact"][rows[written]]
     mine = plan["strategy"][rows] == WALL
-    point[mine] = plan["contact"][rows[mine]]
     normal[mine], tilt_direction[mine] = _flutes(question.tools[each["cutter"]], normal[mine], axis[mine])
     return Contacts(point, normal, tilt_direction)
 

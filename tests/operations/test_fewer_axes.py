@@ -8,12 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters import Axis, Machine, plan
+from plan_cutters import Axis, Cutter, Machine, plan
+from plan_cutters.domain.cutter import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.errors import OptionError
 from plan_cutters.operations.orientations import Indexing, Orientations, candidates
 from plan_cutters.report.process_file import process_toml
+from plan_cutters_check.check import check
 from tests.support.cad_parts import box
+from tests.support.grooves import tee
+from tests.support.written_plan import Written
 
 FLAT, BALL = "D12L60F26", "D6L60rc3F16"
 OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "operations": "both"}
@@ -153,3 +157,33 @@ def test_a_single_axis_takes_the_time_of_its_rate():
     where = Orientations.of(planned(part, limited, grid=3, operations="fewest", cutters=[FLAT]).conditions)
     assert Indexing((where,), None).times(0, [[np.array([90.0])], [np.array([-90.0])]]).sum() == pytest.approx(27.0)
     assert Indexing((where,), 4.0).times(0, [[np.array([90.0])]]).tolist() == [4.0]
+
+
+#: A T-slot cutter: flutes of 16 x 4 below a neck of 6.
+SLOT = Cutter(8.0, 50.0, 0.0, shape="form", outline=((0, 0), (8, 0), (8, 4), (3, 4)), neck=Segment(3.0, 30.0), shank_radius=4.0)
+
+
+def mushroom():
+    """A stem of 16 on a plate, with a cap of 24 whose underside is 10 over the plate."""
+    import cadquery as cq
+
+    plate = cq.Workplane().box(80, 80, 6, centered=(True, True, False)).faces(">Z").workplane()
+    return plate.circle(8).extrude(10).faces(">Z").workplane().circle(12).extrude(5).val()
+
+
+@pytest.mark.slow("another part of the same law", but=("tee",))
+@pytest.mark.parametrize("part", [tee, mushroom])
+def test_what_is_undercut_is_finished_upright_by_a_t_slot_cutter(part, tmp_path):
+    """All but the underside of the part; by fixed steps, and by the checker, which puts each tool down where it slid to."""
+    words = {"machine": "3-axis", "cutters": ["D10L60F40", SLOT], "spacing": 4.0, "faces": "all"}
+    made = part()
+    result = plan(made, **words, area_budget=0, feed=1000.0, operations="fewest")
+    below = (result.samples.normal[:, 2] < -0.99) & (result.samples.point[:, 2] < 1e-6)
+    (plan_made,) = result.answers.operations.plans
+    assert (plan_made.label[~below] >= 0).all()
+    assert SLOT.id in {step.cutter for step in result.plan.process.steps}
+    slid = (plan_made.strategy == 0) & np.isfinite(plan_made.contact).all(axis=1)
+    assert slid.any()
+    result.write(tmp_path, ["json", "npz"])
+    answer = check(Written(tmp_path, made, words).asked(), seconds=60.0)
+    assert answer.holds, "\n".join(answer.lines)

@@ -86,7 +86,7 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(task.everywhere) for cutter in task.cutters]
     )
-    probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred)
+    probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred, task.everywhere)
     walls = Walls.of(probes, task.paths)
     problems = Problems(ready.samples, task.cutters, task.paths, task.indexing, walls)
     return replace(task, rows=rows[reached[rows]], probes=probes, walls=walls, problems=problems)

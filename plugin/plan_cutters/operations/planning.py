@@ -319,7 +319,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
-    probes = Probes(ready.samples, cutters, ready.setups, open_)
+    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     machine = ready.conditions.machine
     paths = Paths(
