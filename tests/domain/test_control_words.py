@@ -92,3 +92,13 @@ def test_axes_with_names_of_their_own_have_no_words():
 )  # fmt: skip
 def test_the_choice_of_a_solution(mine, other, way):
     assert solution_of(mine, other) == way
+
+
+def test_a_turn_about_x_alone_is_written_as_one():
+    """As a machinist of four axes reads it, to both sides."""
+    for degrees in (30.0, -30.0, 90.0, -150.0):
+        machine = Machine.parse("4-axis-a")
+        frame, plane, _ = orientation(machine, np.array([0.0, 0.0, 1.0]), np.array([degrees]))
+        words = control_words(frame, plane, {"A": degrees}, None)
+        assert words.g68_2 == f"G68.2 P0 Q313 X0 Y0 Z0 I0 J{degrees:g} K0"
+        assert words.rotary == f"G54 G0 A{degrees:g}"

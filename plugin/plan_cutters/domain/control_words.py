@@ -62,14 +62,18 @@ def control_words(
 def euler_angles(plane: Floats) -> tuple[float, float, float]:
     """The angles I, J, K, deg, of a plane whose x, y, z are the rows of a rotation (3, 3): R = Rz(I) Rx(J) Rz(K).
 
-    Where its z lies along Z, I alone turns it.
+    Where its z lies along Z, I alone turns it. Of two ways that with the smaller angles I and K is taken.
     """
     x, y, z = plane
     across = math.hypot(z[0], z[1])
     if across <= _LEVEL:
         return math.degrees(math.atan2(x[1], x[0])), 0.0 if z[2] > 0.0 else 180.0, 0.0
-    first, second = math.atan2(z[0], -z[1]), math.atan2(across, z[2])
-    return math.degrees(first), math.degrees(second), math.degrees(math.atan2(x[2], y[2]))
+    angles = math.atan2(z[0], -z[1]), math.atan2(across, z[2]), math.atan2(x[2], y[2])
+    first, second, third = (math.degrees(each) for each in angles)
+    other_first, other_third = (math.remainder(each + 180.0, 360.0) for each in (first, third))
+    if abs(other_first) + abs(other_third) < abs(first) + abs(third) - _LEVEL:
+        return other_first, -second, other_third
+    return first, second, third
 
 
 def solution_of(angles: Sequence[float], other: Sequence[float] | None) -> int:

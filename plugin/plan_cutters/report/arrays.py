@@ -112,7 +112,8 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its
     operations, -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation
     serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches; `strategy`, 0: in a point,
-    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, else nan;
+    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, or one that it slid to
+    along its flank or its upper face, else nan;
     `moving_axis` (n, 3), the axes proposed for simultaneous operations, else nan, and `moving_piece`, the proved piece of the
     operation about the sample, the largest first, -1 for none.
     `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, k) is in
