@@ -8,6 +8,8 @@ import type { Position } from "./machine.ts";
 import { cross, DEG, norm } from "./vectors.ts";
 
 const DIGITS = { angle: 2, axis: 4 };
+/** Sine of an angle between tool axes that are one. */
+const SAME = 1e-6;
 
 export class Angles {
   readonly root = el("div", { id: "angles" });
@@ -32,6 +34,8 @@ export class Angles {
       const named = found.length > 1 ? `Solution ${i + 1}` : names.length > 1 ? "Angles" : "Angle";
       rows.push(this.row(named, words.join(", "), beyond(names, each), `Copy ${words.join(" ")}`, words.join(" ")));
     });
+    const { operation } = app;
+    if (operation?.axis && norm(cross(axis, operation.axis)) < SAME) rows.push(...operation.words.map((each) => this.row("Control", each, "", `Copy ${each}`)));
     const near = kinematics && kinematics.direction.length === 2 && found.length > 0 ? norm(cross(axis, kinematics.direction[0])) : 1;
     if (near <= Math.sin(SINGULAR / DEG)) rows.push(el("p", { class: "hint" }, `Singular: the tool axis is nearly along ${names[0]}, which turns fast there.`));
     this.root.replaceChildren(...rows);

@@ -16,7 +16,10 @@ import type { Picker } from "./pick.ts";
 import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
 import type { Stage } from "./stage.ts";
 import type { ToolView } from "./tool.ts";
-import { turned } from "./vectors.ts";
+import { cross, norm, turned } from "./vectors.ts";
+
+/** Sine of an angle between tool axes that are nearly one. */
+const NEAR = 1e-3;
 
 export interface Judged {
   state: State;
@@ -182,8 +185,14 @@ export class App {
 
   /** The posture with the axis of the operation that takes the sample shown. */
   plannedPosture(): Posture | null {
-    const axis = this.operation?.axis;
-    return axis && this.plan && this.sample ? postureOf(this.plan, this.arrays, axis, this.sample) : null;
+    const { operation, sample } = this;
+    const axis = operation?.axis;
+    if (!axis || !this.plan || !sample) return null;
+    // A tool that slid along its flank touches beside the sample, as the posture found with this axis does.
+    const found = operation.cutter === this.cutter.id ? this.samples.posture(this.cutter.id, sample.row) : null;
+    const here = (this.samples.setup(this.cutter.id, sample.row) ?? 0) === operation.setup;
+    if (found?.shift && here && norm(cross(place(this.cutter, sample, found).axis, axis)) < NEAR) return found;
+    return postureOf(this.plan, this.arrays, axis, sample);
   }
 
   /** The posture of the operation shown, the one found, or the witness's. */

@@ -91,6 +91,8 @@ export interface Operation {
   text: string;
   /** Where its tool is shown. */
   sample: number;
+  /** Words of a control for its orientation: the tilted plane and the turn onto it, or the rotary axes. */
+  words: string[];
 }
 
 export interface OperationPlan {

@@ -202,10 +202,9 @@ _ANSWERS = (
 _OPERATIONS = (
     Option(
         "operations", str, None, choices=("fewest", "fastest", "both"),
-        brief="Plan fixed orientations (3+2): two rotary axes.",
-        help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
-        "that there are no fewer, the fastest, or both. The machine has two rotary axes, or none is named. Only finishing is "
-        "planned.",
+        brief="Plan steps with fixed orientations (3, 3+1, 3+2).",
+        help="Plan operations with fixed orientations (3, 3+1 or 3+2 axes) that finish together all that is reached: the fewest, "
+        "with a proof that there are no fewer, the fastest, or both. Only finishing is planned.",
     ),
     Option(
         "feed", float, None, unit="mm/min", limits=(0.1, 1e6), brief="Feed of all cutters.",

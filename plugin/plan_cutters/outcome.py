@@ -26,7 +26,7 @@ class Operation:
     cutter: Cutter
     setup: int  #: 0 for the first.
     axis: Floats | None  #: (3,) float: unit, part coordinates; None where it is simultaneous.
-    #: (2,) float: positions of the rotary axes, deg, and those of the other solution, where there is one.
+    #: (k,) float: positions of the rotary axes, deg, and those of the other solution, where there is one.
     angle: Floats | None
     other_angle: Floats | None
     rows: NDArray[np.int64]  #: (r,) int64: samples that go with it.

@@ -183,7 +183,9 @@ class Run:
             return JudgedPart.of(of, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
 
         if options.other_setups:
-            first = replace(ready.alone(0), options=replace(ready.options, other_setups=(), other_placements=()))
+            # Steps of the planner's own may be in the other setups.
+            alone = replace(ready.options, other_setups=(), other_placements=(), process=None)
+            first = replace(ready.alone(0), options=alone)
             stand(lambda: replace(combined(first, [], {}, explain=False), later=options.other_setups))
         others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
         reasons: dict[Cutter, ExplainedIn] = {}

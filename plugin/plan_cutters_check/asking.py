@@ -28,7 +28,7 @@ from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.scene.faces import choose, clamped_faces, ignored_faces, ignored_words
 from plan_cutters_check.findings import same, short
-from plan_cutters_check.question import Body, Grip, MachineAxes, Question, Section, Setup, ToolSizes, require_operations
+from plan_cutters_check.question import FREE, Body, Grip, MachineAxes, Question, Section, Setup, ToolSizes, require_operations
 
 #: How far the chords of a chuck's jaws may be from their bore, mm.
 _BORE = 1e-3
@@ -46,7 +46,7 @@ def question_of(
     tolerance = _fits(part, options, document, [*cutters], setups)
     ignored = ignored_faces(part, ignored_words(part, options.ignore))
     return Question(
-        part, _axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
+        part, machine_axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
         ignored | repeated_faces(part, ignored).keys(), orient(part, options.setup, options.flip).sign, tolerance, document,
         arrays["operations.npz"], arrays["samples.npz"], grips=grips,
     )  # fmt: skip
@@ -162,16 +162,19 @@ def _setups(part: Part, options: Options, document: Mapping[str, Any]) -> tuple[
     return tuple(setups), tuple(grips)
 
 
-def _axes(machine: Machine) -> MachineAxes:
-    """The rotary axes; a machine without them is set by the azimuth about the setup axis and the tilt from it."""
+def machine_axes(machine: Machine) -> MachineAxes:
+    """The rotary axes; a machine that names none is set by the azimuth about the setup axis and the tilt from it."""
     turning, free = machine.rotary, (-math.inf, math.inf)
+    about, limits = [axis.direction for axis in turning], [axis.limits or free for axis in turning]
+    if not machine.turns:
+        about, limits = [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)], [free, free]
     return MachineAxes(
-        tuple(axis.name for axis in turning) or ("azimuth", "tilt"),
-        np.array([axis.direction for axis in turning] or [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)], float),
-        np.array([axis.limits or free for axis in turning] or [free, free], float),
+        tuple(axis.name for axis in turning) if machine.turns else FREE,
+        np.array(about, float).reshape(-1, 3),
+        np.array(limits, float).reshape(-1, 2),
         np.array(machine.tool_axis, float),
         math.pi if machine.tilt_limit is None else machine.tilt_limit,
-        bool(turning) and all(axis.rate is not None for axis in turning),
+        machine.turns and all(axis.rate is not None for axis in turning),
     )
 
 

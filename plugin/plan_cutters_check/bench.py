@@ -31,6 +31,8 @@ _TRIED, _ACCURACY = 120, 0.05
 #: How far from a place in the material the next one is tried, as a share of the flat.
 _STEP = 0.1
 _END = 1e-9
+#: Parts of unit axes that differ by less are nearly one: the tool moves by less than a thousandth of a millimetre.
+_ONE_AXIS = 1e-5
 #: Places on the rim and within it that are looked at first; by how much disks are widened, rounding, mm; halvings of a radius.
 _RIM, _RING, _APART, _ROUNDING, _HALVINGS = 36, 12, 1e-5, 1e-9, 50
 
@@ -199,6 +201,16 @@ class Bench:
             # A search does not put a tool down at a tilt at which it touches with nothing that cuts, though it be free there.
             verdict[~tool.touches(np.arctan2(sine, cosine))] = MET
         low, high = self._rotation
+        slid = np.flatnonzero(verdict != FREE)
+        slid = slid[self._slid(setup, tool, rows[slid], axis[slid])]
+        if len(slid):
+            moved = rows[slid]
+            at = Contacts(
+                self.point[moved] + self.question.shift(tool.id)[moved], self.normal[moved],
+                self.question.samples[f"lean_{tool.id}"][moved],
+            )  # fmt: skip
+            own = self.question.samples[f"axis_{tool.id}"][moved]
+            verdict[slid] = self._looked(setup, tool, moved, own, at, clock, self._limits(tool, surely))[0]
         if high - low < 2.0 * math.pi - _END:
             return verdict
         # A search may refuse flutes that leave the wall by more than its triangles are sure of.
@@ -210,6 +222,12 @@ class Bench:
         if len(upright) and tool.flat > 0.0:
             verdict[upright] = self._under_flat(setup, tool, rows[upright], axis[upright], clock, surely=surely)
         return verdict
+
+    def _slid(self, setup: int, tool: Tool, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
+        """Where (m,) the posture that the verdicts have has nearly this axis in this setup: it may touch beside the sample."""
+        samples = self.question.samples
+        here = samples.get(f"setup_{tool.id}", np.zeros(len(self.point), np.int64))[rows] == setup
+        return np.asarray(here & (np.abs(samples[f"axis_{tool.id}"][rows] - axis).max(axis=1, initial=0.0) <= _ONE_AXIS))
 
     def _under_flat(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """Whether an upright tool stands free anywhere with a contact under its flat: `FREE`, `MET`, or `OPEN`."""

@@ -25,8 +25,7 @@ _OF_PLAN: _Arrays = {
     "exclusive": ((), "b"), "lean": ((3,), "f"), "strategy": ((), "u"), "contact": ((3,), "f"), "moving_axis": ((3,), "f"),
     "moving_piece": ((), "i"),
 }  # fmt: skip
-_OF_CANDIDATES: _Arrays = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_angle": ((2,), "f"),
-                           "candidate_axis": ((3,), "f")}  # fmt: skip
+_OF_CANDIDATES: _Arrays = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_axis": ((3,), "f")}
 _OF_SAMPLES: _Arrays = {"point": ((3,), "f"), "normal": ((3,), "f"), "direction_max": ((3,), "f"), "uv": ((2,), "f"),
                         "face": ((), "i"), "area": ((), "f"), "inside_bodies": ((), "b")}  # fmt: skip
 _OF_CUTTERS: _Arrays = {"verdict": ((), "u"), "axis": ((3,), "f"), "lean": ((3,), "f"), "reason": ((), "u")}
@@ -54,9 +53,10 @@ def faults(question: Question) -> Iterator[str]:
     yield from _shaped("samples.npz", samples, _OF_SAMPLES, n)
     for cutter in question.document["cutters"]:
         yield from _shaped("samples.npz", samples, {f"{k}_{cutter['id']}": v for k, v in _OF_CUTTERS.items()}, n)
-    yield from _shaped("operations.npz", arrays, _OF_CANDIDATES, len(arrays.get("candidate_cutter", ())))
+    of_candidates = _OF_CANDIDATES | {"candidate_angle": ((len(question.machine.names),), "f")}
+    yield from _shaped("operations.npz", arrays, of_candidates, len(arrays.get("candidate_cutter", ())))
     yield from _shaped("operations.npz", arrays, {"chosen": ((), "i")}, len(arrays.get("chosen", ())))
-    every = {*_OF_CANDIDATES, "chosen"}
+    every = {*of_candidates, "chosen"}
     for k, plan in enumerate(entry["plans"]):
         mine = {f"{name}{suffix(k, plan['name'])}": form for name, form in _OF_PLAN.items()}
         every |= {*mine}
@@ -162,7 +162,7 @@ class Paper:
         low_high = np.clip(np.degrees(question.machine.limits), -180.0, 180.0)
         worst, missing, tried = 0.0, 0, 0
         for s, each in enumerate(question.setups):
-            angle = self.rng.uniform(low_high[:, 0], low_high[:, 1], (_TRIED, 2))
+            angle = self.rng.uniform(low_high[:, 0], low_high[:, 1], (_TRIED, len(low_high)))
             wanted = axes_of(question.machine, each, angle[allowed(question.machine, each, angle)])
             if not len(wanted) or not len(normal):
                 continue
@@ -229,15 +229,19 @@ class Paper:
         question, strategy, known = self.reckoned.question, plan["strategy"], np.isfinite(plan["contact"])
         scallop, accuracy = (float(question.document["effective"][name]) for name in ("scallop_mm", "axis_accuracy_deg"))
         on_wall = strategy == WALL
-        off = (strategy > WALL) | ((strategy > 0) & (plan.label < 0)) | (on_wall != known.all(axis=1))
-        odd = int((off | (~on_wall & known.any(axis=1))).sum())
+        # A tool may slide to a contact that is written: then the sample lies on it all the same.
+        slid = known.all(axis=1) & (strategy == 0) & (plan.label >= 0)
+        off = (strategy > WALL) | ((strategy > 0) & (plan.label < 0)) | (on_wall != (known.all(axis=1) & ~slid))
+        odd = int((off | (~on_wall & ~slid & known.any(axis=1))).sum())
         wrong, count = list[str](), {FLOOR: 0, WALL: 0}
         for i, each in enumerate(plan.operations):
             mine = {kind: np.flatnonzero((plan.label == i) & (strategy == kind)) for kind in count}
             if each["axis"] is None:
-                odd += sum(map(len, mine.values()))
+                odd += sum(map(len, mine.values())) + int(((plan.label == i) & slid).sum())
                 continue
             axis = axes_of(question.machine, question.setups[each["setup"]], degrees_of(question, each))[0]
+            if (rows := np.flatnonzero((plan.label == i) & slid)).size:
+                wrong += [f"{each['id']}: {words}" for words in self._slid(plan, each, rows, axis)]
             for kind, claim in ((FLOOR, self._floor), (WALL, self._wall)):
                 count[kind] += len(mine[kind])
                 if len(mine[kind]) and not odd:
@@ -253,6 +257,18 @@ class Paper:
                 f"{plan}: {count[FLOOR]} samples lie under the flat of a tip and {count[WALL]} along flutes, within the "
                 f"scallop height; strips are no wider than these.{text}",
             )
+
+    def _slid(self, plan: Planned, each: Mapping[str, Any], rows: Rows, axis: Floats) -> Iterator[str]:
+        """What is wrong with samples that lie elsewhere on a tool than its contact."""
+        question = self.reckoned.question
+        tool, axes = tool_of(question.tools[each["cutter"]]), np.repeat(axis[None], len(rows), axis=0)
+        at = contacts_at(question, plan, each, rows, axes)
+        away = question.samples["point"][rows] - tool.tips(at.point, at.normal, axes, at.tilt_direction)
+        height = (away * axis).sum(axis=1)
+        depth = tool.solids[0].depth(np.linalg.norm(away - height[:, None] * axis, axis=1), height)[0]
+        keeps = question.tools[each["cutter"]].allowance
+        if not (np.abs(depth + keeps) <= question.tolerance + _SAME_MM).all():
+            yield "a sample beside a contact does not lie on the flutes"
 
     def _floor(
         self, plan: Planned, each: Mapping[str, Any], rows: Rows, axis: Floats, scallop: float, accuracy: float
@@ -327,8 +343,9 @@ def contacts_at(question: Question, plan: Planned, each: Mapping[str, Any], rows
         same = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
         point[same] += question.shift(each["cutter"])[rows[same]]
     tilt_direction = plan["lean"][rows].copy()
+    written = np.isfinite(plan["contact"][rows]).all(axis=1)
+    point[written] = plan["contact"][rows[written]]
     mine = plan["strategy"][rows] == WALL
-    point[mine] = plan["contact"][rows[mine]]
     normal[mine], tilt_direction[mine] = _flutes(question.tools[each["cutter"]], normal[mine], axis[mine])
     return Contacts(point, normal, tilt_direction)
 

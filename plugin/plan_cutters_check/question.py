@@ -48,8 +48,8 @@ class ToolSizes:
 class MachineAxes:
     """The rotary axes of a machine, the one next to the part first, in the machine's frame.
 
-    `direction` (2, 3); `limits` (2, 2), rad, infinite: none; `tool` (3,), from the tip to the spindle at zero angles;
-    `tilt_limit`: largest angle of the tool axis from the setup axis, rad, pi: none; `rates`: whether both axes have a rate.
+    `direction` (k, 3) of at most 2; `limits` (k, 2), rad, infinite: none; `tool` (3,), from the tip to the spindle at zero
+    angles; `tilt_limit`: largest angle of the tool axis from the setup axis, rad, pi: none; `rates`: whether all axes have one.
     """
 
     names: tuple[str, ...]
@@ -150,6 +150,12 @@ class Question:
             return d[:, 0], normal / np.linalg.norm(normal, axis=1)[:, None], d[:, 1:]
 
 
+#: Names of the angles that set a machine that names no rotary axes.
+FREE = ("azimuth", "tilt")
+#: How far off its circle a tool axis may be that a machine of less than two rotary axes holds, rad.
+_ON_CIRCLE = 1e-6
+
+
 def frame_of(setup: Setup) -> Floats:
     """The machine's X, Y and Z (3, 3), as rows, in the part's coordinates at zero angles."""
     z = np.array(setup.z, float)
@@ -164,7 +170,7 @@ def frame_of(setup: Setup) -> Floats:
 
 
 def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats) -> Floats:
-    """Where vectors that are fixed to the tool point in the part's coordinates, (n, 3), at angles (n, 2) in degrees."""
+    """Where vectors that are fixed to the tool point in the part's coordinates, (n, 3), at angles (n, k) in degrees."""
     frame = frame_of(setup)
     vectors = np.broadcast_to(np.asarray(vector, float), (len(degrees), 3))
     for direction, angle in reversed([*zip(machine.direction, np.radians(degrees).T, strict=True)]):
@@ -184,17 +190,17 @@ def require_operations(document: Mapping[str, Any], file: str | None = None) -> 
 
 
 def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:
-    """Tool axes (n, 3) in the part's coordinates at angles (n, 2) in degrees."""
+    """Tool axes (n, 3) in the part's coordinates at angles (n, k) in degrees."""
     return carried(machine, setup, machine.tool, degrees)
 
 
 def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
-    """The angles of a fixed operation, (1, 2), deg."""
-    return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]])
+    """The angles of a fixed operation, (1, k), deg."""
+    return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]], float).reshape(1, -1)
 
 
 def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
-    """Which angles (n, 2), deg, are within the machine's limits."""
+    """Which angles (n, k), deg, are within the machine's limits."""
     return _within(machine, degrees) & _tilted(machine, setup, axes_of(machine, setup, degrees))
 
 
@@ -209,10 +215,22 @@ def _tilted(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool
 
 
 def held(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
-    """Which tool axes (n, 3), part coordinates, the machine holds with one of its two solutions, within its limits."""
+    """Which tool axes (n, 3), part coordinates, the machine holds with one of its solutions, within its limits."""
+    if len(machine.direction) < 2:
+        return np.asarray(_held_by_one(machine, np.asarray(axis, float) @ frame_of(setup).T) & _tilted(machine, setup, axis))
     able = [known & _turns_to(b, machine.limits[1]) & (free | _turns_to(a, machine.limits[0]))
             for a, b, known, free in _solutions(machine, setup, axis)]  # fmt: skip
     return np.asarray((able[0] | able[1]) & _tilted(machine, setup, axis))
+
+
+def _held_by_one(machine: MachineAxes, wanted: Floats) -> NDArray[np.bool_]:
+    """Which tool axes (n, 3) of the machine's frame the only rotary axis turns the tool to, or are the tool without any."""
+    if not len(machine.direction):
+        return np.asarray(np.linalg.norm(wanted - machine.tool, axis=1) <= _ON_CIRCLE)
+    about, tool = machine.direction[0], machine.tool
+    p, q = tool - (tool @ about) * about, wanted - (wanted @ about)[:, None] * about
+    angle = np.arctan2(np.cross(p, q) @ about, q @ p)
+    return np.asarray((np.abs(wanted @ about - tool @ about) <= _ON_CIRCLE) & _turns_to(angle, machine.limits[0]))
 
 
 def _solutions(machine: MachineAxes, setup: Setup, axis: Floats) -> Iterator[tuple[Floats, Floats, NDArray[Any], NDArray[Any]]]:
@@ -251,6 +269,8 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[
     and several where they are as large, as half a turn is either way.
     """
     machine, others = question.machine, list[tuple[float, ...]]()
+    if len(machine.direction) < 2:
+        return others
     wanted = axes_of(machine, question.setups[setup], degrees[None])
     for a, b, known, free in _solutions(machine, question.setups[setup], wanted):
         if free[0]:

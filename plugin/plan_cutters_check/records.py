@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Loose
-from plan_cutters_check.question import axes_of, carried, degrees_of, frame_of, other_angles
+from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
@@ -31,7 +32,7 @@ _INDEX_TIME, _ROUNDED, _UNIT = 5.0, 0.0015, 1_000_000
 #: Entries of `assumed` that repeat what was asked for in `effective`, and of a step those of its first operation.
 _ASSUMED = {"scallop_mm": "scallop_mm", "stepover": "stepover", "overlap_mm": "overlap_mm", "change_s": "change_time_s",
             "setup_s": "setup_time_s", "link_s": "link_time_s"}  # fmt: skip
-_OF_FIRST = ("setup", "mode", "angles_deg", "axis", "cutter", "strategy")
+_OF_FIRST = ("setup", "mode", "angles_deg", "axis", "cutter", "strategy", "g68_2", "g53_1", "rotary_words")
 #: Which plan of operations is the process: the first of these that there is. How its steps of one cutter cut, in their order.
 _PREFERRED, _ORDER = ("process", "fastest", "fewest"), ("floor", "mixed", "wall", "point")
 #: Cosine from the setup axis under which a tool comes from below; by how much each of some written angles may be off, deg.
@@ -63,7 +64,7 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
             "rotary": [
                 {"name": name, "limits_deg": None if np.isinf(limits).any() else np.degrees(limits).tolist()}
                 for name, limits in zip(machine.names, machine.limits, strict=True)
-            ] if document["machine"]["rotary"] else None,
+            ] if machine.names != FREE else None,
         },
         "process": _Process(reckoned).entry(),
         "cutters": made,
@@ -105,7 +106,7 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
     same = [plan["name"] for plan in written["plans"]] == names
     plans = [_plan(reckoned, plan) for plan in reckoned.plans] if same else [{"name": n} for n in names]
     stated, source = effective["index_time_s"], written["assumed"]["index_from"]
-    rates = source != "given" and question.machine.rates
+    rates = question.machine.rates and (source != "given" or not question.machine.names)
     feed, known = effective["feed_mm_min"], written["assumed"]["feed_mm_min"]
     # By library: each of the cutters has a feed, or none has.
     feeds = feed if feed is not None else None if known is None else _ANY
@@ -247,7 +248,9 @@ def _operation(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any
     if each["proved_share"] is not None:
         entry |= {"proved_share": Loose(0.0, 1.0), "approaches_proved": _ANY}
     if each["axis"] is None:
-        return entry | dict.fromkeys(("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from"))
+        return entry | dict.fromkeys(
+            ("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from", "g68_2", "g53_1", "rotary_words")
+        )
     return entry | _orientation(reckoned, each) if entry["setup"] == each["setup"] else entry
 
 
@@ -277,6 +280,8 @@ def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
         # Of those that are as large any may be written.
         near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]))
         other = Exactly({name: Between(a - _ROUNDED, a + _ROUNDED) for name, a in zip(machine.names, near, strict=True)})
+    known = np.linalg.norm(x) > 1e-6
+    x = x / np.linalg.norm(x) if known else np.full(3, np.nan)
     return {
         "axis": axis.tolist(),
         "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
@@ -284,8 +289,9 @@ def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
         "frame": {
             "origin": list(setup.origin or (0.0, 0.0, 0.0)),
             "z": axis.tolist(),
-            "x": (x / np.linalg.norm(x)).tolist() if np.linalg.norm(x) > 1e-6 else [Loose(-1.0, 1.0)] * 3,
+            "x": x.tolist() if known else [Loose(-1.0, 1.0)] * 3,
         },
+        **words_of(machine, each, np.array([x, np.cross(axis, x), axis]) @ frame.T, each["other_angles_deg"]),
         "index_from": assumed["index_from"],
         "index_s": _ANY if assumed["index_from"] == "rates" else assumed["index_s"],
     }
@@ -401,7 +407,8 @@ class _Process:
         clearances, seconds = [e["clearance_mm"] for e in each], [e["seconds"] for e in each]
         size = self.reckoned.required.of(rows, "area_mm2", "share")
         step: dict[str, Any] = {
-            **{name: first[name] for name in _OF_FIRST}, **size, "operation": first["id"], "take": "share", "own": None,
+            **{name: first[name] for name in _OF_FIRST if name in first},
+            **size, "operation": first["id"], "take": "share", "own": None,
             "rows": rows, "same": same,
             "link_seconds": sum(e["link_seconds"] for e in each),
             "seconds": None if None in seconds else sum(seconds), "clearance_mm": None if None in clearances else min(clearances),

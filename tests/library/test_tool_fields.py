@@ -347,3 +347,53 @@ def test_each_answer_of_the_page_has_its_test():
     assert len(set(named)) > 20
     missing = {name for name in named if f"def {name}(" not in tests and not (ROOT / "tests" / "library" / f"{name}.py").exists()}
     assert not missing
+
+
+@given(st.floats(0.5, 6.0), st.floats(1.0, 20.0), st.floats(10.0, 30.0), st.floats(0.0, 8.0))
+def test_a_tapered_ball_nose_of_freecad_is_a_ball_under_a_cone(tmp_path_factory, diameter, whole, flutes, more):
+    """Its flank is as wide at each height as a cone that touches the ball; the cone goes on up to the diameter at its top."""
+    ball, half = 0.5 * diameter, math.radians(0.5 * whole)
+    top = flutes + more
+    wide = ball * math.cos(half) + (top - ball * (1 - math.sin(half))) * math.tan(half)
+    fields = {"Diameter": f"{diameter!r} mm", "CuttingEdgeHeight": f"{flutes!r} mm", "TaperAngle": f"{whole!r} °",
+              "TaperDiameter": f"{2 * wide!r} mm", "Length": "90 mm", "ShankDiameter": f"{2 * wide!r} mm"}  # fmt: skip
+    folder = tmp_path_factory.mktemp("bit")
+    made = bit(folder, "TaperedBallNose", **fields).cutter
+    assert made.radius == made.corner_radius == pytest.approx(ball, abs=1e-6)
+    assert made.taper == pytest.approx(half)
+    assert made.stages[0][1] == pytest.approx(flutes)
+    ends = wide - more * math.tan(half)
+    cone = made.stages[0][2]
+    if more > 0.01:
+        assert (cone.radius, cone.upper_radius, cone.length) == pytest.approx((ends, wide, more), abs=1e-5)
+    assert made.stages[-1][2].upper_radius == pytest.approx(wide, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"TaperAngle": None}, "TaperAngle is missing"),
+        ({"TaperDiameter": "3 mm"}, "TaperDiameter 3 is reached 10.51 mm over its tip"),
+        ({"CuttingEdgeAngle": "20 °"}, "CuttingEdgeAngle"),
+    ],
+)
+def test_a_tapered_ball_nose_that_does_not_agree_is_not_read(tmp_path, change, why):
+    fields = {"Diameter": "2 mm", "TaperAngle": "6 °", "TaperDiameter": "6 mm", "CuttingEdgeHeight": "25 mm", "Length": "60 mm",
+              "ShankDiameter": "6 mm"}  # fmt: skip
+    assert bit(tmp_path, "TaperedBallNose", **fields).cutter
+    found = bit(tmp_path, "TaperedBallNose", **fields | change)
+    assert (found.cutter, found.broken) == (None, False)
+    assert why in found.unused
+    with pytest.raises(LibraryError, match="TaperDiameter 1 is less than its ball"):
+        bit(tmp_path, "TaperedBallNose", **fields | {"TaperDiameter": "1 mm"})
+
+
+def test_flutes_as_long_as_the_bit_end_at_the_assumed_stick_out(tmp_path):
+    fields = {"Diameter": "6 mm", "CuttingEdgeHeight": "50 mm", "Length": "50 mm", "ShankDiameter": "6 mm"}
+    path = write_bit(tmp_path / "bit.fctb", "Endmill", **fields)
+    found = entry(path, assume_stickout=30.0)
+    stated = write_bit(tmp_path / "b.fctb", "Endmill", **fields | {"CuttingEdgeHeight": "30 mm"})
+    assert found.cutter.id == entry(stated, assume_stickout=30.0).cutter.id
+    assert any("its flutes end at the assumed stick-out, 30 mm" in note for note in found.notes)
+    short = write_bit(tmp_path / "c.fctb", "Endmill", **fields | {"CuttingEdgeHeight": "45 mm"})
+    assert "shorter than its flutes" in entry(short, assume_stickout=30.0).unused

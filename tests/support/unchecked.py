@@ -32,7 +32,7 @@ _LISTED = (
     ("the volume of the part is not reckoned again", "process.", "stock**"),
     ("what other orientations would do is not looked for", "process.steps[].", "own** take"),
     ("of repeated, simultaneous and own steps alone it does not follow from the files", "process.steps[].",
-     "repeat repeat_deg** alone_mm2 below_mm2 angles_deg** axis**"),
+     "repeat repeat_deg** alone_mm2 below_mm2 angles_deg** axis** g68_2 g53_1 rotary_words"),
     ("the command that checks does not say it", "", "effective.**"),
     ("it is no part of the operations", "cutters[].",
      "axis_limit_with** setups** lost_in_all witnesses** witnesses_untried beyond_setup area** singular travel** "

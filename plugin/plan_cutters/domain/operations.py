@@ -56,8 +56,8 @@ class Columns(Record):
     cutter: Ints
     setup: Ints
     axis: Floats  #: (m, 3) float: unit tool axis in part coordinates: the one that the rounded `angle` gives.
-    #: (m, 2) float: positions of the rotary axes, deg, as a control shows them; without rotary axes the azimuth and the tilt
-    #: about the setup axis.
+    #: (m, k) float: positions of the k rotary axes, deg, as a control shows them; where the machine names none the azimuth and
+    #: the tilt about the setup axis.
     angle: Floats
 
     def __len__(self) -> int:
@@ -67,7 +67,7 @@ class Columns(Record):
     def key(self) -> NDArray[np.str_]:
         """A text for each, the same for the same ones."""
         rows = zip(self.cutter.tolist(), self.setup.tolist(), self.angle.tolist(), strict=True)
-        return np.array([f"{c} {s} {a:.3f} {b:.3f}" for c, s, (a, b) in rows], np.str_)
+        return np.array([" ".join([f"{c} {s}", *(f"{angle:.3f}" for angle in angles)]) for c, s, angles in rows], np.str_)
 
     @property
     def first(self) -> NDArray[np.int64]:

@@ -61,12 +61,14 @@ class OwnProcess:
     rest: Literal["plan", "leave"] = "plan"
     file: str = ""  #: Where it was read from; empty: it was given in Python.
 
-    def check(self, cutters: Sequence[Cutter], setups: int, names: tuple[str, str]) -> None:
-        """See to it that every cutter, setup and angle is one that there is.
+    def check(self, cutters: Sequence[Cutter], setups: int, names: Sequence[str], moves: bool) -> None:
+        """See to it that every cutter, setup and angle is one that there is, and every motion.
 
-        `cutters`: all that are judged. `setups`: how many setups there are. `names` (str, str): of the two rotary axes. Raises
-        OptionError: it names the step.
+        `cutters`: all that are judged. `setups`: how many setups there are. `names`: of the rotary axes. `moves`: whether any of
+        them can turn the tool. Raises OptionError: it names the step.
         """
+        there_are = f"the rotary axes are {' and '.join(names)}" if len(names) > 1 else f"the rotary axis is {''.join(names)}"
+        there_are = there_are if names else "the machine has no rotary axis"
         for step in self.steps:
             cutter_of(step.cutter, cutters, self._where(step))
             if step.setup >= setups:
@@ -74,7 +76,9 @@ class OwnProcess:
                 raise OptionError(f"{self._where(step)}: setup {step.setup + 1}: 1 {there}; name another with --setup")
             if step.angles is not None and {name for name, _ in step.angles} != set(names):
                 written = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
-                raise OptionError(f"{self._where(step)}: angles: {written}; the rotary axes are {' and '.join(names)}")
+                raise OptionError(f"{self._where(step)}: angles: {written}; {there_are}")
+            if step.mode == "simultaneous" and not moves:
+                raise OptionError(f"{self._where(step)}: it is simultaneous, and on this machine no axis turns the tool")
         for number, each in enumerate(self.forbidden, 1):
             cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
 
@@ -154,7 +158,7 @@ def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Nearest:
-    """The orientation next to one that a person wrote which serves more: its angles (2,), deg, its axis (3,), and the rows."""
+    """The orientation next to one that a person wrote which serves more: its angles (k,), deg, its axis (3,), and the rows."""
 
     angle: Floats
     axis: Floats
@@ -170,7 +174,7 @@ class OwnResult:
     mode: Mode
     cutter: Cutter
     axis: Floats | None  #: (3,) float: None where it is simultaneous.
-    #: (2,) float: as written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
+    #: (k,) float: as written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
     angle: Floats | None
     requested: NDArray[np.int64]  #: (m,) int64: samples of its faces that no step before it finishes.
     rows: NDArray[np.int64]  #: (r,) int64: those of them that it finishes.
@@ -186,19 +190,12 @@ def operations_requested(
     """The operations that are planned: what was requested; behind a process, else, the fastest if all have feeds.
 
     `operations`: as requested. `cutters`: all that are judged. `feeds`: of those that have one, mm/min. `setups`: how many there
-    may be. Raises OptionError: the machine turns about one axis, a step is about something that there is not, or a feed is
-    missing where time counts.
+    may be. Raises OptionError: a step is about something that there is not, or a feed is missing where time counts.
     """
-    if machine.turns and machine.turning < 2:
-        axes, word = "one" if machine.turning else "no", "process" if operations is None else "operations"
-        raise OptionError(
-            f"on machine {machine.name} {axes} rotary axis turns the tool: a plan of operations chooses the angles of two; "
-            f"leave out --{word}, or name a machine that has them"
-        )
     unpriced = list[str]()
     if process is not None:
-        rotary = machine.rotary
-        process.check(cutters, setups, (rotary[0].name, rotary[1].name) if len(rotary) == 2 else ("azimuth", "tilt"))
+        names = [axis.name for axis in machine.rotary] if machine.turns else ["azimuth", "tilt"]
+        process.check(cutters, setups, names, not machine.turns or machine.turning > 0)
         named = [cutter_of(each.cutter, cutters, "process") for each in process.steps]
         unpriced = [each.typed for each in named if each not in feeds]
     chosen = operations or ("fewest" if unpriced or not feeds else "fastest")

@@ -7,6 +7,7 @@ A length is a text with a unit, in the writer's language: `6,0 mm`, `20.83 µm`.
 itself counts in, unless the bit says that its units are imperial.
 """
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -14,7 +15,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import lines_of
 from plan_cutters.library import raw_tool
@@ -44,6 +45,8 @@ _ANGLE = "CuttingEdgeAngle"
 _AS_TOML = "write it as TOML (docs/tool_libraries.md)"
 #: Fields of other shapes: which tip they make of this one, nothing says.
 _STRANGE = ("Radius", "TaperAngle")
+#: Of a tapered ball nose, the diameter where its cone ends.
+_TOP = "TaperDiameter"
 #: Its drawing does not say from where it counts.
 _NECK = "NeckLength"
 #: What shapes are among mills; the others stay what they are called.
@@ -55,6 +58,7 @@ _SORTS = {
     "vbit": "chamfer mill",
     "v-bit": "chamfer mill",
     "chamfer": "chamfer mill",
+    "taperedballnose": "tapered mill",
 }
 #: Folders in which a library's bits are looked for.
 _FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
@@ -204,7 +208,7 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
                 f"shape-type {shown(kind)}, but shape {shown(shape)}: another drawing can be another tool; "
                 f"correct one, or {_AS_TOML}"
             )
-        for word in _STRANGE:
+        for word in _STRANGE[: 1 if tool.sort == "tapered mill" else None]:
             if re.search("[1-9]", str(parameters.get(word) or "")):
                 tool.doubts.append(f"{word} {shown(parameters[word])}: a {kind} has none; leave it out, or {_AS_TOML}")
         for word in _FLATS:
@@ -213,6 +217,8 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
         if re.search("[1-9]", neck):
             tool.notes.append(f"{_NECK} {neck[:40]} is not used")
         _cone(tool, parameters.get(_ANGLE))
+        if tool.sort == "tapered mill":
+            _tapered_ball(tool, parameters, length)
     # FreeCAD writes 0 for a stick-out that nobody gave.
     if re.search("[1-9]", str(parameters.get("Stickout") or "")):
         tool.take("LPR", parameters["Stickout"], "Stickout", length)
@@ -252,6 +258,39 @@ def _cone(tool: Listed, angle: Any) -> None:
             )
     elif angle not in (None, "") and tool.tried(lambda: _angle(angle, _ANGLE), 0.0) not in (0.0, 180.0):
         tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {tool.kind} has no cone; leave it out, or {_AS_TOML}")
+
+
+def _tapered_ball(tool: Listed, parameters: dict[str, Any], length: Callable[[Any, str], float]) -> None:
+    """Take a ball under a cone, as FreeCAD labels its fields: the diameter of the ball, the whole angle of the cone, and the
+    diameter at the cone's top, which may lie above the flutes.
+    """
+    tool.tapered = "tapered_ball"
+    tool.take("TA", parameters.get(_STRANGE[1]), _STRANGE[1], _half_angle)
+    if not tool.states("TA"):
+        tool.doubts.append(f"{_STRANGE[1]} is missing (the whole angle of its cone): add it; 0 says that it has none")
+    if "DC" not in tool.values:
+        return
+    ball, taper = 0.5 * tool.values["DC"], math.radians(tool.values.get("TA", 0.0))
+    tool.notes.append(f"{tool.cite('DC')} is that of its ball, {_STRANGE[1]} the whole angle of its cone")
+    # The diameter of a leaning flank is that at the tip, as if there were no ball.
+    tool.values["RE"], tool.values["DC"] = ball, 2.0 * ball * (1.0 - math.sin(taper)) / math.cos(taper)
+    tool.words["RE"] = "the radius of its ball"
+    tool.take("TOP", parameters.get(_TOP), _TOP, length)
+    wide, flutes = 0.5 * tool.values.pop("TOP", 0.0), tool.values.get("LCF", 0.0)
+    if not wide or not taper or not flutes:
+        return
+    if wide < ball * math.cos(taper) - slack(wide):
+        tool.faults.append(f"{_TOP} {2.0 * wide:.10g} is less than its ball is wide under the cone")
+        return
+    top = ball * (1.0 - math.sin(taper)) + (wide - ball * math.cos(taper)) / math.tan(taper)
+    ends = wide - (top - flutes) * math.tan(taper)
+    if ends > wide + slack(wide):
+        tool.doubts.append(
+            f"{_TOP} {2.0 * wide:.10g} is reached {top:.4g} mm over its tip, below the end of its flutes, {tool.cite('LCF')}: "
+            f"what they are above is not known; {_AS_TOML}"
+        )
+    elif top > flutes + slack(top):
+        tool.shaft.append(Segment(round(ends, 9), round(top - flutes, 9), round(wide, 9)))
 
 
 def _stem(shape: Any) -> str:

@@ -169,6 +169,7 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     _complete(tool, (*tool.needs, *_NEEDS.get(sort, ())), ask)
     if tool.stated is not None:
         return _as_stated(tool, tool.stated, ask)
+    _end_flutes(tool, ask)
     bare = CUTTING[sort](tool)
     widest = max(tool.values["DC"], 2.0 * top_radius(bare))
     if tool.values.get("DCX", 0.0) > widest + slack(widest):
@@ -195,6 +196,16 @@ def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
         lacks.append("its holder is missing: add it, or give --holder SPEC, as R15L30 (or none)")
     if lacks:
         raise UnfitError("; ".join(lacks))
+
+
+def _end_flutes(tool: Listed, ask: Ask) -> None:
+    """End the flutes of a tool that is all flutes, as its file has it, at the stick-out that is assumed for it."""
+    flutes, whole = tool.values.get("LCF", 0.0), tool.values.get("OAL")
+    if "LPR" in tool.values or ask.stickout is None or whole is None or flutes < whole - slack(whole):
+        return
+    if ask.stickout < flutes - slack(flutes):
+        tool.notes.append(f"{tool.cite('LCF')} is all of it: its flutes end at the assumed stick-out, {mm(ask.stickout)}")
+        tool.values["LCF"] = ask.stickout
 
 
 def _agree(tool: Listed) -> None:

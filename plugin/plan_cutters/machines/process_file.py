@@ -50,7 +50,7 @@ class StepTable(_Table):
         default=None, description="fixed where there are angles or an axis; any: as simultaneous"
     )
     angles: Annotated[dict[str, _Angle], Field(max_length=8)] | None = Field(
-        default=None, description="of both rotary axes by name, deg; null where it is simultaneous"
+        default=None, description="of each rotary axis by name, deg; null where it is simultaneous, or there is none"
     )
     axis: Vector | None = Field(default=None, description="in place of angles: towards the spindle, part coordinates")
     cutter: _Cutter
@@ -141,12 +141,15 @@ def _step(number: int, table: StepTable, file: str) -> OwnStep:
     if table.mode in ("simultaneous", "any"):
         if turned:
             raise OptionError(f"{where}: angles and axis are of a fixed orientation: leave them out, or the mode", file=file)
-    elif turned != 1:
+    elif turned > 1 or (turned == 0 and table.mode is None):
         need = "give angles or an axis, not both" if turned else "angles are missing, as angles = { C = 0.0, A = 0.0 }"
-        raise OptionError(f'{where}: {need}, or mode = "simultaneous"', file=file)
+        raise OptionError(f'{where}: {need}, or mode = "simultaneous"; on three axes mode = "fixed"', file=file)
+    # A machine without rotary axes has no angles.
+    fixed = turned > 0 or table.mode == "fixed"
+    angles = table.angles if turned or not fixed else {}
     return OwnStep(
-        number=number, setup=table.setup - 1, mode="fixed" if turned else "simultaneous", cutter=table.cutter,
-        angles=None if table.angles is None else tuple(table.angles.items()),
+        number=number, setup=table.setup - 1, mode="fixed" if fixed else "simultaneous", cutter=table.cutter,
+        angles=None if angles is None else tuple(angles.items()),
         axis=None if table.axis is None else unit_axis(table.axis, f"{file}: {where}"),
         faces=None if table.faces == LEFT else _numbers(table.faces, file, where), take=table.take,
     )  # fmt: skip

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.answers import essential_rows
 from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.operations.orientations import Orientations, apart, neighbours
+from plan_cutters.operations.orientations import Orientations, apart
 from plan_cutters.operations.probes import Probes
 from plan_cutters.plan_file.operations import FewestEntry
 from plan_cutters.scene.work import Progress
@@ -367,7 +367,7 @@ class Search:
         """Lay candidates at a spacing, rad, about some of them."""
         for c, s in sorted({*zip(self.columns.cutter[near].tolist(), self.columns.setup[near].tolist(), strict=True)}):
             same = (self.columns.cutter == c) & (self.columns.setup == s)
-            angle, axis = orientations[s].near(neighbours(self.columns.axis[near[same[near]]], spacing))
+            angle, axis = orientations[s].near(orientations[s].about(self.columns.axis[near[same[near]]], spacing))
             new = apart(axis, 0.6 * spacing, self.columns.axis[same])
             self._add_columns(columns_of(axis[new], angle[new], c, s))
 

@@ -88,11 +88,11 @@ class _Times:
 def recommended(task: Task, columns: Columns) -> Columns:
     """The columns of a plan that stay where simultaneous motion takes the area of the others.
 
-    Returns all of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
-    orientations were requested otherwise.
+    Returns all of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock or there are none,
+    or the most orientations were requested otherwise.
     """
     options = task.ready.options
-    if not len(columns) or options.most_operations is not None or options.index_step is not None:
+    if not len(columns) or options.most_operations is not None or options.index_step is not None or not task.moves:
         return columns
     times, stay = _Times.of(task, columns), list(range(len(columns)))
     (now, cutting), whole = times.total(stay), len(columns)
@@ -122,8 +122,8 @@ def fewer(task: Task, columns: Columns) -> list[tuple[Columns, float]]:
 def few_enough(task: Task, plan: OperationPlan) -> bool:
     """Whether a plan has no more fixed orientations than are recommended."""
     options = task.ready.options
-    fixed = plan.orientations
-    return options.most_operations is not None or options.index_step is not None or fixed <= options.max_orientations
+    fixed, stand = plan.orientations, options.index_step is not None or not task.moves
+    return options.most_operations is not None or stand or fixed <= options.max_orientations
 
 
 def with_moved(task: Task, faces: Sequence[int]) -> Task:
@@ -137,7 +137,7 @@ def flowing(task: Task, others: Callable[[Task], Columns], plan: OperationPlan) 
     `others`: gives fixed orientations for the samples that are not moved in a task. `plan`: the best one without.
     """
     options = task.ready.options
-    if options.most_operations is not None or options.index_step is not None or task.paths.feed is None:
+    if options.most_operations is not None or options.index_step is not None or task.paths.feed is None or not task.moves:
         return None
     made = []
     for faces in _faces_tried(task, plan):

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.kinematics import Kinematics, turned
 from plan_cutters.domain.operations import INDEX_TIME, Columns, IndexFrom
 from plan_cutters.domain.own_process import CONTROL_DIGITS as DIGITS
 from plan_cutters.operations.fastest import Turning
@@ -22,8 +22,8 @@ from plan_cutters.scene.conditions import Conditions
 
 #: A direction is along a rotary axis where their cosine is less below 1 than this: 0.008 deg.
 _ALONG = 1e-8
-#: Sums of angles that differ by less are the same position, deg.
-_SAME_DEG = 0.01
+#: Sums of angles that differ by less are the same position, and limits that do leave an axis one angle, deg.
+_SAME_DEG, _STILL = 0.01, 1e-9
 #: Distance of grid angles unless one is requested, rad.
 STEP = math.radians(5.0)
 #: Tool axes nearer than this are one, rad.
@@ -37,47 +37,56 @@ class Orientations:
     """The orientations that a machine can be set to in one setup.
 
     `kinematics`: the machine's; one that turns about the setup axis and across it where the machine names none. `names`: of its
-    two axes.
+    axes, two at most.
     """
 
     conditions: Conditions
     kinematics: Kinematics
-    names: tuple[str, str]
+    names: tuple[str, ...]
 
     @classmethod
     def of(cls, conditions: Conditions) -> "Orientations":
-        """Find those of a machine; options see to it that it has two rotary axes, or none that is named."""
+        """Find those of a machine."""
         machine, kinematics = conditions.machine, conditions.kinematics
         if kinematics is None:
             frame = conditions.frame
             free = np.full((2, 2), math.inf) * (-1.0, 1.0)
             return cls(conditions, Kinematics(frame[[2, 1]], free, frame[2]), ("azimuth", "tilt"))
-        first, second = machine.rotary
-        return cls(conditions, kinematics, (first.name, second.name))
+        return cls(conditions, kinematics, tuple(axis.name for axis in machine.rotary))
+
+    @property
+    def turning(self) -> int:
+        """How many of its axes turn the tool."""
+        return len(self.kinematics.turning()[1])
 
     def set_to(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Angles (n, 2), deg, as a control shows them, and their axes (n, 3): those alone that the machine can hold."""
-        shown = np.round(angle, DIGITS) + 0.0
-        axis = self.kinematics.axis(np.radians(shown))
-        held = self.conditions.allows(axis)
-        low, high = np.degrees(self.kinematics.limit).T
-        held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        """Angles (n, k), deg, as a control shows them, and their axes (n, 3): those alone that the machine can hold."""
+        shown, axis, held = self._shown(angle)
         return shown[held], axis[held]
+
+    def _shown(self, angle: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """The same for all angles, and which (n,) of them can be held; an axis that stands still has the angle of its limits."""
+        low, high = np.degrees(self.kinematics.limit).T
+        shown = np.where(high - low <= _STILL, low, np.round(angle, DIGITS)) + 0.0
+        axis = self.kinematics.axis(np.radians(shown))
+        held = self.conditions.allows(axis) & ((shown >= low - _STILL) & (shown <= high + _STILL)).all(axis=1)
+        return shown, axis, np.asarray(held)
 
     def along(self, direction: Floats) -> float:
         """+1 or -1 where the axis next to the part turns it about a direction, or the other way; else 0."""
+        if not self.names:
+            return 0.0
         cosine = float(self.kinematics.direction[0] @ direction)
         return math.copysign(1.0, cosine) if abs(cosine) > 1.0 - _ALONG else 0.0
 
     def turned(self, angle: Floats, direction: Floats, turn: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-        """Angles (n, 2), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""
-        along = self.along(direction)
-        first = angle[:, 0] + math.degrees(turn) * along
-        shown = np.round(np.column_stack([first - 360.0 * np.round(first / 360.0), angle[:, 1]]), DIGITS) + 0.0
-        held = self.kinematics.axis(np.radians(shown))
-        low, high = np.degrees(self.kinematics.limit).T
-        can = self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
-        return np.asarray(shown, float), held, np.asarray(can & (along != 0.0))
+        """Angles (n, k), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""
+        along, wanted = self.along(direction), np.array(angle)
+        first = wanted[:, :1] + math.degrees(turn) * along
+        wanted[:, :1] = first - 360.0 * np.round(first / 360.0)
+        shown, axis, held = self._shown(wanted)
+        still = np.abs(shown - wanted).max(axis=1, initial=0.0) > 10.0**-DIGITS
+        return shown, axis, np.asarray(held & ~still & (along != 0.0))
 
     def near(self, axis: Floats) -> tuple[Floats, Floats]:
         """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""
@@ -86,18 +95,29 @@ class Orientations:
         return self.set_to(np.degrees(angle[held, taken[held]]))
 
     def others(self, axis: Floats, angle: Floats) -> list[Floats | None]:
-        """The other angles (2,), deg, that hold each of some axes (n, 3) beside its angles (n, 2); None where there are none."""
+        """The other angles (k,), deg, that hold each of some axes (n, 3) beside its angles (n, k); None where there are none."""
         both = np.degrees(self.kinematics.positions(axis)[0])
         away = np.abs((both - angle[:, None] + 180.0) % 360.0 - 180.0).sum(axis=2)
         other = both[np.arange(len(both)), np.nan_to_num(away, nan=-1.0).argmax(axis=1)]
         there = np.isfinite(other).all(axis=1) & (np.nan_to_num(away, nan=-1.0).max(axis=1) > _SAME_DEG)
         return [shown if is_there else None for shown, is_there in zip(np.round(other, DIGITS) + 0.0, there, strict=True)]
 
-    def grid(self, step: float) -> tuple[Floats, Floats]:
-        """Angles (n, 2) that are whole multiples of a step, deg, and their axes.
+    def about(self, axis: Floats, spacing: float) -> Floats:
+        """Axes (m, 3) at an angle, rad, about each of some axes (n, 3): all about, or on the circle of a single rotary axis."""
+        machine, turning = self.kinematics.turning()
+        if len(turning) == 2:
+            return neighbours(axis, spacing)
+        ways = [turned(machine.direction[0], np.full(len(axis), side * spacing), axis) for side in (-1.0, 1.0) if turning]
+        return np.concatenate([axis[:0], *ways])
 
-        Nearer to the first axis fewer multiples of its angle are taken, so that the axes are about equally far apart.
+    def grid(self, step: float) -> tuple[Floats, Floats]:
+        """Angles (n, k) that are whole multiples of a step, deg, and their axes.
+
+        Nearer to the first of two axes fewer multiples of its angle are taken, so that the axes are about equally far apart.
         """
+        if len(self.names) < 2:
+            only = [_multiples(limit, step) for limit in self.kinematics.limit]
+            return self.set_to(np.column_stack(only) if only else np.zeros((1, 0)))
         start = self.kinematics.swing[0]
         turns = _multiples(self.kinematics.limit[1], step)
         axes = []
@@ -107,7 +127,8 @@ class Orientations:
             every = max(1, int(1.0 / max(sine, 1e-9))) if sine > 1e-9 else 10**9
             first = _multiples(self.kinematics.limit[0], step)
             numbers = np.round(first / step).astype(np.int64)
-            axes.append(np.column_stack([first[numbers % every == 0], np.full((numbers % every == 0).sum(), second)]))
+            taken = first[numbers % every == 0] if len(first) > 1 else first
+            axes.append(np.column_stack([taken, np.full(len(taken), second)]))
         angle = np.concatenate(axes)
         # Of the two solutions of an axis the one with the smaller second angle comes first, and stays.
         angle = angle[np.lexsort((np.abs(angle[:, 0]), np.abs(angle[:, 1] - math.degrees(start))))]
@@ -115,7 +136,9 @@ class Orientations:
 
 
 def _multiples(limit: Floats, step: float) -> Floats:
-    """Whole multiples of a step, deg, within limits (2,), rad: one turn at most."""
+    """Whole multiples of a step, deg, within limits (2,), rad: one turn at most; of an axis that stands still its angle."""
+    if np.degrees(limit[1] - limit[0]) <= _STILL:
+        return np.degrees(limit[:1])
     low, high = max(float(np.degrees(limit[0])), -180.0), min(float(np.degrees(limit[1])), 180.0)
     whole = high - low >= 360.0 - 1e-9
     numbers = np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
@@ -174,7 +197,7 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None,
     """The first candidates of one setup.
 
     `step`: angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid, and the
-    directions of the part. `spacing`: of that grid, rad. Returns `angle` (m, 2) float: deg; `axis` (m, 3) float.
+    directions of the part. `spacing`: of that grid, rad. Returns `angle` (m, k) float: deg; `axis` (m, 3) float.
     """
     angle, axis = where.grid(math.degrees(spacing if step is None else step))
     if step is None:
@@ -205,9 +228,15 @@ class Indexing:
 
     @property
     def rate(self) -> Floats | None:
-        """Rates (2,) of the rotary axes, rad/s, where they count; None: each orientation takes `constant`."""
-        rates = [axis.rate for axis in self.orientations[0].conditions.machine.rotary]
-        known = len(rates) == 2 and all(each is not None and 0.0 < each < math.inf for each in rates)
+        """Rates (k,) of the rotary axes, rad/s, where they count; None: each orientation takes `constant`.
+
+        Without rotary axes there is nothing that takes time.
+        """
+        where = self.orientations[0]
+        if not where.names:
+            return np.zeros(0)
+        rates = [axis.rate for axis in where.conditions.machine.rotary]
+        known = bool(rates) and all(each is not None and 0.0 < each < math.inf for each in rates)
         return np.array(rates, float) if known and self.given is None else None
 
     @property
@@ -218,7 +247,7 @@ class Indexing:
     @property
     def source(self) -> IndexFrom:
         """Name what the seconds follow from."""
-        return "given" if self.given is not None else "assumed" if self.rate is None else "rates"
+        return "rates" if self.rate is not None else "assumed" if self.given is None else "given"
 
     def times(self, setup: int, positions: Sequence[Sequence[Floats]]) -> Floats:
         """Times (k,), s, of positions of one cutter in a setup, each with its solutions (2,), deg; it begins with all at zero."""
@@ -258,8 +287,8 @@ class Indexing:
             turn = np.abs((angle - _start(moved.limit) + math.pi) % (2.0 * math.pi) - math.pi)
             turn = np.maximum(0.0, turn - math.radians(10.0**-DIGITS))
             # What is near to the first axis may be held with any angle of it.
-            turn[singular, :, 0] = 0.0
-            seconds[mine] = np.nan_to_num((turn / rate).max(axis=2), nan=math.inf).min(axis=1)
+            turn[singular, :, :1] = 0.0
+            seconds[mine] = np.nan_to_num((turn / rate).max(axis=2, initial=0.0), nan=math.inf).min(axis=1)
         return np.where(np.isfinite(seconds), seconds, 0.0)
 
 
@@ -269,8 +298,8 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
     The slowest axis counts. An axis without a limit on one side takes the shorter way round; of one with limits, all turns within
     them count, up to one from zero. Up to `MOST` positions all orders are compared; of more, the nearest one comes next.
 
-    `positions` (sequence of (s, 2) float): the solutions of each position, rad. `limit` (2, 2) float: least and largest angle of
-    each axis, rad; infinite: none. `rate` (2,) float: rad/s.
+    `positions` (sequence of (s, k) float): the solutions of each position, rad. `limit` (k, 2) float: least and largest angle of
+    each axis, rad; infinite: none. `rate` (k,) float: rad/s.
     """
     endless: NDArray[np.bool_] = np.asarray(~np.isfinite(limit).all(axis=1))
     turned = [_turns(np.atleast_2d(each), limit, endless) for each in positions]
@@ -278,7 +307,7 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
     places = np.concatenate([_start(limit)[None], *turned])
     step = np.abs(places[:, None] - places)
     step = np.where(endless, np.minimum(step % (2.0 * math.pi), -step % (2.0 * math.pi)), step)
-    seconds = (step / rate).max(axis=2)
+    seconds = (step / rate).max(axis=2, initial=0.0)
     order = _best_order(seconds, owner) if len(turned) <= MOST else _nearest(seconds, owner)
     times, before = np.zeros(len(turned)), 0
     for place in order:
@@ -287,12 +316,12 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
 
 
 def _start(limit: Floats) -> Floats:
-    """Angles (2,) at which the axes begin: zero, or what is next to it within their limits."""
+    """Angles (k,) at which the axes begin: zero, or what is next to it within their limits."""
     return np.asarray(np.clip(0.0, *np.where(np.isfinite(limit).all(axis=1, keepdims=True), limit, 0.0).T))
 
 
 def _turns(solutions: Floats, limit: Floats, endless: NDArray[np.bool_]) -> Floats:
-    """Solutions (s, 2) with all turns of theirs (t, 2) within limits, up to one turn from zero."""
+    """Solutions (s, k) with all turns of theirs (t, k) within limits, up to one turn from zero."""
     whole, turns = 2.0 * math.pi, list[tuple[float, ...]]()
     for each in solutions.tolist():
         ways = []

@@ -11,7 +11,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.own_process import Nearest, OwnProcess, OwnResult, OwnStep, cutter_of
 from plan_cutters.domain.verdicts import UNJUDGED
-from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions, neighbours
+from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.task import Problems, Task
@@ -42,7 +42,7 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         for each in process.forbidden
     }
     # What is planned goes by the verdicts without those of cutters where they are forbidden.
-    everywhere, columns = [dict(each) for each in task.everywhere], columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    everywhere, columns = [dict(each) for each in task.everywhere], task.no_columns
     for c, rows in barred.items():
         for its in everywhere:
             known = its[task.cutters[c]]
@@ -86,7 +86,7 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(task.everywhere) for cutter in task.cutters]
     )
-    probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred)
+    probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred, task.everywhere)
     walls = Walls.of(probes, task.paths)
     problems = Problems(ready.samples, task.cutters, task.paths, task.indexing, walls)
     return replace(task, rows=rows[reached[rows]], probes=probes, walls=walls, problems=problems)
@@ -140,7 +140,7 @@ def _helped(task: Task, outcome: OwnResult, step: OwnStep, owner: NDArray[np.int
 
 
 def _set_to(where: Orientations, step: OwnStep) -> tuple[Floats, Floats, bool]:
-    """The angles (2,), deg, and the axis (3,) of a step, and whether the machine can hold them."""
+    """The angles (k,), deg, and the axis (3,) of a step, and whether the machine can hold them."""
     if step.angles is not None:
         angle = np.array([dict(step.angles)[name] for name in where.names])
         angles, axes = where.set_to(angle[None])
@@ -152,7 +152,7 @@ def _set_to(where: Orientations, step: OwnStep) -> tuple[Floats, Floats, bool]:
     # A control shows thousandths of a degree: what it shows is judged.
     if len(axes) and float(axes[0] @ wanted) >= math.cos(1e-4):
         return angles[0], axes[0], True
-    return np.full(2, np.nan), wanted, False
+    return np.full(len(where.names), np.nan), wanted, False
 
 
 def _serves(task: Task, outcome: OwnResult, rows: Rows, axis: Floats, angle: Floats) -> NDArray[np.bool_]:
@@ -164,7 +164,7 @@ def _serves(task: Task, outcome: OwnResult, rows: Rows, axis: Floats, angle: Flo
 def _nearest(task: Task, where: Orientations, outcome: OwnResult, wanted: Rows) -> Nearest | None:
     """The orientation next to a step's that serves all that its cutter reaches of its faces, or else the most; None: none."""
     written = np.asarray(outcome.axis)
-    rings = [neighbours(written[None], math.radians(angle)) for angle in np.arange(_RING, _FARTHEST + 1.0, _RING).tolist()]
+    rings = [where.about(written[None], math.radians(angle)) for angle in np.arange(_RING, _FARTHEST + 1.0, _RING).tolist()]
     angle, axis = where.near(np.concatenate([directions(task.ready.samples, where.conditions.setup), *rings]))
     distinct = apart(axis)
     angle, axis = angle[distinct], axis[distinct]

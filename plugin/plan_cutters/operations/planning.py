@@ -90,8 +90,6 @@ _PRICED = 200
 _AGAIN, _AT_ONCE = 4, 200
 #: Faces that are named in a note, at most.
 _NAMED = 6
-#: No columns.
-_NONE = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -137,7 +135,7 @@ def plan_operations(
     notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
-    columns, chosen = (_NONE, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
+    columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
     return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 
 
@@ -151,7 +149,7 @@ def _plans_by_some(task: Task, offer: Repeated | None, parts: Sequence[Progress]
 def _planned_rest(rest: Task, parts: Sequence[Progress]) -> Columns:
     """The fixed orientations of the best plan for what the steps of the planner's own process leave."""
     if not len(rest.rows):
-        return _NONE
+        return rest.no_columns
     (plans, *_), _, _ = _plans_by_some(rest, _offer(rest, parts[0]), parts)
     return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
@@ -298,7 +296,7 @@ def _with_fixed(plan: OperationPlan) -> str:
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:
     """The columns of the fixed operations of a plan."""
-    columns = _NONE
+    columns = task.no_columns
     for each in plan.operations:
         if each.axis is not None and each.angle is not None:
             columns = columns.and_(columns_of(each.axis[None], each.angle[None], task.cutters.index(each.cutter), each.setup))
@@ -321,7 +319,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
-    probes = Probes(ready.samples, cutters, ready.setups, open_)
+    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     machine = ready.conditions.machine
     paths = Paths(
@@ -338,7 +336,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
 
 def _first(task: Task, spacing: float = STEP) -> Columns:
     """The first candidates of all cutters and setups, with a grid of a spacing, rad."""
-    columns = _NONE
+    columns = task.no_columns
     for s, where in enumerate(task.orientations):
         angle, axis = candidates(where, task.ready.samples, task.ready.options.index_step, spacing)
         for c in range(len(task.cutters)):
@@ -348,7 +346,7 @@ def _first(task: Task, spacing: float = STEP) -> Columns:
 
 def _stored(task: Task, rows: Rows) -> Columns:
     """Columns of the postures that were found for samples, rounded as a control shows them."""
-    columns = _NONE
+    columns = task.no_columns
     if task.ready.options.index_step is not None:
         return columns
     for s, verdicts in enumerate(task.everywhere):

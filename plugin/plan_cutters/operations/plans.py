@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.domain.control_words import control_words
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
@@ -64,7 +65,15 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
             assert angle is not None, "a fixed axis has angles"
             x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
             frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
-            planned[i] = operations[i].with_fields(frame=frame, index_s=seconds, index_from=indexing.source)
+            own, other = (
+                None if each is None else dict(zip(where.names, each.tolist(), strict=True))
+                for each in (angle if conditions.machine.turns else None, operations[i].other_angle)
+            )
+            words = control_words(conditions.frame, np.array([x, np.cross(axis, x), axis]), own, other)
+            planned[i] = operations[i].with_fields(
+                frame=frame, index_s=seconds, index_from=indexing.source, g68_2=words.g68_2, g53_1=words.g53_1,
+                rotary_words=words.rotary,
+            )  # fmt: skip
     return planned
 
 
@@ -252,7 +261,7 @@ def _simultaneous(
     """Give what no fixed operation takes to simultaneous ones: number, what serves, paces and operations."""
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
     pieces = [(step, c, s, rows, task.moving.widest(c, s, rows)[1]) for step, c, s, rows in (own.moving if own else ())]
-    if own is None or not own.leave:
+    if task.moves and (own is None or not own.leave):
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
         motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
         for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
@@ -291,7 +300,7 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     face, count = np.unique(pairs[:, 0], return_counts=True)
     sculptured = np.intersect1d(face[count > 1], sampled_faces(task.ready, "sculptured".__eq__)).tolist()
     free_form = sorted(sculptured, key=lambda each: -size[each])
-    if len(free_form) and options.index_step is None and own is None:
+    if len(free_form) and options.index_step is None and own is None and task.moves:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}
         operations += [
             Operation("", "simultaneous", cutter, s, None, None, None, task.rows[:0])
@@ -380,7 +389,8 @@ def _stands(task: Task, operation: Operation) -> _Stands:
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter, number = operation.axis, operation.cutter, np.full(len(samples), -1, np.int32)
     number[rows] = 0
-    held = held_at(axis[None], number, samples, Context.of(cutter, task.ready.setups[operation.setup]))
+    context, found = Context.of(cutter, task.ready.setups[operation.setup]), task.everywhere[operation.setup][cutter]
+    held = held_at(axis[None], number, samples, context, found)
     tip = cut_by_tip(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
     passes = task.walls.passes(c, operation.setup, axis, rows)
     wall = passes.cut.pace(task.paths, cutter) > np.nan_to_num(tip.pace(task.paths, cutter))
@@ -392,9 +402,13 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     point, normal, tilt, tilt_direction = (each.copy() for each in (at.point, at.normal, held.tilt, held.tilt_direction))
     point[mine], normal[mine], tilt[mine] = passes.point[wall], flutes, 0.5 * math.pi - cutter.taper
     tilt_direction[mine] = (axis - math.sin(cutter.taper) * flutes) / math.cos(cutter.taper)
+    shift = held.shift.copy()
+    shift[mine] = 0.0
+    # Where the contact is elsewhere than at the sample.
+    beside = wall | shift[rows].any(axis=1)
     return _Stands(
-        replace(at, point=point, normal=normal), replace(held, tilt=tilt, tilt_direction=tilt_direction), strategy,
-        np.where(wall[:, None], passes.point, np.nan), cut,
+        replace(at, point=point, normal=normal), replace(held, tilt=tilt, tilt_direction=tilt_direction, shift=shift), strategy,
+        np.where(beside[:, None], point[rows] + shift[rows], np.nan), cut,
     )  # fmt: skip
 
 

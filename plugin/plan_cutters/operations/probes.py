@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Conditions, Context
-from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters.scene.fixed_axis import served_by, slid
 from plan_cutters.scene.work import Progress, part_of
 
 Rows = NDArray[np.int64]
@@ -20,7 +21,7 @@ class Probes:
 
     `setups`: of each setup, with its own machine frame, fixtures and obstacles. `outside` (sequence of (n,) bool): of each setup
     the samples that can be machined there: not clamped faces, not inside material. `barred`: index of a cutter -> samples (n,) at
-    which it is not to be planned.
+    which it is not to be planned. `everywhere`: of each setup the verdicts by cutter, whose postures serve with their axes.
 
     `contexts`: of each cutter in each setup. `made`: times that the tool was put down.
     """
@@ -32,8 +33,9 @@ class Probes:
         setups: Sequence[Conditions],
         outside: Sequence[NDArray[np.bool_]],
         barred: Mapping[int, NDArray[np.bool_]] | None = None,
+        everywhere: Sequence[Mapping[Cutter, Verdicts]] = (),
     ) -> None:
-        self.barred = barred or {}
+        self.barred, self.everywhere = barred or {}, everywhere
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
         self._kept: dict[str, NDArray[np.bool_]] = {}
@@ -50,6 +52,10 @@ class Probes:
             open_ = np.flatnonzero(may & ~self.barred[c][rows] if c in self.barred else may)
             if len(open_):
                 free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], mine_of)
+                if self.everywhere:
+                    found = self.everywhere[s][self.cutters[c]]
+                    for number, which, _ in slid(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], found):
+                        free[number, which] = True
                 table[np.ix_(mine, open_)] = free
                 self.made += made
         return table.T

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Columns
+from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.fastest import Costs, Problem
 from plan_cutters.operations.labels import Seams
@@ -157,6 +157,16 @@ class Task:
         return np.asarray(served.reshape(len(rows), len(columns), self.times).any(axis=2))
 
     @property
+    def no_columns(self) -> Columns:
+        """None of the columns that there may be."""
+        return columns_of(np.zeros((0, 3)), np.zeros((0, len(self.orientations[0].names))))
+
+    @property
+    def moves(self) -> bool:
+        """Whether an axis can turn the tool while it cuts."""
+        return self.orientations[0].turning > 0
+
+    @property
     def times(self) -> int:
         """How many columns each one stands for."""
         return 1 if self.symmetry is None else self.symmetry.order
@@ -183,7 +193,7 @@ def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
     area[rows] = shared_area(ready.samples, task.rows, rows)
     samples, stands_for = replace(ready.samples, area=area), np.full(len(area), -1, np.int64)
     stands_for[task.rows] = rows[nearest(ready.samples, task.rows, rows)] if len(rows) else -1
-    probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred)
+    probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred, task.everywhere)
     walls = task.walls.of_probes(probes)
     return replace(
         task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls, seams=task.seams.among(stands_for),

@@ -101,7 +101,8 @@ class OperationEntry(Frozen):
     setup: int = Field(description="0 for the first setup, then the others in their order")
     axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null if simultaneous")
     angles_deg: dict[str, float] | None = Field(
-        description="of the rotary axes by name; of a machine without any the azimuth about the setup axis and the tilt from it"
+        description="of every rotary axis by name, none on three axes; where the machine names no axes the azimuth about the "
+        "setup axis and the tilt from it"
     )
     other_angles_deg: dict[str, float] | None = Field(description="the other solution with the same axis; null: none")
     samples: int
@@ -132,6 +133,20 @@ class OperationEntry(Frozen):
     )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
+    g68_2: str | None = Field(
+        default=None,
+        description="the tilted plane as LinuxCNC has it: about Z by I, the new X by J, the new Z by K, deg, from the part as it "
+        "stands at zero; its zero is that of G54, the setup's origin; null: simultaneous, or no axis turns",
+    )
+    g53_1: str | None = Field(
+        default=None,
+        description="the turn onto that plane: P0 the shortest way of the first rotary axis, P1 the positive, P2 the negative "
+        "one, with the rotary axes at zero before",
+    )
+    rotary_words: str | None = Field(
+        default=None,
+        description="instead of both: G54 and the positions of the rotary axes; null where their names are no A, B, C",
+    )
     index_s: float | None = Field(
         description="what the rotary axes take to come to its angles from those before, in the best order of the operations of "
         "its cutter and setup, the first one from zero, or what was given or assumed; null if simultaneous"
@@ -269,7 +284,7 @@ class OperationsEntry(Frozen):
     """Operations with fixed orientations that finish together all that is reached. All is about samples, at their contacts."""
 
     asked: Literal["fewest", "fastest", "both"]
-    rotary: tuple[str, str] = Field(description="names of the angles")
+    rotary: tuple[str, ...] = Field(description="names of the angles: of the rotary axes, none on three axes")
     plans: list[OperationPlanEntry]
     fewest: FewestEntry | None = Field(default=None, description="null with the planner's own process")
     fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
@@ -366,6 +381,9 @@ class ProcessStep(Frozen):
     axis: Vector | None = Field(
         description="unit, from the tip to the spindle, part coordinates, as `angles_deg`; null unless fixed"
     )
+    g68_2: str | None = Field(default=None, description="as of its operation, the first time; null: it has none")
+    g53_1: str | None = Field(default=None, description="as of its operation")
+    rotary_words: str | None = Field(default=None, description="as of its operation")
     cutter: str = Field(description="id")
     strategy: Literal["point", "floor", "wall", "mixed"] = Field(
         default="point", description="how most of it is cut, as of the operation; point where no operations were requested"

@@ -112,10 +112,11 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its
     operations, -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation
     serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches; `strategy`, 0: in a point,
-    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, else nan;
+    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, or one that it slid to
+    along its flank or its upper face, else nan;
     `moving_axis` (n, 3), the axes proposed for simultaneous operations, else nan, and `moving_piece`, the proved piece of the
     operation about the sample, the largest first, -1 for none.
-    `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
+    `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, k) is in
     degrees; beside a process of the planner's own there are none.
     """
     operations = result.answers.operations
@@ -159,21 +160,21 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
     """Write `operations.csv`: a header line, then a line for each operation of each plan; numbers have a point."""
     entry = result.plan.operations
     assert entry is not None, "written where operations were requested"
-    first, second = entry.rotary
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")
-        rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", f"{first}_deg", f"{second}_deg",
+        rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", *(f"{name}_deg" for name in entry.rotary),
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "link_seconds", "faces"])  # fmt: skip
+                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
                 axis = ("", "", "") if each.axis is None else [_rounded(x, 9) for x in each.axis]
-                turned = (angles.get(first, ""), angles.get(second, ""))
+                turned = [angles.get(name, "") for name in entry.rotary]
                 rows.writerow([plan.name, each.id, each.mode, each.strategy, each.cutter, each.setup + 1, *turned, *axis,
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
-                               " ".join(face.face for face in each.faces)])  # fmt: skip
+                               " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
+                               each.rotary_words or ""])  # fmt: skip
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:

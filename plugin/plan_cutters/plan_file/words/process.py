@@ -151,11 +151,12 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
     timed, first = operations.fastest, operations.plans[0]
     if timed is None:
         return
+    kind, axes = _INDEXED.get(len(operations.rotary), ("", ""))
     for plan in operations.plans:
-        if plan.ratio_at_most is not None and (plan is first or _choice(plan) != _choice(first)):
+        if kind and plan.ratio_at_most is not None and (plan is first or _choice(plan) != _choice(first)):
             cutting = sum((each.seconds or 0.0) + each.link_seconds for each in plan.operations if each.mode == "fixed")
-            times = f"at most {math.ceil(10.0 * plan.ratio_at_most - 1e-9) / 10.0:.1f} times as long as five axes at once"
-            yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
+            times = f"at most {math.ceil(10.0 * plan.ratio_at_most - 1e-9) / 10.0:.1f} times as long as {axes} axes at once"
+            yield f"{kind} ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
     few = operations.fewest
     some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
@@ -254,7 +255,9 @@ def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]
 
 
 def _turned(each: OperationEntry) -> str:
-    return "simultaneous" if each.angles_deg is None else f"{angles_text(each.angles_deg)} deg"
+    if each.angles_deg is None:
+        return "simultaneous"
+    return f"{angles_text(each.angles_deg)} deg" if each.angles_deg else "upright"
 
 
 def _faces(each: OperationEntry) -> str:
@@ -263,6 +266,8 @@ def _faces(each: OperationEntry) -> str:
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
+#: Fixed orientations by how many rotary axes index, and how many axes move at once otherwise.
+_INDEXED = {1: ("3+1", "four"), 2: ("3+2", "five")}
 #: Shares are sums of areas: a gain that is less than it should be by this is that.
 _ROUNDING = 1e-6
 #: Changes that come beside what there is, and take nothing away.

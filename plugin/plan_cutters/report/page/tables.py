@@ -81,6 +81,7 @@ def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict
     return {
         "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": operation_colour(number), "pattern": pattern,
         "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
+        "words": [each for each in (entry.g68_2, entry.g53_1, entry.rotary_words) if each],
     }  # fmt: skip
 
 

@@ -1,0 +1,79 @@
+"""Do the words of a control that a plan has set the tool as it says? They are read anew, and their turns made one by one."""
+
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters_check.question import FREE, MachineAxes
+
+_NUMBER = r"(-?\d+(?:\.\d+)?)"
+_PLANE = re.compile(rf"G68\.2 P0 Q313 X0 Y0 Z0 I{_NUMBER} J{_NUMBER} K{_NUMBER}")
+_TURN = re.compile(r"G53\.1 P([012])")
+#: Parts of unit vectors that are one, for a plane's angles have six digits; digits of an angle that a control shows, deg.
+_SAME, _SHOWN = 1e-6, 0.00051
+#: Angles of the second axis that are one: then the first one may have any, deg.
+_ONE = 0.01
+
+
+def words_of(machine: MachineAxes, each: Mapping[str, Any], plane: Floats, other: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What an operation must have as words: as it is written where that is right, else what it must do.
+
+    `plane` (3, 3): X, Y and Z of the tilted plane in the machine's frame, as rows; nan where X is not known. `other`: the other
+    angles as they are written.
+    """
+    expected = {
+        "g68_2": "words that turn the plane to the tool axis", "g53_1": "words that take these angles",
+        "rotary_words": "words with these angles",
+    }  # fmt: skip
+    free, good = machine.names == FREE, {
+        "g68_2": _turned(str(each.get("g68_2")), plane), "g53_1": _taken(machine, each, other),
+        "rotary_words": _positions(machine, each),
+    }  # fmt: skip
+    empty = {"rotary_words": free or not {*machine.names} <= {"A", "B", "C"}}
+    if not machine.names:
+        empty = {"g68_2": True, "g53_1": True}
+    return {
+        name: None if empty.get(name) else each.get(name) if good[name] else text for name, text in expected.items()
+    }  # fmt: skip
+
+
+def _turned(words: str, plane: Floats) -> bool:
+    read = _PLANE.fullmatch(words)
+    if read is None:
+        return False
+    i, j, k = (math.radians(float(x)) for x in read.groups())
+    about_z = [np.array([[math.cos(t), -math.sin(t), 0.0], [math.sin(t), math.cos(t), 0.0], [0.0, 0.0, 1.0]]) for t in (i, k)]
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, math.cos(j), -math.sin(j)], [0.0, math.sin(j), math.cos(j)]])
+    x, _, z = (about_z[0] @ about_x @ about_z[1]).T
+    known = bool(np.isfinite(plane[0]).all())
+    return bool(np.abs(z - plane[2]).max() <= _SAME and (not known or np.abs(x - plane[0]).max() <= _SAME))
+
+
+def _taken(machine: MachineAxes, each: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
+    """Whether a control whose axes are at zero takes the angles that are written, and not the other ones, by the word's P."""
+    read = _TURN.fullmatch(str(each.get("g53_1")))
+    if read is None:
+        return False
+    if machine.names == FREE or other is None:
+        return read[1] == "0"
+    name = machine.names[0]
+    way = {"0": lambda a: min(a % 360.0, -a % 360.0), "1": lambda a: a % 360.0, "2": lambda a: 360.0 - a % 360.0}[read[1]]
+    if all(abs(float(each["angles_deg"][one]) - float(other[one])) <= _ONE for one in machine.names[1:]):
+        return read[1] == "0"
+    mine, others = (way(float(angles[name])) for angles in (each["angles_deg"], other))
+    return mine <= others + _SHOWN
+
+
+def _positions(machine: MachineAxes, each: Mapping[str, Any]) -> bool:
+    words = str(each.get("rotary_words")).split(" ")
+    if not machine.names:
+        return words == ["G54"]
+    if words[:2] != ["G54", "G0"] or not all(re.fullmatch(rf"[ABC]{_NUMBER}", word) for word in words[2:]):
+        return False
+    read = {word[0]: float(word[1:]) for word in words[2:]}
+    same = {*read} == {*machine.names} and len(read) == len(words) - 2
+    return same and all(abs(read[name] - float(each["angles_deg"][name])) <= _SHOWN for name in machine.names)
