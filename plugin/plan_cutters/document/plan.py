@@ -22,6 +22,7 @@ from plan_cutters.document.build import (
     versions,
     void_faces,
 )
+from plan_cutters.document.holes import hole_entries
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
 from plan_cutters.domain.answers import Advice, LeastSet, Patch, RadiusMap
@@ -249,6 +250,7 @@ def plan_of(
     # Whether a fixture stands, or a target face is clamped, in any setup.
     held = any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
     absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
+    absent |= set() if ready.for_drills.any() else {"drilled"}
     shown = selected or nearest(entries).id
     return Plan(
         process=process_entry(ready, entries, answers, over, shown, fitting),
@@ -265,6 +267,7 @@ def plan_of(
             regions=len(np.unique(ready.region)),
             inside_bodies=int(ready.inside_bodies.sum()),
             exempt=0 if ready.exempt is None else int(ready.exempt.sum()),
+            drilled=int(ready.for_drills.sum()),
         ),
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
@@ -295,6 +298,7 @@ def plan_of(
         sharp_edges=list(sharp_edges),
         inside_radii=list(inside_radii),
         patterns=list(patterns),
+        holes=hole_entries(ready),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=None if answers.operations is None else answers.operations.entry,

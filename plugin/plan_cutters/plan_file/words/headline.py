@@ -124,7 +124,7 @@ def _where(plan: Plan, entry: CutterEntry) -> str:
 
     def area(name: str) -> float:
         face_entry = entry.faces[name]
-        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share) * sizes[name]
+        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share - face_entry.drilled_share) * sizes[name]
         return mm2 if math.isfinite(mm2) else 0.0
 
     sizes = {face.id: face.area_mm2 for face in plan.faces}
@@ -508,7 +508,8 @@ def _title(plan: Plan, share: float, *, finished: bool) -> str:
 def every(plan: Plan) -> str:
     """All samples; where not all could be judged, how many could."""
     if not plan.samples.unjudged and not not_sampled(plan):
-        return "every sample but those at sharp inside edges" if plan.samples.exempt else "every sample"
+        few = ["at sharp inside edges"] * bool(plan.samples.exempt) + ["in holes for drills"] * bool(plan.samples.drilled)
+        return f"every sample but those {' and '.join(few)}" if few else "every sample"
     judged = plan.samples.judged
     return f"all {judged:,} samples that could be judged" if judged != 1 else "the 1 sample that could be judged"
 
