@@ -22,7 +22,6 @@ from plan_cutters.document.build import (
     versions,
     void_faces,
 )
-from plan_cutters.document.holes import hole_entries
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
 from plan_cutters.domain.answers import Advice, LeastSet, Patch, RadiusMap
@@ -283,6 +282,7 @@ def plan_of(
                 library,
                 tools=len(library.entries),
                 cutters=len(library),
+                drills=len(library.drills),
                 notes=list(library.notes),
                 holders=[holder.name or holder.id for holder in library.holders],
                 unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
@@ -298,7 +298,6 @@ def plan_of(
         sharp_edges=list(sharp_edges),
         inside_radii=list(inside_radii),
         patterns=list(patterns),
-        holes=hole_entries(ready),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=None if answers.operations is None else answers.operations.entry,

@@ -35,5 +35,21 @@ class HoleEntry(Frozen):
     axis: Vector = Field(description="unit direction out of the mouth")
     place_mm: Vector = Field(description="point of the axis at the mouth")
     group: int = Field(description="from 1: holes of one group are equal but for their place")
-    drilled: bool = Field(description="a tool of the libraries makes it")
+    drilled: bool = Field(description="a tool of the libraries makes it (`drilling`)")
     tool: str | None = Field(description="that tool; null where none does")
+
+
+class DrillingEntry(Frozen):
+    """A step that drills equal holes with one tool in one orientation of a setup."""
+
+    tool: str
+    name: str = Field(description="of that tool in its library; empty where it has none")
+    group: int = Field(description="of the holes")
+    holes: int = Field(description="how many")
+    setup: int = Field(description="0 is the first")
+    axis: Vector = Field(description="unit tool axis")
+    angles_deg: dict[str, float] | None = Field(description="of the rotary axes; null where the machine has none that are known")
+    depth_mm: float = Field(description="of each hole, with what the point of the drill goes further through it")
+    seconds: float | None = Field(
+        description="for each hole 1.3 times the depth at the feed, and a link; null where no feed is known"
+    )

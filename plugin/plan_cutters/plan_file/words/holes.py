@@ -1,8 +1,9 @@
 """What a plan says of holes that are for drills."""
 
+import math
 from collections.abc import Iterator
 
-from plan_cutters.domain.figures import count, listed, percent, reported
+from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
 from plan_cutters.plan_file.holes import HoleEntry
 from plan_cutters.plan_file.model import Plan
 
@@ -26,6 +27,21 @@ def holes(plan: Plan) -> Iterator[str]:
     much = "" if share is None else f", {percent(share, some=True, whole=False)} of the area,"
     number = len(plan.holes)
     yield f"{count(number, 'hole')}{much} {'is for a drill' if number == 1 else 'are for drills'}: {what}."
+    if any(library.drills for library in plan.libraries):
+        yield _made(plan, ordered)
+
+
+def _made(plan: Plan, groups: list[list[HoleEntry]]) -> str:
+    """Say how many of them tools of the libraries drill, in which time, and which usual drills are missing."""
+    made = sum(each.drilled for each in plan.holes)
+    times = [step.seconds for step in plan.drilling]
+    took = f", {duration(math.fsum(each or 0.0 for each in times))}" if times and None not in times else ""
+    setups = sorted({step.setup + 1 for step in plan.drilling})
+    where = f" in setup{'s' if len(setups) > 1 else ''} {joined([*map(str, setups)])}" if setups and len(plan.setups) > 1 else ""
+    text = f"Drills of the set make {'all' if made == len(plan.holes) else made if made else 'none'} of them{where}{took}"
+    open_groups = [group[0] for group in groups if not all(each.drilled for each in group)]
+    missing = [f"{size(each.diameter_mm)} x {math.ceil(each.depth_mm)}" for each in open_groups]
+    return f"{text}; none makes {listed([*dict.fromkeys(missing)], _DIAMETERS)}." if missing else f"{text}."
 
 
 def group_words(group: list[HoleEntry]) -> str:
