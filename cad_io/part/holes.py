@@ -132,8 +132,8 @@ class _Finder:
         return self.points[number]
 
     def info(self, number: int) -> FaceInfo:
-        found: FaceInfo = self.part.faces[number - 1]
-        return found
+        info: FaceInfo = self.part.faces[number - 1]
+        return info
 
     def hollow(self, number: int) -> bool:
         """Whether a face is turned about an axis or a centre, with air on that side."""
@@ -184,7 +184,7 @@ class _Finder:
         """All walls: cylinders with air inside that turn more than half a turn."""
         numbers = [n for n in range(1, len(self.part.faces) + 1) if self.info(n).shape == "cylinder" and self.hollow(n)]
         numbers = [n for n in numbers if self.border(n) is not None]
-        found = list[_Wall]()
+        walls = list[_Wall]()
         for cluster in self._cylinders(numbers):
             carrier: Any = self.info(cluster[0]).carrier
             line = _Line(np.array(carrier.point), np.array(carrier.direction))
@@ -192,8 +192,8 @@ class _Finder:
                 heights = line.heights(np.concatenate([self._known(n) for n in group]))
                 full = 2.0 * np.pi * carrier.radius * float(np.ptp(heights))
                 if sum(self.info(n).area for n in group) > _TURNED * full and self._largest_gap(group, line) < _GAP:
-                    found.append(_Wall(tuple(sorted(group)), line, carrier.radius))
-        return found
+                    walls.append(_Wall(tuple(sorted(group)), line, carrier.radius))
+        return walls
 
     def _known(self, number: int) -> Floats:
         points = self.border(number)
@@ -257,13 +257,13 @@ class _Finder:
         pairs = [
             (i, j) for i in range(len(walls)) for j in range(i + 1, len(walls)) if rings[i].keys() & {*walls[j].faces}
         ]  # fmt: skip
-        found = []
+        result = list[Hole]()
         for steps in _grouped(range(len(walls)), pairs):
             own = {number: ring for k in steps for number, ring in self._on(walls[steps[0]].line, rings[k]).items()}
             hole = self._hole([walls[k] for k in steps], own)
             if hole is not None:
-                found.append(hole)
-        return sorted(found, key=lambda hole: hole.faces)
+                result.append(hole)
+        return sorted(result, key=lambda hole: hole.faces)
 
     def _on(self, line: _Line, rings: dict[int, _Ring]) -> dict[int, _Ring]:
         """The same faces, with heights on an axis of the same place."""
@@ -272,18 +272,18 @@ class _Finder:
 
     def _about(self, wall: _Wall) -> dict[int, _Ring]:
         """Faces about the axis of a wall that are connected with it."""
-        found: dict[int, _Ring] = {}
+        rings: dict[int, _Ring] = {}
         waiting = [*wall.faces]
         while waiting:
             number = waiting.pop()
-            if number in found:
+            if number in rings:
                 continue
             ring = self.ring(number, wall.line)
             if ring is None or (ring.kind == "plane" and not self._is_floor(ring, wall.line)):
                 continue
-            found[number] = ring
+            rings[number] = ring
             waiting += self.part.neighbours[number - 1]
-        return found
+        return rings
 
     def _is_floor(self, plane: _Ring, line: _Line) -> bool:
         """Whether a plane lies within a wall about the axis."""
@@ -353,10 +353,10 @@ class _Finder:
             shut = set[bool]()
             for up in (False, True):
                 way = 1.0 if up else -1.0
-                ahead = np.flatnonzero(way * (height - start) > 0.0)
-                if not len(ahead):
+                after = np.flatnonzero(way * (height - start) > 0.0)
+                if not len(after):
                     continue
-                first = ahead[(way * height[ahead]).argmin()]
+                first = after[(way * height[after]).argmin()]
                 beyond = way * (height[first] - span[up])
                 if way * facing[first] > 0.0 or beyond < -near:
                     return None
@@ -369,8 +369,8 @@ class _Finder:
         for share, turn in _LINES:
             # Between triangles of two faces there are cracks: most of three lines next to each other tell.
             turns = turn + _TURN * np.arange(3)
-            beside = radius * share * np.stack([np.cos(turns), np.sin(turns)], axis=1) @ across.T
-            shut, most = Counter(map(ended, line.point + beside)).most_common(1)[0]
+            places = radius * share * np.stack([np.cos(turns), np.sin(turns)], axis=1) @ across.T
+            shut, most = Counter(map(ended, line.point + places)).most_common(1)[0]
             if shut is None or most == 1:
                 return None
             closed |= shut
@@ -470,13 +470,13 @@ def _lies_beyond(ring: _Ring, low: float, high: float, up: bool, near: float) ->
 def _outward(rings: Sequence[_Ring], radius: float, near: float, up: bool) -> list[_Ring]:
     """Faces beyond an end that a tool gets to from outside, the outermost first: none that is wider than what is further out."""
     ordered = sorted(rings, key=lambda ring: (-ring.high, -ring.wide) if up else (ring.low, -ring.wide))
-    found, least = list[_Ring](), np.inf
+    result, least = list[_Ring](), np.inf
     for ring in ordered:
         if ring.wide <= least + near:
-            found.append(ring)
+            result.append(ring)
             # A bottom, which is narrower than the hole, is no way in.
             least = min(least, ring.wide) if ring.wide > radius + near else least
-    return found
+    return result
 
 
 def _bottom(rings: Sequence[_Ring], radius: float, near: float, up: bool) -> tuple[_Bottom, float | None] | None:

@@ -115,7 +115,7 @@ _FACES = (
     ),
     Option(
         "drill_below", float, 16.0, unit="mm", limits=_NOT_NEGATIVE, brief="Holes narrower than this are for drills; 0: none.",
-        help="Holes narrower than this are for drills: no mill is asked for their faces; 0: all are milled.",
+        help="Holes narrower than this are for drills: no mill has to reach their faces; 0: all are milled.",
     ),
     Option(
         "unit", str, None, choices=tuple(UNITS), of_a_point=True,

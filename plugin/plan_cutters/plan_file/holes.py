@@ -24,7 +24,7 @@ class CounterboreEntry(Frozen):
 class HoleEntry(Frozen):
     """A hole for drills: a cylinder with more than half a turn of material around it, and what lies about its axis."""
 
-    faces: list[str] = Field(description="its faces that are narrower than `effective.drill_below_mm`: no mill is asked for them")
+    faces: list[str] = Field(description="its faces that are narrower than `effective.drill_below_mm`: no mill has to reach them")
     diameter_mm: float = Field(description="of its narrowest cylinder")
     depth_mm: float = Field(description="from the mouth to the lower end of that cylinder, without the point of a drill")
     through: bool

@@ -25,7 +25,7 @@ MEANING = {
     "inaccessible": "inaccessible",
     "unjudged": "could not be judged",
     "inside_bodies": "inside another body: no surface of the finished part",
-    "drilled": "drilled: in a hole for a drill, of which no mill is asked anything",
+    "drilled": "drilled: in a hole for a drill, which no mill has to reach",
     "check": "not judged (obstacle only)",
     "ignored": "ignored: neither judged nor an obstacle",
     "mixed": "mixed: could not be split",

@@ -1,4 +1,4 @@
-"""Which holes of a part are for drills: the narrow ones, of whose faces mills are asked nothing."""
+"""Which holes of a part are for drills: the narrow ones, whose faces no mill has to reach."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -10,7 +10,7 @@ from plan_cutters.scene.preparation import Prepared
 
 
 def with_holes(ready: Prepared) -> Prepared:
-    """The same part with its holes for drills, and the samples in them, of which no mill is asked for anything."""
+    """The same part with its holes for drills, and the samples in them, which no mill has to reach."""
     below, targets = ready.options.drill_below, {*ready.chosen.targets}
     if not below:
         return ready
@@ -34,10 +34,10 @@ def for_drills(hole: Hole, below: float) -> Hole:
     return replace(hole, faces=tuple(n for n, _ in taken), within=tuple(wide for _, wide in taken))
 
 
-def groups(found: Collection[Hole]) -> list[int]:
+def groups(each: Collection[Hole]) -> list[int]:
     """The group of each hole, from 1: those of one group are equal, and have one axis to the spindle."""
     firsts, result = list[Hole](), list[int]()
-    for hole in found:
+    for hole in each:
         number = next((k for k, other in enumerate(firsts) if alike(hole, other)), len(firsts))
         if number == len(firsts):
             firsts.append(hole)

@@ -312,7 +312,7 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
     """
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
     if verdicts.drilled and not verdicts.reached and not verdicts.not_reached and not verdicts.unjudged:
-        return f"{face.id} is in a hole for a drill: no mill is asked for it (--drill-below)."
+        return f"{face.id} is in a hole for a drill: no mill has to reach it (--drill-below)."
     if not verdicts.reached and not verdicts.not_reached:
         inside = "all of it lies inside other bodies of the part" if verdicts.inside_bodies else face.unjudged
         return f"{face.id} could not be judged: {inside or 'it has no sample'}."

@@ -1,4 +1,4 @@
-"""What a plan says of holes that are for drills."""
+"""A plan says which holes are for drills, and which drills make them."""
 
 import math
 from collections.abc import Iterator
