@@ -114,8 +114,12 @@ class _Finder:
     ignored: frozenset[int] = frozenset()
 
     @cached_property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.part.size))
+
+    @property
     def same(self) -> float:
-        return _SAME * float(np.linalg.norm(self.part.size))
+        return _SAME * self.size
 
     def near(self, radius: float) -> float:
         """Lengths that differ by less are equal, mm."""
@@ -149,16 +153,18 @@ class _Finder:
         if carrier is None or number in self.ignored or not (info.shape == "plane" or self.hollow(number)):
             return None
         direction = None if carrier.direction is None else np.array(carrier.direction)
-        if direction is not None and np.linalg.norm(np.cross(direction, line.direction)) > _PARALLEL:
+        if direction is not None and not _parallel(direction, line.direction):
             return None
-        border = self.border(number)
+        point = np.array(carrier.point)
+        off = 0.0 if info.shape == "plane" else float(line.away(point[None])[0])
+        border = self.border(number) if off <= _OF_RADIUS * self.size else None
         if border is None:
             return None
-        heights, away, point = line.heights(border), line.away(border), np.array(carrier.point)
+        heights, away = line.heights(border), line.away(border)
         low, high, level, near = heights.min(), heights.max(), line.heights(point[None])[0], self.near(float(away.max()))
         if info.shape == "plane":
             return _Ring(number, "plane", float(level), float(level), float(away.min()), float(away.max()))
-        if line.away(point[None])[0] > near:
+        if off > near:
             return None
         if carrier.half_angle is not None:
             slope = float(np.tan(carrier.half_angle))
@@ -247,7 +253,7 @@ class _Finder:
         info = self.info(number)
         if info.shape != "cylinder" or info.carrier is None or not self.hollow(number):
             return False
-        return bool(np.linalg.norm(np.cross(np.array(info.carrier.direction), line.direction)) > _PARALLEL)
+        return not _parallel(np.array(info.carrier.direction), line.direction)
 
     def holes(self) -> list[Hole]:
         """All holes, those with the lowest face number first."""
@@ -413,6 +419,12 @@ class _Finder:
         face = self.triangles.face[rows[on]]
         height = (weight * (vertex[on] @ direction)).sum(axis=1)
         return height, face, np.sign(whole[on]) * self.orientation.sign[face - 1]
+
+
+def _parallel(one: Floats, other: Floats) -> bool:
+    """Whether two unit directions are one, or opposite."""
+    cosine = float(one @ other)
+    return 1.0 - cosine * cosine <= _PARALLEL**2
 
 
 def _across(direction: Floats) -> Floats:
