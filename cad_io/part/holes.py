@@ -316,7 +316,8 @@ class _Finder:
             return None
         ends = {up: _bottom(each, radius, near, up) for up, each in beyond.items()}
         closed = self._closed(line, radius, ends, core, {*rings})
-        if closed is None or closed == {True, False} or any((ends[up] is not None) != (up in closed) for up in ends):
+        # A bottom that a cavity breaks through ends the hole all the same.
+        if closed is None or all(up in closed for up in ends):
             return None
         wide = {up: max((ring.wide for ring in beyond[up] if ring.wide > radius + near), default=0.0) for up in ends}
         mouth = (False in closed) if closed else wide[True] >= wide[False] - near
@@ -380,7 +381,7 @@ class _Finder:
             if shut is None or most == 1:
                 return None
             closed |= shut
-        return closed
+        return closed | {up for up, bottom in ends.items() if bottom is not None}
 
     def _within(self, line: _Line, radius: float) -> NDArray[np.int64]:
         """Rows (k,) of the triangles whose boxes, seen along an axis, meet the square about it."""

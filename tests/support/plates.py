@@ -146,12 +146,19 @@ def _clevis():
     return made, [(8.0, 10.0, True, "open", None, None)] * 2
 
 
+def _broken():
+    """A cavity breaks through the point of a drill."""
+    made = block().cut(drilled(4.0, 8.0)).cut(cq.Workplane("XY").sphere(3.5).translate((0, 0, -12)))
+    return made, [(4.0, 8.0, False, "cone", None, None)]
+
+
 #: By name, each with the holes that are in it.
 PLATES = {
     "grid": lambda: _grid(3.3), "large": lambda: _grid(8.0), "points": _points, "flat": _flat, "round": _round, "corner": _corner,
     "sunk": _sunk, "bored": _bored, "both": _both, "two_sides": _two_sides, "step_point": _step_point, "halves": _halves,
     "crossing": _crossing, "crossing_alike": _crossing_alike, "into_another": _into_another, "slanted": _slanted,
     "from_sides": _from_sides, "stacked": _stacked, "groove": _groove, "in_a_pocket": _in_a_pocket, "clevis": _clevis,
+    "broken": _broken,
 }  # fmt: skip
 
 

@@ -26,8 +26,8 @@ class Drill:
 
     @property
     def id(self) -> str:
-        """`drill R1.65L60F36`: the same dimensions, the same id."""
-        point = "" if self.point is None else f" {math.degrees(self.point):.6g} deg"
+        """`drill R1.65L60F36P118`: the same dimensions, the same id."""
+        point = "" if self.point is None else f"P{math.degrees(self.point):.6g}"
         return f"{self.kind} {self.body.id}{point}"
 
     @property

@@ -146,7 +146,7 @@ def entry_of(tool: Listed, ask: Ask) -> Entry:
 
 
 def kind_of_drill(tool: Listed) -> Kind | None:
-    """What it is where it is a tool for holes."""
+    """Tell what it is where it is a tool for holes."""
     return _DRILLS.get(" ".join((tool.sort or tool.kind).lower().replace("_", " ").split()))
 
 
