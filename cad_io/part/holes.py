@@ -164,7 +164,8 @@ class _Finder:
         low, high, level, near = heights.min(), heights.max(), line.heights(point[None])[0], self.near(float(away.max()))
         if info.shape == "plane":
             return _Ring(number, "plane", float(level), float(level), float(away.min()), float(away.max()))
-        if off > near:
+        # What goes round a centre on both sides is a cavity, no bottom.
+        if off > near or (info.shape == "sphere" and low < level - near and high > level + near):
             return None
         if carrier.half_angle is not None:
             slope = float(np.tan(carrier.half_angle))

@@ -111,11 +111,8 @@ def test_shares_are_those_of_what_mills_are_asked(judged):
 def test_a_part_without_holes_has_the_same_plan_but_for_the_option():
     def written(**words):
         made = plan(block().slot2D(20, 6).cutThruAll().val(), **WORDS_OF_PLAN, **words)
-        text = dumps(
-            made.plan.model_copy(
-                update={"run": made.plan.run.model_copy(update={"time": "", "seconds": {}, "boxes": {}, "total": 0.0})}
-            )
-        )
+        run = made.plan.run.model_copy(update={"time": "", "seconds": {}, "boxes": {}, "total": 0.0})
+        text = dumps(made.plan.model_copy(update={"run": run}))
         return re.sub(r'"drill_below_mm": [\d.]+', "", text)
 
     assert '"holes": []' in written()
