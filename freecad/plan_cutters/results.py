@@ -16,9 +16,9 @@ from .words import fine, tr
 JOB = "job.json"
 FORMAT, VERSION = "plan-cutters-plan", 1
 #: A face or sample of several verdicts has the first of these.
-WORST_FIRST = ("inaccessible", "undecided", "unjudged", "accessible", "interference_free")
+WORST_FIRST = ("inaccessible", "undecided", "unjudged", "accessible", "interference_free", "drilled")
 #: Verdicts by their number in samples.npz.
-VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "undecided", 255: "unjudged"}
+VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "undecided", 4: "drilled", 255: "unjudged"}
 
 
 class CutterText(NamedTuple):
@@ -247,7 +247,8 @@ class Result:
         lean = samples[f"lean_{mine}"][row]
         tip = tool.tip(entry, at, samples["normal"][row], axis, lean) if known else None
         reached = verdict in ("accessible", "interference_free")
-        reason = "" if reached or verdict == "unjudged" else self.plan["reasons"][int(samples[f"reason_{mine}"][row])]
+        named = not reached and verdict not in ("unjudged", "drilled")
+        reason = self.plan["reasons"][int(samples[f"reason_{mine}"][row])] if named else ""
         return Sample(
             mine, f"F{int(samples['face'][row])}", at, float(apart[row]) ** 0.5, verdict, reason, axis if known else None, tip,
             self._angles(mine, row),

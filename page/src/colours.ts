@@ -89,7 +89,7 @@ export function patternOf(verdict: string): Pattern {
 
 const plain = (meta: Meta, word: string): Entry => ({ colour: colourOf(meta, word), pattern: "plain", label: spoken(meta, word) });
 
-const VERDICTS = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
+const VERDICTS = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "drilled", "inside_bodies"];
 
 const verdictEntries = (meta: Meta): Entry[] =>
   VERDICTS.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(meta, word) }));
@@ -119,11 +119,13 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
     { colour: "#d9e4dd", pattern: "plain", label: "reached" },
     plain(meta, "unjudged"),
     plain(meta, "inside_bodies"),
+    plain(meta, "drilled"),
   ];
   const count = entries.length;
   return painted(meta, "Reason", [...entries, ...undecided, ...rest], samples, (i) => {
     if (samples.inside(i)) return 2 * count + 2;
     if (verdict[i] === UNJUDGED) return 2 * count + 1;
+    if (samples.verdict(cutter, i) === "drilled") return 2 * count + 3;
     if (reason[i] === NO_REASON) return 2 * count;
     return reason[i] + (meta.verdicts[String(verdict[i])] === "undecided" ? count : 0);
   });
@@ -140,9 +142,11 @@ function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
     { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" },
     plain(meta, "unjudged"),
     plain(meta, "inside_bodies"),
+    plain(meta, "drilled"),
   );
   return painted(meta, "Setup that serves", entries, samples, (i) => {
     const verdict = samples.verdict(cutter, i);
+    if (verdict === "drilled") return count + 3;
     if (verdict === "inside_bodies") return count + 2;
     if (verdict === "unjudged") return count + 1;
     return samples.setup(cutter, i) ?? count;

@@ -37,7 +37,7 @@ export function verdictLook(told: Told, side: Shown, number: number | null): Loo
     const id = told.cutters[number]?.[word] ?? null;
     return id === null ? painted(meta, "", [ABSENT], samples, () => 0) : lookOf(meta, arrays, samples, "verdict", id);
   }
-  const entries = [...RANK, "inside_bodies"].map((each) => ({
+  const entries = [...RANK, "inside_bodies", "drilled"].map((each) => ({
     colour: colourOf(meta, each),
     pattern: patternOf(each),
     label: spoken(meta, each),
@@ -48,5 +48,6 @@ export function verdictLook(told: Told, side: Shown, number: number | null): Loo
     const rank = Array.from({ length: 256 }, (_, code) => Math.max(0, RANK.indexOf(meta.verdicts[String(code)] ?? "")));
     for (let i = 0; i < best.length; i++) best[i] = Math.max(best[i], rank[values[i]]);
   }
-  return painted(meta, "", entries, samples, (i) => (samples.inside(i) ? RANK.length : best[i]));
+  const drilled = (i: number): boolean => samples.verdict(meta.cutters[0].id, i) === "drilled";
+  return painted(meta, "", entries, samples, (i) => (samples.inside(i) ? RANK.length : drilled(i) ? RANK.length + 1 : best[i]));
 }

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from cad_io.part.edges import InsideEdge, inside_edges
+from plan_cutters.answers.drilling import drilled
 from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
+from plan_cutters.document.holes import drilling_entries, hole_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
@@ -201,6 +203,8 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
+        made = drilled(ready) if ready.holes else []
+        document = document.model_copy(update={"holes": hole_entries(ready, made), "drilling": drilling_entries(ready, made)})
     return Result(document, ready, over, part.travels, answers)
 
 
@@ -215,8 +219,8 @@ def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callabl
             verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
             ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
-            inside=ready.inside_bodies, shut=ready.shut >= 0, missing=tuple(ready.conditions.surroundings.doubts),
-            most=ready.options.map_budget,
+            inside=ready.inside_bodies, shut=(ready.shut >= 0) | ready.for_drills,
+            missing=tuple(ready.conditions.surroundings.doubts), most=ready.options.map_budget,
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:

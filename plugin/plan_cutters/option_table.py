@@ -120,6 +120,10 @@ _FACES = (
         "required.  [default: all are required]",
     ),
     Option(
+        "drill_below", float, 16.0, unit="mm", limits=_NOT_NEGATIVE, brief="Holes narrower than this are for drills; 0: none.",
+        help="Holes narrower than this are for drills: no mill has to reach their faces; 0: all are milled.",
+    ),
+    Option(
         "unit", str, None, choices=tuple(UNITS), of_a_point=True,
         help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",
     ),

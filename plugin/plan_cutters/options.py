@@ -102,6 +102,7 @@ class PlanOptions(SceneOptions, total=False):
     border_cost: float
     most_operations: int | None
     sharp_edges: SharpEdges
+    drill_below: float
     effort: Effort
     max_orientations: int
     process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
@@ -289,6 +290,7 @@ class Options:
     border_cost: float
     most_operations: int | None
     sharp_edges: SharpEdges
+    drill_below: float
     effort: Effort
     max_orientations: int
     process: OwnProcess | None

@@ -36,6 +36,7 @@ from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
 from plan_cutters.scene.copied import with_copies
 from plan_cutters.scene.faces import choose
+from plan_cutters.scene.holes import with_holes
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import (
     Prepared,
@@ -385,12 +386,19 @@ def prepare(
             ),
             each,
         )
+    with clock.stage("holes", shown=False):
+        ready = with_holes(ready)
     if options.patterns:
         with clock.stage("patterns"):
             doubles = scene.doubles
             key = (whole.key, doubles)
             equal = stages.cached("patterns", key, lambda: patterns(whole, partial(at, "kernel"), doubles))
             ready = with_copies(ready, equal)
+    if ready.for_drills.any() and not ready.finished.any():
+        raise UnjudgeableError(
+            "every target sample is in a hole for drills: give --drill-below 0 to mill it, or choose other faces with --faces",
+            file=whole.file,
+        )
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "

@@ -18,7 +18,7 @@ from plan_cutters.domain.kinematics import Kinematics, positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
+from plan_cutters.domain.verdicts import DRILLED, NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_maps import PostureMaps
 from plan_cutters.outcome import Answers, Operations
@@ -109,11 +109,11 @@ def on_face(
 ) -> OnFace:  # fmt: skip
     """Gather the results of a cutter on a face; `stick_out`: the answer for all samples, or for those of this face alone.
 
-    `inside` (n,): samples that are no surface of the finished part.
+    `inside` (n,): samples that are no surface of the finished part. Those in holes for drills count no more than these.
     """
     whole_face = samples.face == int(entry.id[1:])
     verdicts = counts(reach.verdict[whole_face], inside[whole_face])
-    mine = whole_face & ~inside
+    mine = whole_face & ~inside & (reach.verdict != DRILLED)
     area, verdict = samples.area[mine], reach.verdict[mine]
     shares, reasons = {}, {}
     whole = float(area.sum())

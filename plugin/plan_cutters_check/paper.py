@@ -13,7 +13,7 @@ from cad_io.arrays import Floats
 from plan_cutters_check.bench import Contacts
 from plan_cutters_check.findings import Finding, leaves
 from plan_cutters_check.question import Question, ToolSizes, allowed, axes_of, degrees_of, held
-from plan_cutters_check.reckoned import FLOOR, REACHED, WALL, WORDS, Planned, Reckoned, Rows, suffix
+from plan_cutters_check.reckoned import DRILLED, FLOOR, REACHED, WALL, WORDS, Planned, Reckoned, Rows, suffix
 from plan_cutters_check.surface import inside
 from plan_cutters_check.tool import tool_of
 
@@ -91,6 +91,7 @@ class Paper:
                 words = f"its SHA-256 is {there[:12]}..., not {stated[:12]}..."
                 yield Finding(False, f"{name} is not the file that plan.json names: {words}")
         yield from self._samples()
+        yield from self._holes()
         yield from self._candidates()
         for plan in self.reckoned.plans:
             yield from self._labels(plan)
@@ -126,6 +127,19 @@ class Paper:
         odd += int((np.abs((direction * samples["normal"][rows]).sum(axis=1)) > _SAME).sum())
         words = f"{len(rows)} samples lie on the kernel's surface, the farthest {far:.2g} mm away; {odd} have another normal"
         yield Finding(far <= _SAME_MM and not odd and not area_off, f"{words} than it or lie beyond its border.{area_off}")
+
+    def _holes(self) -> Iterator[Finding]:
+        """Samples are for drills where they lie on the faces of holes that are narrow enough, and nowhere else."""
+        document, samples, drilled = self.reckoned.question.document, self.reckoned.question.samples, self.reckoned.drilled
+        holes = document.get("holes", [])
+        if not holes and not drilled.any():
+            return
+        on = np.isin(samples["face"], [int(name[1:]) for hole in holes for name in hole["faces"]])
+        due = on & ~self.reckoned.unjudged & ~samples["inside_bodies"]
+        below = document["effective"].get("drill_below_mm", 0.0)
+        wide, wrong = sum(hole["diameter_mm"] >= below for hole in holes), int((due != drilled).sum())
+        words = f"{len(holes)} holes are for drills, {wide} of them no narrower than {below:g} mm; {wrong} samples are otherwise."
+        yield Finding(not wide and not wrong, words)
 
     def _candidates(self) -> Iterator[Finding]:
         """Candidates have the axes of their angles, within the limits of the machine, and leave out no part of them."""
@@ -391,7 +405,7 @@ def without_posture(reckoned: Reckoned) -> Iterator[Finding]:
         axis, reached = reckoned.question.samples[f"axis_{name}"], np.isin(verdict, REACHED)
         with np.errstate(invalid="ignore"):
             unit = np.abs(np.linalg.norm(axis, axis=1) - 1.0) <= _SAME
-        wrong = int((reached != unit).sum()) + int((~np.isin(verdict, [*WORDS.values()])).sum())
+        wrong = int((reached != unit).sum()) + int((~np.isin(verdict, [*WORDS.values(), DRILLED])).sum())
         if wrong:
             words = f"samples.npz: {wrong} verdicts of {name} have no tool axis with which they are reached, or no meaning."
             yield Finding(False, words)

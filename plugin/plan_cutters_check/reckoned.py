@@ -15,6 +15,8 @@ from plan_cutters_check.question import Question
 Rows = NDArray[np.int64]
 #: Verdicts of samples.npz by their words; those that say that a posture was found, and that none was; a reason that is none.
 WORDS = {"interference_free": 2, "accessible": 1, "undecided": 3, "inaccessible": 0, "unjudged": 255}
+#: The verdict on samples in holes for drills, which no mill is asked for.
+DRILLED = 4
 REACHED, NOT_REACHED, NO_REASON = (1, 2), (0, 3), 255
 #: How a sample is cut, in operations.npz, and cutters that are compared, at most, unless more are needed.
 FLOOR, WALL, _CUTTERS = 1, 2, 4
@@ -121,7 +123,8 @@ class Reckoned:
         self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
         self.unjudged = np.logical_and.reduce([each == WORDS["unjudged"] for each in self.verdict.values()])
         self.exempt = samples.get("exempt", np.zeros(len(self.unjudged), bool))
-        self.finished = ~self.unjudged & ~samples["inside_bodies"] & ~self.exempt
+        self.drilled = np.logical_and.reduce([each == DRILLED for each in self.verdict.values()])
+        self.finished = ~self.unjudged & ~samples["inside_bodies"] & ~self.exempt & ~self.drilled
         process = document["effective"].get("process")
         self.own = None if process is None else process["step"]
         fastest_alone = document["effective"]["operations"] == "fastest" and document["operations"]["fewest"] is None
@@ -147,7 +150,7 @@ class Reckoned:
             weight = weighed(samples["area"][mine])
             self.sampled[mine] = self.face_area[name] * weight / weight.sum()
         self.not_sampled = float(sum(self.face_area[name] for name in self.empty))
-        required = np.where(self.exempt | samples["inside_bodies"], 0.0, self.sampled)
+        required = np.where(self.exempt | samples["inside_bodies"] | self.drilled, 0.0, self.sampled)
         self.required = Weights(samples, required, float(required.sum()) + self.not_sampled)
 
 

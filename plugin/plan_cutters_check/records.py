@@ -37,6 +37,8 @@ _OF_FIRST = ("setup", "mode", "angles_deg", "axis", "cutter", "strategy", "g68_2
 _PREFERRED, _ORDER = ("process", "fastest", "fewest"), ("floor", "mixed", "wall", "point")
 #: Cosine from the setup axis under which a tool comes from below; by how much each of some written angles may be off, deg.
 _BELOW, _WRITTEN = -0.01, 0.0021
+#: Share of its radius by which faces of one wall may differ.
+_WALL = 2e-3
 #: A number of a reason that is none: a step for it would be hardly any.
 _SHORT = 1000
 _ANY = Loose(0.0, math.inf)
@@ -71,8 +73,9 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
         **_chosen(document, made),
         "samples": {
             "count": len(face), "unjudged": int(reckoned.unjudged.sum()), "inside_bodies": int(samples["inside_bodies"].sum()),
-            "exempt": int(reckoned.exempt.sum()),
+            "exempt": int(reckoned.exempt.sum()), **_drilled(reckoned.drilled),
         },
+        "holes": [_hole(reckoned, each) for each in document.get("holes", [])],
         "faces": [
             {
                 "id": each.id, "name": each.name, "surface": each.surface, "shape": each.shape, "target": each.id in targets,
@@ -521,30 +524,60 @@ def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:
 def _counts(reckoned: Reckoned, verdict: NDArray[Any], mine: NDArray[np.bool_]) -> dict[str, int]:
     counts = {word: int((verdict[mine] == code).sum()) for word, code in WORDS.items()}
     inside = reckoned.question.samples["inside_bodies"]
-    return {**counts, "inside_bodies": int(inside[mine].sum()), "exempt": int(reckoned.exempt[mine].sum())}
+    counts |= {"inside_bodies": int(inside[mine].sum()), "exempt": int(reckoned.exempt[mine].sum())}
+    return {**counts, **_drilled(reckoned.drilled[mine])}
+
+
+def _drilled(mine: NDArray[np.bool_]) -> dict[str, int]:
+    """How many of some samples are in holes for drills: written where there are any."""
+    return {"drilled": int(mine.sum())} if mine.any() else {}
+
+
+def _hole(reckoned: Reckoned, written: Mapping[str, Any]) -> dict[str, Any]:
+    """Reckon what `holes` must hold of one: its narrowest cylinder."""
+    faces = reckoned.question.part.faces
+    carriers = [faces[int(name[1:]) - 1].carrier for name in written["faces"] if 1 <= int(name[1:]) <= len(faces)]
+    walls = [each for each in carriers if each is not None and each.minor_radius is None and each.half_angle is None]
+    walls = [each for each in walls if each.radius is not None and each.direction is not None]
+    if not walls:
+        return {"faces": "a cylinder among them"}
+    wall = min(walls, key=lambda each: each.radius or 0.0)
+    direction, diameter = np.array(wall.direction), 2.0 * (wall.radius or 0.0)
+    axis = (direction if direction @ np.array(written["axis"]) > 0.0 else -direction).tolist()
+    off = np.array(written["place_mm"]) - np.array(wall.point)
+    on_axis = np.array(wall.point) + (off @ direction) * direction
+    return {
+        "diameter_mm": Between(diameter * (1.0 - _WALL), diameter * (1.0 + _WALL)),
+        "axis": [Between(x - _WALL, x + _WALL) for x in axis],
+        "place_mm": [Between(x - _WALL * diameter, x + _WALL * diameter) for x in on_axis.tolist()],
+    }
 
 
 def _face(reckoned: Reckoned, verdict: NDArray[Any], reason: NDArray[Any], mine: NDArray[np.bool_]) -> dict[str, Any]:
     """The verdicts on a face whose samples are these (n,)."""
     samples, words = reckoned.question.samples, reckoned.question.document["reasons"]
     inside, exempt, area = samples["inside_bodies"][mine], reckoned.exempt[mine], weighed(samples["area"][mine])
-    seen = ~inside & ~exempt
+    drilled = reckoned.drilled[mine]
+    seen = ~inside & ~exempt & ~drilled
     within = 1.0 if inside.all() else min(1.0, float(area[inside].sum() / area.sum()))
-    edges = min(1.0 - within, float(area[exempt].sum() / area.sum())) if seen.any() else 1.0 - within
+    bored = float(area[drilled].sum() / area.sum()) if (~inside & ~drilled).any() else 1.0 - within if drilled.any() else 0.0
+    bored = min(1.0 - within, bored)
+    edges = min(1.0 - within - bored, float(area[exempt].sum() / area.sum())) if seen.any() else 1.0 - within - bored
     counts = _counts(reckoned, verdict, mine)
     verdict, reason, area = verdict[mine][seen], reason[mine][seen], weighed(samples["area"][mine][seen])
     missed, whole = np.isin(verdict, NOT_REACHED), max(float(area.sum()), 1e-300)
     codes = [c for c in np.unique(reason[missed]).tolist() if c < len(words)]
     by = Exactly({words[c]: float(area[missed & (reason == c)].sum() / whole) for c in codes})
     shares = {word: float(area[verdict == code].sum() / whole) for word, code in WORDS.items()}
-    return {**counts, "area_share": {**shares, "lost_by": by}, "inside_share": within, "exempt_share": edges}
+    entry = {**counts, "area_share": {**shares, "lost_by": by}, "inside_share": within, "exempt_share": edges}
+    return {**entry, **({"drilled_share": bored} if bored else {})}
 
 
 def _over(reckoned: Reckoned, faces: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Shares of all target faces, by their areas; those without samples are not judged."""
     unseen = {"area_share": {"unjudged": 1.0, "lost_by": {}}, "inside_share": 0, "exempt_share": 0}
     each = [(size, faces.get(name, unseen)) for name, size in reckoned.face_area.items()]
-    sizes = [size * (1.0 - one["inside_share"] - one["exempt_share"]) for size, one in each]
+    sizes = [size * (1.0 - one["inside_share"] - one["exempt_share"] - one.get("drilled_share", 0.0)) for size, one in each]
     whole, shares = max(sum(sizes), 1e-300), [one["area_share"] for _, one in each]
 
     def over(of: list[Mapping[str, float]], word: str) -> float:

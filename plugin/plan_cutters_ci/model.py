@@ -11,7 +11,7 @@ from plan_cutters.plan_file.frozen import Frozen, Vector
 FORMAT_VERSION = 1
 
 #: How much of a face is reached by the cutter that reaches most of it.
-Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "not asked", "inside other bodies"]
+Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "not asked", "inside other bodies", "drilled"]
 #: How a face is known again.
 FaceMatch = Literal["same file", "place", "number", "carrier", "name", "trim"]
 CutterMatch = Literal["id", "name", "cutting part"]

@@ -32,8 +32,8 @@ UNRELATED = 0.25
 _FORM = ("radius", "corner_radius", "length", "shape", "taper_deg", "flutes_mm", "holder", "stages", "allowance_mm",
          "clearance_mm")  # fmt: skip
 #: A target face that is in none of these is not reached whole.
-_CLOSED: tuple[Reach, ...] = ("reached", "not asked", "inside other bodies")
-#: Rank of what is reached: to fall is a loss. What is inside other bodies is no surface: neither loss nor gain.
+_CLOSED: tuple[Reach, ...] = ("reached", "not asked", "inside other bodies", "drilled")
+#: Rank of what is reached: to fall is a loss. What is inside other bodies, or for drills, is neither loss nor gain.
 _RANK: dict[Reach, int] = {"reached": 2, "undecided": 1}
 
 
@@ -247,6 +247,8 @@ def face_state(plan: Plan, face: FaceEntry) -> FaceState:
     by_cutter = {c.id: c.faces[face.id] for c in plan.cutters if face.id in c.faces}
     if not face.target or not any(map(_finished, by_cutter.values())):
         none: Reach = "not asked" if not face.target else "inside other bodies" if by_cutter else "not judged"
+        if face.target and any(each.drilled for each in by_cutter.values()):
+            none = "drilled"
         return FaceState(reach=none, share=0.0, cutters=[], reason=None)
     whole = sorted(name for name, each in by_cutter.items() if reached_whole(each))
     if whole:
@@ -287,7 +289,7 @@ def worst(shares: Mapping[str, float]) -> str | None:
 
 def falls(was: FaceState, now: FaceState, slack: float) -> bool:
     """Whether less of a face is reached: by rank, or by more than `slack` of its area."""
-    if "inside other bodies" in (was.reach, now.reach):
+    if {"inside other bodies", "drilled"}.intersection((was.reach, now.reach)):
         return False
     before, after = _RANK.get(was.reach, 0), _RANK.get(now.reach, 0)
     return after < before or (after == before and was.share - now.share > slack)

@@ -33,6 +33,7 @@ MARKS = {
     "reached": ("reached whole in both", "#D9E4DD", "plain"),
     "not reached": ("reached whole in neither", "#A99BB5", "dots"),
     "inside other bodies": ("inside another body", PALETTE["inside_bodies"], "plain"),
+    "drilled": ("for drills", PALETTE["drilled"], "plain"),
     "not asked": ("not to be machined", PALETTE["check"], "plain"),
 }
 #: The same of faces that are compared with none.

@@ -90,7 +90,7 @@ def test_what_is_said_is_never_rounded_the_wrong_way():
 
 def test_where_a_cutter_is_listed(tmp_path):
     """The same geometry is judged once, with all its numbers; what is asked for the whole plan does not lose them."""
-    path = write_json(tmp_path / "shop.json", [fusion(number=4), fusion(number=9), fusion("drill", number=5)])
+    path = write_json(tmp_path / "shop.json", [fusion(number=4), fusion(number=9), fusion("probe", number=5)])
     library = read_library(path)
     for options in ({}, {"allowance": 0.2, "holder_clearance": 1.0}):
         document = plan("samples/v_groove.step", cutters=library, grid=3, area_budget=0, **options).plan
@@ -100,7 +100,7 @@ def test_where_a_cutter_is_listed(tmp_path):
         (listed,) = document.libraries
         assert (listed.tools, listed.cutters) == (3, 1)
         assert [tool.number for tool in listed.unused] == [5]
-        assert "drill" in listed.unused[0].why
+        assert "probe" in listed.unused[0].why
         assert document.effective.cutter_source == "shop.json"
         assert document.selected == entry.id
 

@@ -86,7 +86,7 @@ def test_every_flat_end_fits_into_a_wide_v_groove(groove):
 def tube(radius, length, **options):
     """A hole along Z through a block, of which it is all that is looked at."""
     part = read_part(cut(box(60.0, 60.0, length, (-30, -30, -0.5 * length)), rod(radius, length, (0, 0, -0.5 * length))))
-    return ready(part, faces=[next(face.number for face in part.faces if face.shape == "cylinder")], **options)
+    return ready(part, faces=[next(face.number for face in part.faces if face.shape == "cylinder")], drill_below=0, **options)
 
 
 @pytest.mark.parametrize("shape", ENDS)

@@ -22,7 +22,7 @@ def run(*words):
 
 
 def test_a_table_says_what_was_understood_and_what_was_not(tmp_path):
-    path = write_json(tmp_path / "a.json", [fusion(number=4), fusion("drill", number=5), fusion(number=6), HOLDER])
+    path = write_json(tmp_path / "a.json", [fusion(number=4), fusion("boring head", number=5), fusion(number=6), HOLDER])
     done = run(path)
     assert done.returncode == 0
     assert done.stderr == ""
@@ -33,12 +33,12 @@ def test_a_table_says_what_was_understood_and_what_was_not(tmp_path):
 
 
 def test_json_has_all_of_it(tmp_path):
-    path = write_json(tmp_path / "a.json", [fusion(number=4), fusion("drill", number=5), fusion(number=6)])
+    path = write_json(tmp_path / "a.json", [fusion(number=4), fusion("boring head", number=5), fusion(number=6)])
     done = run(path, "--json")
     (library,) = valid("tools", json.loads(done.stdout))["libraries"]
     assert [cutter["numbers"] for cutter in library["cutters"]] == [[4, 6]]
     assert [entry["cutter"] for entry in library["entries"]] == [ID, None, ID]
-    assert library["entries"][1]["unused"].startswith('type "drill"')
+    assert library["entries"][1]["unused"].startswith('type "boring head"')
     assert library["entries"][0]["given"]["LPR"] == 40
 
 

@@ -99,7 +99,7 @@ def test_neck_and_shank_are_told_from_the_holder():
 
     @cache
     def reached(cutter):
-        (verdicts,) = plan(part, cutters=[cutter], **{**HOW, "grid": 5, "tilt": (0.0, 0.3)}).reaches.values()
+        (verdicts,) = plan(part, cutters=[cutter], **{**HOW, "grid": 5, "tilt": (0.0, 0.3), "drill_below": 0}).reaches.values()
         return verdicts
 
     thin = Cutter.flat(radius=3, length=80, flutes=10, shank_radius=8)

@@ -8,6 +8,7 @@ import pytest
 
 from plan_cutters import OptionError, PlanError, plan
 from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.report.arrays import write_csv
 from tests.support.places import SAMPLES
 
@@ -60,7 +61,7 @@ def test_faces_add_up_to_the_cutter(result, cutter):
     faces = result.to_dataframe("faces", cutter=cutter)
     entry = next(each for each in result.cutters if each.id == (cutter or result.shown))
     assert faces.face.tolist() == [face.id for face in result.plan.faces]
-    for word in WORDS.values():
+    for word in VERDICTS:
         assert faces[word].sum() == entry.of(word)
         share = (faces[f"{word}_share"] * faces.area_mm2).sum() / faces.area_mm2.sum()
         assert share == pytest.approx(getattr(entry.area_share, word), abs=1e-9)
@@ -72,7 +73,7 @@ def test_faces_that_were_not_sampled_have_no_shares():
     result = plan(SAMPLES / "v_groove.step", cutters=["R3L40"], faces="2", grid=5, area_budget=0)
     faces = result.to_dataframe("faces").set_index("face")
     assert faces.target.tolist() == [False, True, False]
-    assert faces.loc[["F1", "F3"], [f"{word}_share" for word in WORDS.values()]].isna().all(axis=None)
+    assert faces.loc[["F1", "F3"], [f"{word}_share" for word in VERDICTS]].isna().all(axis=None)
     assert faces.loc["F2", "samples"] == 25
 
 
@@ -81,7 +82,7 @@ def test_cutters_are_a_row_each(result):
     assert found.index.tolist() == [each.id for each in result.cutters]
     assert found.feasible.tolist() == [each.feasible for each in result.cutters]
     assert found.selected.sum() == (result.selected is not None)
-    shares = found[[f"{word}_share" for word in WORDS.values()]].sum(axis=1)
+    shares = found[[f"{word}_share" for word in VERDICTS]].sum(axis=1)
     assert np.allclose(shares, 1.0)
 
 

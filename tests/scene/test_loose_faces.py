@@ -144,6 +144,6 @@ def test_a_hole_whose_wall_is_loose_counts_as_no_material(monkeypatch):
         return replace(found, loose=((wall, error),), errors=tuple(sorted(errors.items())))
 
     monkeypatch.setattr(surroundings, "tessellate", with_loose_wall)
-    result = plan(part, cutters="R1L20", faces=f"F{floor}", spacing=2, area_budget=0)
+    result = plan(part, cutters="R1L20", faces=f"F{floor}", spacing=2, area_budget=0, drill_below=0)
     assert (verdicts(result) != INACCESSIBLE).all()
     assert np.isin(verdicts(result), (ACCESSIBLE, INTERFERENCE_FREE)).any()

@@ -99,7 +99,7 @@ def kept(part: Scene, known: Options) -> None:
         overlap=known.overlap, link_time=known.link_time,
         border_cost=known.border_cost,
         most_operations=known.most_operations, max_orientations=known.max_orientations, patterns=known.patterns,
-        sharp_edges=known.sharp_edges, effort=known.effort,
+        sharp_edges=known.sharp_edges, drill_below=known.drill_below, effort=known.effort,
         units=known.units, process=known.process,
     )  # fmt: skip
 

@@ -41,6 +41,8 @@ _LISTED = (
      "selected_for_setup inside_radii** sharp_edges** setups** setup_proposal** largest_radius** least_set** not_mended** "
      "selection** samples.max_gap_mm samples.convex samples.concave samples.saddle samples.regions inside_other_bodies** "
      "missing** patterns**"),
+    ("holes are not looked for again", "holes[].", "faces** depth_mm through bottom cone_deg countersink** counterbore** group"),
+    ("drills are not judged again", "holes[].", "drilled tool"),
     ("it describes the input", "faces[].", "kind component carrier** neighbours** centre_mm** gap_mm chord_error_mm unjudged"),
     ("it describes the input", "", "part.** libraries** machine.linear** machine.rotary[].** fixtures**"),
     ("it is about the program and its files", "",

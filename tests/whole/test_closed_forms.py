@@ -176,7 +176,8 @@ def test_flat_and_convex_faces_are_interference_free():
 def test_a_hole_narrower_than_the_cutter_is_out_of_reach():
     """A trough of radius 5 that closes over its bottom: R 6 cannot touch the bottom line, R 2 can."""
     part = shapes.shell(shapes.trough(5.0, 60, span=4.2))
-    small, large = (plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15, area_budget=0).cutters[0] for r in (2, 6))
+    small, large = (plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15, area_budget=0, drill_below=0).cutters[0]
+                    for r in (2, 6))  # fmt: skip
     assert small.feasible
     assert large.feasible is False
     assert large.by_reason["local_gouge"] + large.by_reason["rear_gouge"] > 0

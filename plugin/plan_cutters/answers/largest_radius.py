@@ -50,7 +50,7 @@ def largest_radius(
     cutters = _cutters(ready, shape, ratio, step, least, most)
     radii = np.array([cutter.radius for cutter in cutters])
     samples, conditions = ready.samples, ready.conditions
-    judged, within, held = samples.unjudged < 0, ready.shut >= 0, ready.clamped & (ready.inside < 0)
+    judged, within, held = (samples.unjudged < 0) & ~ready.for_drills, ready.shut >= 0, ready.clamped & (ready.inside < 0)
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
     contexts = [Context.of(cutter, conditions) for cutter in cutters]
     outer_tool, inner_tool = _ladder([c.outer_tool for c in contexts]), _ladder([c.inner_tool for c in contexts])

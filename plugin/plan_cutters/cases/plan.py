@@ -66,6 +66,8 @@ def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished
     """The case with its outcome; `finished`: who finishes the face, empty where nobody does."""
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
     required = verdicts.reached + verdicts.not_reached + verdicts.unjudged
+    if not required and verdicts.drilled:
+        return case._replace(outcome="skipped", message=f"{face.id} is in a hole for a drill, which no mill has to reach")
     if not required and (verdicts.inside_bodies or verdicts.exempt):
         where = "lies inside other bodies of the part" if verdicts.inside_bodies else "is at sharp inside edges, and not required"
         return case._replace(outcome="skipped", message=f"all of {face.id} {where}")

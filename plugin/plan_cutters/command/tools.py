@@ -149,7 +149,8 @@ def _plain(library: "Library") -> dict[str, Any]:
         ],
         "entries": [
             {"place": entry.place, "number": entry.number, "name": entry.name, "type": entry.kind, "unit": entry.unit or None,
-             "cutter": None if entry.cutter is None else entry.cutter.id, "unused": entry.unused, "broken": entry.broken,
+             "cutter": None if entry.cutter is None else entry.cutter.id,
+             "drill": None if entry.drill is None else entry.drill.id, "unused": entry.unused, "broken": entry.broken,
              "notes": list(entry.notes), "given": dict(entry.given)}
             for entry in library.entries
         ],
@@ -161,7 +162,7 @@ def _table(library: "Library", console: "Console") -> None:
     """A library for people: widths follow the words where the output is no terminal."""
     from rich.table import Table
 
-    used = sum(entry.cutter is not None for entry in library.entries)
+    used = sum(entry.cutter is not None or entry.drill is not None for entry in library.entries)
     tools = "1 tool" if len(library.entries) == 1 else f"{len(library.entries)} tools"
     heads = [f"{library.file}: {library.format}, {tools} listed, {used} used, {len(library)} different"]
     heads += [f"  {note}" for note in library.notes]
@@ -198,12 +199,14 @@ def _listed(console: "Console", row: list[str]) -> None:
 def _row(entry: "Entry") -> list[str]:
     """A tool as the table has it."""
     codes, cutter = dict(entry.given), entry.cutter
+    if entry.drill is not None:
+        codes |= {"LCF": entry.drill.body.flutes or codes.get("LCF", 0.0)}
     number = "" if entry.number is None else str(entry.number)
     words = [entry.place, number, entry.name, entry.kind, entry.unit]
     if cutter is None:
-        broken = "broken: " if entry.broken else "not used: "
+        why = f"{'broken' if entry.broken else 'not used'}: {entry.unused}" if entry.drill is None else entry.drill.id
         sizes = [f"{codes[key]:.6g}" if key in codes else "" for key in ("DC", "RE", "LCF", "LPR", "DMM")]
-        return [*map(clean, (*words, *sizes, "", "; ".join([f"{broken}{entry.unused}", *entry.notes])))]
+        return [*map(clean, (*words, *sizes, "", "; ".join([why, *entry.notes])))]
     from plan_cutters.domain.shapes import flute_length
 
     shank = "" if cutter.shank_radius is None else f"{2 * cutter.shank_radius:.6g}"

@@ -22,7 +22,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts, Witness
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, DRILLED, INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts, Witness
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.part_info import (
@@ -38,7 +38,7 @@ from plan_cutters.plan_file.part_info import (
     SheetsEntry,
     UnitEntry,
 )
-from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
+from plan_cutters.plan_file.shares import VERDICTS, AreaShare, FaceVerdicts
 from plan_cutters.scene.covering import coverings, numbers, sheets
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.inside_material import voids
@@ -117,15 +117,19 @@ def face_verdicts(
     entries = {}
     for number, mine in samples.by_face().items():
         area = weights(samples.area[mine])
-        within, free = inside[mine], exempt[mine]
-        required = ~within & ~free
+        within, free, drills = inside[mine], exempt[mine], reach.verdict[mine] == DRILLED
+        required = ~within & ~free & ~drills
         seen = mine[required]
         share = _share(reach.verdict[seen], reach.reason[seen], area[required])
         part = min(1.0, float(area[within].sum() / area.sum())) if not within.all() else 1.0
-        edges = min(1.0 - part, float(area[free].sum() / area.sum())) if len(seen) else 1.0 - part
+        # What is asked of no mill is all that is left where nothing is asked.
+        bored = min(1.0 - part, float(area[drills].sum() / area.sum()))
+        bored = bored if (~within & ~drills).any() or not drills.any() else 1.0 - part
+        edges = min(1.0 - part - bored, float(area[free].sum() / area.sum())) if len(seen) else 1.0 - part - bored
         entries[f"F{number}"] = FaceVerdicts(
-            **counts(reach.verdict[mine], within, free), area_share=share, inside_share=part, exempt_share=edges
-        )
+            **counts(reach.verdict[mine], within, free), area_share=share, inside_share=part, exempt_share=edges,
+            drilled_share=bored,
+        )  # fmt: skip
     return entries
 
 
@@ -136,14 +140,17 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     as one.
     """
     targets = [
-        *((name, each.area_share, 1.0 - each.inside_share - each.exempt_share) for name, each in faces.items()),
+        *(
+            (name, each.area_share, 1.0 - each.inside_share - each.exempt_share - each.drilled_share)
+            for name, each in faces.items()
+        ),
         *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty),
     ]
     areas = _areas([name for name, _, _ in targets], part)
     seen = np.array([areas[name] * finished for name, _, finished in targets])
     weights = (seen / max(1e-300, seen.sum())).tolist()
     parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
-    sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
+    sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in VERDICTS}
     not_reached = {
         reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
     }
@@ -171,7 +178,7 @@ def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[
         return AreaShare()
     area = weights(area)
     area = area / area.sum()
-    shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
+    shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items() if name in VERDICTS}
     not_reached = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {
         name: min(1.0, float(area[not_reached & (reason == i)].sum()))

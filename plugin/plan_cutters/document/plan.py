@@ -249,6 +249,7 @@ def plan_of(
     # Whether a fixture stands, or a target face is clamped, in any setup.
     held = any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
     absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
+    absent |= set() if ready.for_drills.any() else {"drilled"}
     shown = selected or nearest(entries).id
     return Plan(
         process=process_entry(ready, entries, answers, over, shown, fitting),
@@ -265,6 +266,7 @@ def plan_of(
             regions=len(np.unique(ready.region)),
             inside_bodies=int(ready.inside_bodies.sum()),
             exempt=0 if ready.exempt is None else int(ready.exempt.sum()),
+            drilled=int(ready.for_drills.sum()),
         ),
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
@@ -280,6 +282,7 @@ def plan_of(
                 library,
                 tools=len(library.entries),
                 cutters=len(library),
+                drills=len(library.drills),
                 notes=list(library.notes),
                 holders=[holder.name or holder.id for holder in library.holders],
                 unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],

@@ -89,6 +89,11 @@ class OwnProcess:
         }
         return {step.number: shown[step.number] for step in self.steps if dict(step.angles or ()) != shown[step.number]}
 
+    @property
+    def faces_named(self) -> frozenset[int]:
+        """Numbers of the faces that its steps name."""
+        return frozenset(number for step in self.steps for number in step.faces or ())
+
     def check_faces(self, targets: Iterable[int]) -> None:
         """See to it that every face is one that is to be machined. Raises OptionError."""
         known = set(targets)

@@ -33,7 +33,7 @@ from plan_cutters.kernels.codes import (
 
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
-    "ACCESSIBLE", "ANOTHER_SETUP", "AXIS_LIMIT", "COLLISION", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE",
+    "ACCESSIBLE", "ANOTHER_SETUP", "AXIS_LIMIT", "COLLISION", "CONCAVE", "CONVEX", "DRILLED", "FIXTURE", "INACCESSIBLE", "INSIDE",
     "INTERFERENCE_FREE", "LOCAL_GOUGE", "NO_REASON", "REAR_GOUGE", "REASONS", "SADDLE", "SHARP_EDGE", "TOLERANCE", "UNDECIDED",
     "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts", "Witness", "blank", "not_reached",
 ]  # fmt: skip
@@ -41,13 +41,16 @@ __all__ = [
 #: Why a sample is not reached; the last one is about setups that were proposed, which kernels know nothing of.
 REASONS = (*codes.REASONS, "another_setup")
 ANOTHER_SETUP = len(codes.REASONS)
-#: Words of verdicts, from best to worst.
+#: The verdict on samples in holes for drills: no mill is asked for them, and no search writes it.
+DRILLED = 4
+#: Words of verdicts, from best to worst; the last one is none of a mill.
 WORDS = {
     INTERFERENCE_FREE: "interference_free",
     ACCESSIBLE: "accessible",
     UNDECIDED: "undecided",
     INACCESSIBLE: "inaccessible",
     UNJUDGED: "unjudged",
+    DRILLED: "drilled",
 }
 #: Classes of a surface at a sample; there is UNJUDGED, too.
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
@@ -111,7 +114,7 @@ class Verdicts(_Columns):
     Attributes
     ----------
     verdict : (n,) uint8
-        INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
+        INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED or DRILLED.
     axis, tilt_direction : (n, 3) float
         Unit tool axis and tilt direction of the posture found; nan where there is none. At tilt 0 the tilt direction goes from
         the axis to the contact, and is shorter than 1 where the contact lies under the flat of the tip: by the share of the
@@ -255,10 +258,12 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
 
     `each`: in each setup, of the same n samples. Returns verdict and posture of the first setup that reaches a sample. Where none
     does: undecided if it is so in any; the reason is that of the first one in which not the axis limit alone leaves nothing, or
-    the fixture if that is so in any. Returns (n,) int32: the setup that reaches each sample, -1 for none.
+    the fixture if that is so in any. What is for drills is so in all. Returns (n,) int32: the setup that reaches each sample, -1
+    for none.
     """
     n = len(each[0].verdict)
     combined, which = blank(n), np.full(n, -1, np.int32)
+    combined.verdict[each[0].verdict == DRILLED] = DRILLED
     for k, verdicts in enumerate(each):
         rows = verdicts.reached & (which < 0)
         which[rows] = k

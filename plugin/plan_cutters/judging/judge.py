@@ -32,7 +32,7 @@ _GROUNDS = 8
 
 def made_of(ready: Prepared) -> tuple[object, ...]:
     """Return the objects that the ground of a part follows from: while these are the same ones, so is the ground."""
-    return ready.samples, ready.surface_class, ready.inside, ready.held, ready.conditions
+    return ready.samples, ready.surface_class, ready.inside, ready.held, ready.drilled, ready.conditions
 
 
 def same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
@@ -58,7 +58,7 @@ class GroundDigests:
         )  # fmt: skip
         machine = replace(ready.conditions.machine, name="", notes=())
         conditions = replace(ready.conditions, jobs=1, machine=machine, surroundings=_bare(ready.conditions.surroundings))
-        result = digest((samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, conditions))
+        result = digest((samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, ready.drilled, conditions))
         # One part of many setups and of patterns is asked for in turn.
         self._known = [(made, result), *self._known[: _GROUNDS - 1]]
         return result
@@ -96,8 +96,11 @@ def judge(
     """
     samples, context = ready.samples, Context.of(cutter, ready.conditions)
     whole = None if rows is None else with_company(rows, len(samples))
-    free = decompose(samples, ready.surface_class == CONVEX, context, inside=ready.shut, rows=whole, work=work)
-    verdicts = access(samples, free, context, inside=ready.shut, known=known, rows=whole, progress=progress, work=work)
+    convex = (ready.surface_class == CONVEX) & ~ready.for_drills
+    free = decompose(samples, convex, context, inside=ready.shut, rows=whole, work=work)
+    verdicts = access(
+        samples, free, context, inside=ready.shut, known=known, rows=whole, drilled=ready.drilled, progress=progress, work=work
+    )
     # What is clamped is lost to what holds it, if nothing was found that loses it all the same.
     held = ready.clamped & (ready.inside < 0) & (verdicts.reason == INSIDE)
     if held.any():

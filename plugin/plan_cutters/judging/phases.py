@@ -13,6 +13,7 @@ from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
     CONCAVE,
     CONVEX,
+    DRILLED,
     FIXTURE,
     INACCESSIBLE,
     INSIDE,
@@ -121,6 +122,7 @@ def access(
     inside: Ints | None = None,
     known: Verdicts | None = None,
     rows: NDArray[np.int64] | None = None,
+    drilled: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
     work: Work | None = None,
 ) -> Verdicts:
@@ -129,7 +131,8 @@ def access(
     `interference_free` (n,) bool: as `decompose` gives them. `inside` (n,) int32: the body that each sample lies within, -1 for
     none (default): none of those within is accessible. `known`: what follows from other cutters (`nesting.handed`): those samples
     are not searched again. `rows` (m,) int64: the samples to search, all by default; the others stay unjudged. Whole pieces of
-    them (`with_company`), or else other postures may be found for the same sample.
+    them (`with_company`), or else other postures may be found for the same sample. `drilled` (n,) bool: samples that are for
+    drills, and are not searched.
     """
     from plan_cutters.kernels.search.search import first_reason
 
@@ -138,6 +141,9 @@ def access(
     judged = samples.unjudged < 0
     if rows is not None:
         judged &= np.isin(np.arange(n), rows)
+    if drilled is not None:
+        verdicts.verdict[judged & drilled] = DRILLED
+        judged &= ~drilled
     if not context.judges:
         verdicts.verdict[judged], verdicts.reason[judged] = UNDECIDED, TOLERANCE
         return verdicts.freeze()

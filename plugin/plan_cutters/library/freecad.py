@@ -21,6 +21,7 @@ from plan_cutters.files.content import lines_of
 from plan_cutters.library import raw_tool
 from plan_cutters.library.cutting import Preset, slack, take_feed
 from plan_cutters.library.fusion import MOST_SECTIONS
+from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, LibraryContent, Listed
 from plan_cutters_base.user_files import is_there
 
@@ -201,6 +202,11 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
 
     for key, words in _PARAMETERS:
         _dimension(tool, key, [word for word in words if parameters.get(word) not in (None, "")] or words[:1], parameters, length)
+    if kind_of_drill(tool) is not None:
+        tool.flutes_everywhere = True
+        if "DC" in tool.values:
+            tool.values.setdefault("DMM", tool.values["DC"])
+        tool.take("SIG", parameters.get("TipAngle"), "TipAngle", _angle)
     if tool.sort:
         if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.

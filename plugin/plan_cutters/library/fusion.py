@@ -11,6 +11,7 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import Element, lines_of
 from plan_cutters.library.cutting import Preset, take_feed
+from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import (
     MOST_TOOLS,
     Content,
@@ -114,6 +115,8 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
 
     for key, column, _, _ in _FIELDS:
         tool.take(key, row.get(column, "").strip(), column, number)
+    if kind_of_drill(tool) is not None:
+        tool.take("SIG", row.get("tool_tipAngle", "").strip(), "tool_tipAngle", number)
     try:
         tool.shaft = _csv_sections(row.get("shaft_segments", ""), tool, "shaft_segments")
         stages = _csv_sections(row.get("holder_segments", ""), tool, "holder_segments")
@@ -202,6 +205,9 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
     for key, _, word, _ in _FIELDS:
         if word:
             tool.take(key, geometry.get(word), word)
+    drills = kind_of_drill(tool) is not None
+    if drills:
+        tool.take("SIG", geometry.get("SIG"), "SIG")
     shaft = tool.tried(lambda: _table(item, "shaft"), {})
     if shaft.get("segments"):
         tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
@@ -213,17 +219,19 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
         tool.take("LH", holder.get("gaugeLength"), "holder.gaugeLength")
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)
-    take_feed(tool, _presets(item), "v_f")
+    take_feed(tool, _presets(item, "v_f_plunge") if drills else [], "v_f_plunge")
+    if tool.feed is None:
+        take_feed(tool, _presets(item, "v_f"), "v_f")
     return tool
 
 
-def _presets(item: dict[str, Any]) -> list[Preset]:
+def _presets(item: dict[str, Any], word: str) -> list[Preset]:
     """Its presets. They say nothing of its shape: where they cannot be read, there are none."""
     start = item.get("start-values")
     entries = start.get("presets") if isinstance(start, dict) else None
     if not isinstance(entries, list):
         return []
-    return [Preset(name_of(each.get("name")), each.get("v_f")) for each in entries if isinstance(each, dict)]
+    return [Preset(name_of(each.get("name")), each.get(word)) for each in entries if isinstance(each, dict)]
 
 
 def _table(item: dict[str, Any], key: str) -> dict[str, Any]:
@@ -304,6 +312,8 @@ def _hsm_tool(element: Element, place: str) -> Listed:
     for key, _, _, word in _FIELDS:
         if word:
             tool.take(key, body.given.get(word) if body else None, word, _number)
+    if kind_of_drill(tool) is not None:
+        tool.take("SIG", body.given.get("tip-angle") if body else None, "tip-angle", _number)
     if shaft is not None:
         tool.shaft = tool.tried(lambda: _hsm_sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:

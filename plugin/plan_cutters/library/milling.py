@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
+from plan_cutters.domain.drill import Drill, Kind
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_at_most, top_radius
@@ -88,6 +89,12 @@ MILLS = {
     "dovetail mill": "dovetail",
     "lollipop mill": "lollipop",
 }
+#: Kinds of tools for holes, by their usual names.
+_DRILLS: dict[str, Kind] = {
+    "drill": "drill", "center drill": "centre drill", "centre drill": "centre drill", "spot drill": "centre drill",
+    "reamer": "reamer", "tap": "tap", "tap right hand": "tap", "tap left hand": "tap", "counter sink": "countersink",
+    "countersink": "countersink", "counter bore": "counterbore", "counterbore": "counterbore",
+}  # fmt: skip
 #: Kinds of which the dimensions alone do not say the outline, or no description of them is public.
 _OUTLINE = ("form mill", "radius mill", "thread mill", "circle segment barrel", "circle segment lens", "circle segment oval",
             "circle segment taper", "slitting saw", "slittingsaw", "fillet", "radius", "dovetail", "thread-mill", "threadmill",
@@ -127,13 +134,34 @@ class Ask:
 
 def entry_of(tool: Listed, ask: Ask) -> Entry:
     """The record of a listed tool."""
+    if (kind := kind_of_drill(tool)) is not None:
+        return _drill(tool, kind, ask)
     try:
-        cutter = _cutter(tool, ask)
+        cutter = _cutter(tool, _sort(tool), ask)
     except UnfitError as why:
         return tool.entry(unused=str(why), broken=why.broken, unheld=why.unheld)
     except CutterError as error:
         return tool.entry(unused=cause_of(error), broken=True, unheld=isinstance(error, HolderFitError))
     return tool.entry(cutter=cutter)
+
+
+def kind_of_drill(tool: Listed) -> Kind | None:
+    """Tell what it is where it is a tool for holes."""
+    return _DRILLS.get(" ".join((tool.sort or tool.kind).lower().replace("_", " ").split()))
+
+
+def _drill(tool: Listed, kind: Kind, ask: Ask) -> Entry:
+    """The record of a tool for holes: of one that cannot be read nothing depends."""
+    if tool.flutes_everywhere and "LPR" not in tool.values and ask.stickout is not None:
+        tool.values.setdefault("LCF", ask.stickout)
+    elif tool.flutes_everywhere and "LPR" in tool.values:
+        tool.values.setdefault("LCF", tool.values["LPR"])
+    try:
+        body = replace(_cutter(tool, "flat", ask), name=tool.name)
+    except (UnfitError, CutterError) as error:
+        why = cause_of(error) if isinstance(error, CutterError) else str(error)
+        return tool.entry(unused=f"{kind}: {why}")
+    return tool.entry(drill=Drill(kind, body, math.radians(tool.values["SIG"]) if "SIG" in tool.values else None))
 
 
 def cause_of(error: CutterError) -> str:
@@ -159,8 +187,7 @@ def _sort(tool: Listed) -> str:
     raise UnfitError(f"{text} is unknown; read are {', '.join(MILLS)}")
 
 
-def _cutter(tool: Listed, ask: Ask) -> Cutter:
-    sort = _sort(tool)
+def _cutter(tool: Listed, sort: str, ask: Ask) -> Cutter:
     if tool.faults:
         raise UnfitError("; ".join(tool.faults), broken=True)
     if tool.doubts:

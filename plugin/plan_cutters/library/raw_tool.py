@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Literal, overload
 
 from plan_cutters.domain.checks import finite, items, shown
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.drill import Drill
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError, PlanError
 from plan_cutters.files import content
@@ -23,7 +24,7 @@ class Entry:
     name: str = ""
     kind: str = ""
     unit: str = ""  #: That its lengths are given in: `mm`, `inch`; empty where the file does not say.
-    cutter: Cutter | None = None  #: What can be judged of it. None: `unused` says why.
+    cutter: Cutter | None = None  #: What can be judged of it. None: it is a `drill`, or `unused` says why.
     unused: str | None = None  #: The field concerned, what is wrong with it and what to add.
     broken: bool = False  #: It contradicts itself or cannot be read; else it is not for finishing, or lacks something.
     notes: tuple[str, ...] = ()  #: How it was understood where that is not plain.
@@ -31,6 +32,7 @@ class Entry:
     feed: float | None = None  #: Of its preset, mm/min. It is none of the cutter's, whose id stays the same.
     preset: str = ""  #: The name of the preset that the feed is of.
     unheld: bool = False  #: It is not used because it does not fit its holder.
+    drill: Drill | None = None  #: What it is where it is a tool for holes.
 
     @property
     def label(self) -> str:
@@ -76,8 +78,13 @@ class Library(Sequence[Cutter]):
 
     @property
     def unused(self) -> tuple[Entry, ...]:
-        """Entries that became no cutter."""
-        return tuple(entry for entry in self.entries if entry.cutter is None)
+        """Entries that became no cutter, and no tool for holes."""
+        return tuple(entry for entry in self.entries if entry.cutter is None and entry.drill is None)
+
+    @property
+    def drills(self) -> tuple[Drill, ...]:
+        """Its tools for holes, each geometry once, in the file's order."""
+        return tuple({entry.drill.id: entry.drill for entry in reversed(self.entries) if entry.drill is not None}.values())[::-1]
 
     def entries_of(self, cutter: Cutter | str) -> tuple[Entry, ...]:
         """All entries of one geometry; a cutter that was asked for more (allowance, holder) is not known any longer."""
@@ -199,7 +206,8 @@ class Listed:
     scale: float = 1.0
     #: By ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF flute
     #: length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and DN its
-    #: diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest diameter.
+    #: diameter, TA half angle, SIG angle of a drill's point, TIP diameter at the tip, LF gauge length of the assembly, LH of its
+    #: holder, DCX largest diameter.
     values: dict[str, float] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)  #: What the file calls each.
     shaft: list[Segment] = field(default_factory=list)  #: Sections that the file gives above LN (or LCF), from there up.
@@ -209,6 +217,7 @@ class Listed:
     doubts: list[str] = field(default_factory=list)  #: Fields that can mean different tools.
     notes: list[str] = field(default_factory=list)
     needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
+    flutes_everywhere: bool = False  #: Its drawing is as wide everywhere: what states no flutes has them up to its holder.
     stated: Stated | None = None
     feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.
     preset: str = ""
@@ -232,7 +241,7 @@ class Listed:
     def cite(self, key: str) -> str:
         """A dimension as the file has it."""
         value = self.values.get(key, 0.0)
-        return f"{self.word(key)} {value if key == 'TA' else value / self.scale:.10g}"
+        return f"{self.word(key)} {value if key in ('TA', 'SIG') else value / self.scale:.10g}"
 
     def take(self, key: str, value: Any, field: str, number: Any = number_of) -> None:
         """Keep a dimension, if there is one, or what is wrong with it."""
@@ -244,6 +253,9 @@ class Listed:
             if key == "TA":
                 if not 0.0 <= result < 90.0:
                     raise FaultError(f"{field} is {result:g}: a half angle lies between 0 and 90 degrees")
+            elif key == "SIG":
+                if not 0.0 <= result <= 180.0:
+                    raise FaultError(f"{field} is {result:g}: the angle of a point lies between 0 and 180 degrees")
             else:
                 result = mm(result, self.scale, field, exact=self.stated is not None)
             if result:

@@ -132,7 +132,7 @@ def read_library(
     plan_cutters.errors.LibraryError: none.tools: cannot be read: No such file or directory
     """
     listed = listing(path, assume_stickout=assume_stickout, holder=holder, skip_bad=skip_bad)
-    if not listed:
+    if not listed and not listed.drills:
         raise nothing(listed)
     return listed
 

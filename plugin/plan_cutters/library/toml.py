@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.domain.checks import shown, stated_degrees, stated_radians
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.drill import KINDS, Drill, Kind
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import toml_text
@@ -48,7 +49,7 @@ class ToolTable(BaseModel):
     model_config = ConfigDict(extra="forbid")
     number: Annotated[int, Field(strict=True)] | None = None
     name: str = ""
-    type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"]
+    type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"] | Kind
     unit: str | None = None
     DC: Number | None = None
     RE: Number = 0.0
@@ -58,6 +59,7 @@ class ToolTable(BaseModel):
     DMM: Number | Literal["same"] | None = None
     DN: Number | None = None
     LN: Number | None = None
+    SIG: Number | None = None
     TA: Number | Annotated[str, Field(min_length=1)] | None = None
     PRFRAD: Number = 0.0
     profile_height: Number = 0.0
@@ -173,6 +175,9 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
         tool.take(key, getattr(model, key) if key in model.model_fields_set else None, key)
     tool.take("DMM", None if model.DMM == "same" else model.DMM, "DMM")
     tool.take("TA", model.TA, "TA", _degrees)
+    tool.take("SIG", model.SIG, "SIG")
+    if model.SIG is not None and model.type not in KINDS:
+        tool.faults.append(f"SIG: a {model.type} has no point as a drill has; leave it out")
     tool.holder = tool.tried(lambda: _holder(model.holder, tool.scale, named), None)
 
     def length(value: Any, field: str) -> float:
@@ -182,7 +187,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
     limits = {word: length(value, word) for word in ("allowance", "clearance") if (value := getattr(model, word)) is not None}
     stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
-    stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
+    stated.attributes = {"shape": "end" if model.type in (*_ENDS, *KINDS) else model.type, "taper": _taper(model, tool),
                          "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
                          "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
     needs = _needs(model, tool, flutes, outline)
@@ -298,13 +303,15 @@ def _kind(cutter: Cutter) -> str:
     return "flat" if not cutter.corner_radius else "ball" if cutter.corner_radius == cutter.radius else "bull"
 
 
-def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None) -> list[str]:
+def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None, drill: Drill | None = None) -> list[str]:
     entry: dict[str, Any] = {} if number is None else {"number": number}
     if name:
         entry["name"] = name
-    entry["type"] = _kind(cutter)
+    entry["type"] = _kind(cutter) if drill is None else drill.kind
     if cutter.shape != "form":
         entry["DC"] = 2.0 * cutter.radius
+    if drill is not None and drill.point is not None:
+        entry["SIG"] = stated_degrees(drill.point)
     if cutter.corner_radius and cutter.shape != "lollipop":
         entry["RE"] = cutter.corner_radius
     if cutter.taper:
@@ -354,9 +361,10 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
         name = "" if holder.name == "none" else holder.name
         lines += ["", "[[holder]]", f"name = {toml_text(name)}", f"stages = {toml_text(_rows(holder.stages))}"]
     for entry in cutters.entries:
-        if entry.cutter is None:
+        made = entry.cutter if entry.drill is None else entry.drill.body
+        if made is None:
             lines += ["", f"# Not used: {raw_tool.name_of(entry.label)}: {raw_tool.name_of(entry.unused)}"]
             continue
-        lines += _written(entry.cutter, entry.name, entry.number, entry.feed)
+        lines += _written(made, entry.name, entry.number, entry.feed, entry.drill)
         lines[-1:] = [lines[-1], *(f"# {raw_tool.name_of(note)}" for note in entry.notes)]
     return "\n".join([*lines, ""])

@@ -62,6 +62,7 @@ class Effective(Frozen):
     sharp_edges: Literal["asked", "left"] = Field(
         "asked", description="left: strips at sharp inside edges that no cutter enters are not required"
     )
+    drill_below_mm: float = Field(0.0, description="holes narrower than this are for drills, and in `holes`; 0 in older files")
     effort: Literal["quick", "normal", "thorough"] = Field(
         "normal", description="how much work advice and proofs after the verdicts may take"
     )

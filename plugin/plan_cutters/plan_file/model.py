@@ -12,6 +12,7 @@ from pydantic import Field
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
+from plan_cutters.plan_file.holes import DrillingEntry, HoleEntry
 from plan_cutters.plan_file.operations import OperationsEntry, ProcessEntry, SplitEntry
 from plan_cutters.plan_file.part_info import (
     CarrierEntry,
@@ -54,10 +55,14 @@ class SampleCounts(Frozen):
 
     exempt: int = Field(default=0, description="at sharp inside edges that no cutter enters, and not required (`sharp_edges`)")
 
+    drilled: int = Field(
+        default=0, exclude_if=lambda samples: not samples, description="in holes for drills; not written where there are none"
+    )
+
     @property
     def finished(self) -> int:
         """Samples that are required: what shares and choices are about, those that are not judged included."""
-        return self.count - self.inside_bodies - self.exempt
+        return self.count - self.inside_bodies - self.exempt - self.drilled
 
     @property
     def judged(self) -> int:
@@ -212,6 +217,11 @@ class LibraryEntry(Frozen):
     format: str
     tools: int = Field(description="that it lists")
     cutters: int = Field(description="of different geometry that came of them")
+    drills: int = Field(
+        default=0,
+        exclude_if=lambda tools: not tools,
+        description="tools for holes of different geometry that came of them; not written where there are none",
+    )
     holders: list[str] = Field(description="that it lists by themselves")
     notes: list[str]
     unused: list[UnusedEntry]
@@ -381,6 +391,15 @@ class Plan(Frozen):
     patterns: list[PatternEntry] = Field(default=[], description="equal faces; those of motions of the whole part first")
     inside_radii: list[InsideRadiusEntry] = Field(
         default=[], description="faces that bend inwards more than the cutter `shown`, the smallest radius first"
+    )
+    holes: list[HoleEntry] = Field(
+        default=[],
+        description="holes for drills: those narrower than `effective.drill_below_mm`, with a target face among theirs",
+    )
+    drilling: list[DrillingEntry] = Field(
+        default=[],
+        exclude_if=lambda steps: not steps,
+        description="steps that drill `holes`, with tools of the libraries; not written where there are none",
     )
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")

@@ -88,6 +88,7 @@ class ListedOutput(Frozen):
     type: str
     unit: str | None
     cutter: str | None = Field(description="id of the cutter that it became")
+    drill: str | None = Field(default=None, description="id of what it is where it is a tool for holes")
     unused: str | None = Field(description="why it became none")
     broken: bool = Field(description="it contradicts itself or cannot be read")
     notes: list[str]

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from pydantic import Field
 
 from plan_cutters.domain.figures import exact, percent
-from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.domain.verdicts import DRILLED, WORDS
 from plan_cutters.plan_file.frozen import Frozen
 
-#: Verdicts, from best to worst.
-VERDICTS = tuple(WORDS.values())
+#: Verdicts on what mills are asked for, from best to worst.
+VERDICTS = tuple(word for code, word in WORDS.items() if code != DRILLED)
 _REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 
@@ -32,6 +32,13 @@ class VerdictCounts(Frozen):
         default=0,
         description="of the inaccessible: samples at sharp inside edges that no cutter enters, where `sharp_edges` is `left`; "
         "shares and choices are about the others",
+    )
+
+    drilled: int = Field(
+        default=0,
+        exclude_if=lambda samples: not samples,
+        description="in holes for drills (`holes`), of no other verdict; shares and choices are about the others; not written "
+        "where there are none",
     )
 
     @property
@@ -89,6 +96,9 @@ class FaceVerdicts(VerdictCounts):
         default=AreaShare(), description="of the face's area, without what of it lies inside other bodies; 0 where all does"
     )
     exempt_share: float = Field(default=0.0, description="of the face's area that is exempt")
+    drilled_share: float = Field(
+        default=0.0, exclude_if=lambda share: not share, description="of the face's area that is in holes for drills"
+    )
     inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
 
 
@@ -122,4 +132,4 @@ def reached_share(counts: VerdictCounts, share: AreaShare) -> float | None:
 
 
 def _there(counts: VerdictCounts, share: AreaShare) -> set[str]:
-    return {word for word in WORDS.values() if counts.of(word) or getattr(share, word) > 0.0}
+    return {word for word in VERDICTS if counts.of(word) or getattr(share, word) > 0.0}

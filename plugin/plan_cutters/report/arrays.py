@@ -20,7 +20,7 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.shares import AreaShare, VerdictCounts
+from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.conditions import rotations_of
@@ -436,9 +436,8 @@ def _cutters(result: Judged, _cutter: str) -> list[dict[str, Any]]:
 
 def _verdicts(counts: VerdictCounts, share: AreaShare | None) -> dict[str, Any]:
     """Counts of samples by verdict, and shares of the area, 0 to 1."""
-    words = WORDS.values()
-    shares = {f"{word}_share": getattr(share, word) if share else np.nan for word in words}
-    return {**{word: counts.of(word) for word in words}, "inside_bodies": counts.inside_bodies, **shares}
+    shares = {f"{word}_share": getattr(share, word) if share else np.nan for word in VERDICTS}
+    return {**{word: counts.of(word) for word in WORDS.values()}, "inside_bodies": counts.inside_bodies, **shares}
 
 
 _TABLES: dict[str, Callable[[Judged, str], Any]] = {"samples": _samples, "faces": _faces, "cutters": _cutters}

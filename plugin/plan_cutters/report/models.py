@@ -51,12 +51,12 @@ SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS", "ap203": "AP203"}
 def split_result(result: Judged, cutter: str | None = None) -> Any:
     """Split the part's target faces along the verdicts of a cutter, by its id; default the one shown."""
     label = verdict_labels(result, cutter)
-    covered = LABELS.index("inside_bodies")
+    excluded = [LABELS.index(word) for word in ("inside_bodies", "drilled")]
 
     def worst(rows: NDArray[np.int64]) -> int:
-        """Its worst verdict stands for a face, as far as it is one of the finished part."""
-        seen = label[rows][label[rows] != covered]
-        return int(seen.max()) if len(seen) else covered
+        """Its worst verdict stands for a face, as far as mills have to reach it."""
+        seen = label[rows][~np.isin(label[rows], excluded)]
+        return int((seen if len(seen) else label[rows]).max())
 
     # Slivers may join what is worse, but not what is not judged.
     return split(result.part, face_labels(result, label, worst, 0), worst=LABELS.index("inaccessible"))

@@ -133,8 +133,8 @@ def some_of(ready: Prepared, rows: Rows) -> Prepared:
     arrays = ("point", "normal", "direction_max", "curvature", "uv", "face", "area", "unjudged")
     some = replace(samples, neighbours=none, grids=(), **{name: getattr(samples, name)[rows] for name in arrays})
     held = None if ready.held is None else ready.held[rows]
-    exempt = None if ready.exempt is None else ready.exempt[rows]
+    exempt, drilled = (None if each is None else each[rows] for each in (ready.exempt, ready.drilled))
     return replace(
         ready, samples=some, surface_class=ready.surface_class[rows], region=ready.region[rows], inside=ready.inside[rows],
-        inside_bodies=ready.inside_bodies[rows], held=held, exempt=exempt, others=(), copies=None,
+        inside_bodies=ready.inside_bodies[rows], held=held, exempt=exempt, drilled=drilled, others=(), copies=None,
     )  # fmt: skip

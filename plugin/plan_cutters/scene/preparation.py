@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Orientation, Part, SurfaceSamples
 from cad_io.arrays import Floats, Ints, Record
 from cad_io.part.equal_faces import Motion
+from cad_io.part.holes import Hole
 from cad_io.part.patterns import Pattern
 from cad_io.sample import bends, sample
 from plan_cutters.domain.cutter import Cutter
@@ -190,6 +191,8 @@ class Prepared(Record):
     `others`: the setups beside the first.
     `exempt` (n,) bool: samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are
         required.
+    `holes`: those that are for drills, each with its faces that are.
+    `drilled` (n,) bool: samples in them, which no mill is asked for; None: there are none.
     `patterns`: equal faces of the part, and motions that carry it onto itself.
     `copies`: samples that these motions carry onto others; None where there are few, or patterns are not to be used.
     `cache`: what stages make of this part is kept there.
@@ -210,6 +213,8 @@ class Prepared(Record):
     held: NDArray[np.bool_] | None = None
     others: tuple[OtherSetup, ...] = ()
     exempt: NDArray[np.bool_] | None = None
+    holes: tuple[Hole, ...] = ()
+    drilled: NDArray[np.bool_] | None = None
     patterns: tuple[Pattern, ...] = ()
     copies: Copies | None = None
     cache: Cache = field(default=NO_CACHE, compare=False)
@@ -279,8 +284,14 @@ class Prepared(Record):
 
     @property
     def not_required(self) -> NDArray[np.bool_]:
-        """Samples (n,) that no cutter has to reach: inside other bodies of the part, or exempt."""
-        return self.inside_bodies if self.exempt is None else self.inside_bodies | self.exempt
+        """Samples (n,) that no cutter has to reach: inside other bodies of the part, exempt, or for drills."""
+        free = self.inside_bodies if self.exempt is None else self.inside_bodies | self.exempt
+        return free if self.drilled is None else free | self.drilled
+
+    @property
+    def for_drills(self) -> NDArray[np.bool_]:
+        """Samples (n,) in holes that are for drills."""
+        return np.zeros(len(self.samples), bool) if self.drilled is None else self.drilled
 
 
 def places(options: Options) -> tuple[Placement | None, ...]:

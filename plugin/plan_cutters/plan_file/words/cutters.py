@@ -202,7 +202,7 @@ def _by_remaining_area(plan: Plan, c: CutterEntry) -> list[FaceEntry]:
 def _remaining_area(face: FaceEntry, c: CutterEntry) -> float:
     """Area of a face that a cutter leaves, mm2; not a number where the face's is not known."""
     face_entry = c.faces[face.id]
-    return face_entry.area_share.not_reached * (1.0 - face_entry.inside_share) * face.area_mm2
+    return face_entry.area_share.not_reached * (1.0 - face_entry.inside_share - face_entry.drilled_share) * face.area_mm2
 
 
 def _worst(face: FaceEntry, c: CutterEntry) -> WorstFace:
@@ -311,6 +311,8 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
     `unhelped`: why no change is known that helps, a clause. Cutters are called as everywhere.
     """
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
+    if verdicts.drilled and not verdicts.reached and not verdicts.not_reached and not verdicts.unjudged:
+        return f"{face.id} is in a hole for a drill: no mill has to reach it (--drill-below)."
     if not verdicts.reached and not verdicts.not_reached:
         inside = "all of it lies inside other bodies of the part" if verdicts.inside_bodies else face.unjudged
         return f"{face.id} could not be judged: {inside or 'it has no sample'}."

@@ -125,7 +125,7 @@ def _where(plan: Plan, entry: CutterEntry) -> str:
 
     def area(name: str) -> float:
         face_entry = entry.faces[name]
-        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share) * sizes[name]
+        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share - face_entry.drilled_share) * sizes[name]
         return mm2 if math.isfinite(mm2) else 0.0
 
     sizes = {face.id: face.area_mm2 for face in plan.faces}
@@ -496,7 +496,9 @@ def _title(plan: Plan, share: float, *, finished: bool) -> str:
     much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
     steps = len(process.steps) if process else 0
     where = f" in {setups} setups" if setups > 1 else ""
-    what = f"{count(steps, 'step')}{where} finish{'es' * (steps == 1)} {much} of" if steps else "no step finishes any of"
+    what = f"{much} of" if process is None else "no step finishes any of"
+    if steps:
+        what = f"{count(steps, 'step')}{where} finish{'es' * (steps == 1)} {much} of"
     return f"{sized(plan, plan.part.file or 'part')}{machine}: {what} {of}{'' if process is None else _took(process)}"
 
 
@@ -508,7 +510,8 @@ def _took(process: ProcessEntry) -> str:
 def every(plan: Plan) -> str:
     """All samples; where not all could be judged, how many could."""
     if not plan.samples.unjudged and not not_sampled(plan):
-        return "every sample but those at sharp inside edges" if plan.samples.exempt else "every sample"
+        few = ["at sharp inside edges"] * bool(plan.samples.exempt) + ["in holes for drills"] * bool(plan.samples.drilled)
+        return f"every sample but those {' and '.join(few)}" if few else "every sample"
     judged = plan.samples.judged
     return f"all {judged:,} samples that could be judged" if judged != 1 else "the 1 sample that could be judged"
 

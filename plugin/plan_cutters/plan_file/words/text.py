@@ -24,6 +24,7 @@ from plan_cutters.plan_file.words.headline import (
     undecided,
     unseen,
 )
+from plan_cutters.plan_file.words.holes import holes
 from plan_cutters.plan_file.words.names import Line, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.process import (
@@ -90,6 +91,7 @@ def story_of(plan: Plan) -> Story:
         in_short=tuple(in_short(plan)),
         scope=(
             *undecided(plan, names),
+            *holes(plan),
             *sharp_edges(plan, names),
             *inside_radii(plan, names),
             *not_judged(plan),
@@ -195,6 +197,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],
         wrapped(list(process.next), 3) if process else [],
         wrapped(list(process.remaining[process.much :]), _LEFT) if process else [],
+        wrapped([*holes(plan)], 2),
         wrapped([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),
         wrapped(_alone(story), _ALONE),

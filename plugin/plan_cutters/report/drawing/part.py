@@ -117,7 +117,7 @@ _GLASS = 0.14
 #: Faces that are no targets are paler than in the models, and shaded less: who does not see green tells it from their grey.
 _PLAIN, _PALE, _SOFT = ("check", "ignored"), np.full(3, 0.87), 0.45
 #: The verdicts of the legend, in its order.
-_LEGEND = (*VERDICTS, "inside_bodies", "mixed", "check", "fixture")
+_LEGEND = (*VERDICTS, "drilled", "inside_bodies", "mixed", "check", "fixture")
 #: The second channel: what patterns stand for. As matplotlib writes hatches.
 _HATCHES = {"inaccessible": "///", "undecided": "..", "unjudged": "--", "mixed": "xx", "fixture": "\\\\"}
 

@@ -255,6 +255,7 @@ _VERDICTS = {
     "undecided": "Neither a safe posture was found nor a proof that there is none.",
     "inaccessible": "None of the postures that were searched is safe.",
     "unjudged": "The surface could not be sampled, or it has no normal there.",
+    "drilled": "It is in a hole for a drill, which no mill has to reach.",
 }
 
 

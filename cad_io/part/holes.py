@@ -1,0 +1,527 @@
+"""Holes of a part by rule: cylinders that turn more than half a turn with air inside, and what lies about the same axis.
+
+A hole is known by its narrowest cylinder. Faces next to it that are turned about its axis with air inside belong to it: its
+bottom (a plane, a cone, a sphere, or a torus that rounds the corner), countersinks, and counterbores with their floors. Faces of
+one cylinder count as one wall, whether they share edges, only touch, or are parted by another hole that crosses. Nothing stands
+in a hole: lines along its axis meet no face between its ends, and whatever ends it is a bottom that is known. So pockets with
+islands, slots, fillets, bosses, and walls of closed cavities are none.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import FaceInfo, Floats, Orientation, Record, Triangles
+from cad_io.graphs import connected
+from cad_io.kernel import may_refuse
+
+#: Lengths that differ by less are equal: of the part's size, and of a radius, whichever is more.
+_SAME, _OF_RADIUS = 1e-5, 1e-3
+#: Sines of angles between axes that are one direction.
+_PARALLEL = 1e-4
+#: A wall turns by more than half a turn, rad: its largest gap is less than this.
+_GAP = np.pi - np.deg2rad(1.0)
+#: Share of a full turn that the area of a wall comes to over its length, at least: slanted ends take some of it.
+_TURNED = 0.3
+#: Points along a piece of a border that is the border itself, and along a chord of one.
+_ALONG, _CHORD = 32, 1
+#: Lines that look along a hole: shares of its radius from the axis, on which triangles may meet, and turns about it, rad.
+_LINES = ((0.07, 1.1), (0.6, 0.3), (0.6, 1.9), (0.6, 3.4), (0.6, 5.0))
+#: Turn from a line to the next one of three, rad.
+_TURN = 0.4
+#: A triangle of less than this share of its longest side, squared, has no area.
+_NO_AREA = 1e-9
+#: A line that leaves a hole looks so many radii further for a bottom that is not known.
+_DEEP = 2.0
+_Bottom = Literal["flat", "cone", "round", "open"]
+_TURNED_KINDS = ("cylinder", "cone", "torus", "sphere")
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Hole(Record):
+    """A hole, and what of it the tools come from its mouth for."""
+
+    #: Numbers of its faces, ascending.
+    faces: tuple[int, ...]
+    #: Diameter, mm, within which each of them lies about the axis.
+    within: tuple[float, ...]
+    #: mm; of its narrowest cylinder.
+    diameter: float
+    #: mm; from the mouth, counterbore and countersink included, to the lower end of that cylinder.
+    depth: float
+    through: bool
+    #: `flat`, `cone`, `round` (a sphere, or a rounded corner) or `open`.
+    bottom: _Bottom
+    #: rad; the whole angle of a bottom that is a cone, else None.
+    cone: float | None
+    #: Largest diameter, mm, and whole angle, rad.
+    countersink: tuple[float, float] | None
+    #: Diameter and depth, mm.
+    counterbore: tuple[float, float] | None
+    #: (3,); Unit direction of the axis, out of the mouth.
+    axis: Floats
+    #: (3,); Point of the axis at the mouth, mm.
+    place: Floats
+
+
+class _Line(NamedTuple):
+    """An axis."""
+
+    point: Floats
+    direction: Floats
+
+    def heights(self, points: Floats) -> Floats:
+        return np.asarray((points - self.point) @ self.direction)
+
+    def away(self, points: Floats) -> Floats:
+        off = points - self.point
+        return np.asarray(np.linalg.norm(off - (off @ self.direction)[:, None] * self.direction, axis=1))
+
+
+class _Ring(NamedTuple):
+    """A face about an axis lies between two heights, with its radii there; of a plane they are its inner and its outer one."""
+
+    number: int
+    kind: str
+    low: float
+    high: float
+    at_low: float
+    at_high: float
+
+    @property
+    def wide(self) -> float:
+        return max(self.at_low, self.at_high)
+
+
+class _Wall(NamedTuple):
+    """A cylinder with air inside, of one face or several."""
+
+    faces: tuple[int, ...]
+    line: _Line
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Finder:
+    part: Any
+    orientation: Orientation
+    triangles: Triangles
+    ignored: frozenset[int] = frozenset()
+
+    @cached_property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.part.size))
+
+    @property
+    def same(self) -> float:
+        return _SAME * self.size
+
+    def near(self, radius: float) -> float:
+        """Lengths that differ by less are equal, mm."""
+        return max(self.same, _OF_RADIUS * radius)
+
+    @cached_property
+    def points(self) -> dict[int, Floats | None]:
+        return {}
+
+    def border(self, number: int) -> Floats | None:
+        """Points (k, 3) along the border of a face; None where it has none that are known."""
+        if number not in self.points:
+            self.points[number] = _border(self.part, number)
+        return self.points[number]
+
+    def info(self, number: int) -> FaceInfo:
+        info: FaceInfo = self.part.faces[number - 1]
+        return info
+
+    def hollow(self, number: int) -> bool:
+        """Whether a face is turned about an axis or a centre, with air on that side."""
+        info = self.info(number)
+        if number in self.ignored or info.carrier is None or info.shape not in _TURNED_KINDS:
+            return False
+        return info.unjudged is None and info.carrier.side * float(self.orientation.sign[number - 1]) < 0.0
+
+    def ring(self, number: int, line: _Line) -> _Ring | None:
+        """A face as it lies about an axis with air inside; None where it does not."""
+        info = self.info(number)
+        carrier = info.carrier
+        if carrier is None or number in self.ignored or not (info.shape == "plane" or self.hollow(number)):
+            return None
+        direction = None if carrier.direction is None else np.array(carrier.direction)
+        if direction is not None and not _parallel(direction, line.direction):
+            return None
+        point = np.array(carrier.point)
+        off = 0.0 if info.shape == "plane" else float(line.away(point[None])[0])
+        border = self.border(number) if off <= _OF_RADIUS * self.size else None
+        if border is None:
+            return None
+        heights, away = line.heights(border), line.away(border)
+        low, high, level, near = heights.min(), heights.max(), line.heights(point[None])[0], self.near(float(away.max()))
+        if info.shape == "plane":
+            return _Ring(number, "plane", float(level), float(level), float(away.min()), float(away.max()))
+        # What goes round a centre on both sides is a cavity, no bottom.
+        if off > near or (info.shape == "sphere" and low < level - near and high > level + near):
+            return None
+        if carrier.half_angle is not None:
+            slope = float(np.tan(carrier.half_angle))
+            # A border that is one circle leaves the apex as the other end.
+            if away.min() > away.max() - near:
+                low, high = min(low, level), max(high, level)
+            at_low, at_high = abs(low - level) * slope, abs(high - level) * slope
+        elif info.shape == "sphere" and high - low <= near:
+            up = self._middle(number, line) > level
+            pole = level + (1.0 if up else -1.0) * (carrier.radius or 0.0)
+            low, high, at_low, at_high = min(low, pole), max(high, pole), away.max() * up, away.max() * (not up)
+        else:
+            at_low, at_high = (away[np.abs(heights - end) <= near].max() for end in (low, high))
+        return _Ring(number, info.shape, float(low), float(high), float(at_low), float(at_high))
+
+    def _middle(self, number: int, line: _Line) -> float:
+        """Height of a point in the middle of a face."""
+        u0, u1, v0, v1 = self.part.trim(number).box
+        middle = self.part.surface(number).values(np.array([0.5 * (u0 + u1)]), np.array([0.5 * (v0 + v1)]))
+        return float(line.heights(middle)[0])
+
+    def walls(self) -> list[_Wall]:
+        """All walls: cylinders with air inside that turn more than half a turn."""
+        numbers = [n for n in range(1, len(self.part.faces) + 1) if self.info(n).shape == "cylinder" and self.hollow(n)]
+        numbers = [n for n in numbers if self.border(n) is not None]
+        walls = list[_Wall]()
+        for cluster in self._cylinders(numbers):
+            carrier: Any = self.info(cluster[0]).carrier
+            line = _Line(np.array(carrier.point), np.array(carrier.direction))
+            for group in self._touching(cluster, line, carrier.radius):
+                heights = line.heights(np.concatenate([self._known(n) for n in group]))
+                full = 2.0 * np.pi * carrier.radius * float(np.ptp(heights))
+                if sum(self.info(n).area for n in group) > _TURNED * full and self._largest_gap(group, line) < _GAP:
+                    walls.append(_Wall(tuple(sorted(group)), line, carrier.radius))
+        return walls
+
+    def _known(self, number: int) -> Floats:
+        points = self.border(number)
+        assert points is not None
+        return points
+
+    def _largest_gap(self, group: Sequence[int], line: _Line) -> float:
+        """Largest angle about an axis without a point of some faces, rad."""
+        across, angles = _across(line.direction), []
+        for number in group:
+            u0, u1, v0, v1 = self.part.trim(number).box
+            share = np.linspace(0.0, 1.0, 2 * _ALONG + 1)
+            grid = [each.ravel() for each in np.meshgrid(u0 + share * (u1 - u0), v0 + share[[0, _ALONG, -1]] * (v1 - v0))]
+            other = [each.ravel() for each in np.meshgrid(u0 + share[[0, _ALONG, -1]] * (u1 - u0), v0 + share * (v1 - v0))]
+            points = self.part.surface(number).values(*(np.concatenate(each) for each in zip(grid, other, strict=True)))
+            points = points[np.isfinite(points).all(axis=1)] - line.point
+            angles.append(np.arctan2(*(points @ across).T))
+        angle = np.sort(np.concatenate(angles))
+        return float(np.diff(angle, append=angle[0] + 2.0 * np.pi).max())
+
+    def _cylinders(self, numbers: Sequence[int]) -> list[list[int]]:
+        """Faces of one cylinder, together."""
+        if not numbers:
+            return []
+        carriers: list[Any] = [self.info(n).carrier for n in numbers]
+        point, direction = (np.array([getattr(each, name) for each in carriers]) for name in ("point", "direction"))
+        radius = np.array([each.radius for each in carriers])
+        pairs = list[tuple[int, int]]()
+        for i in range(len(numbers) - 1):
+            near = self.near(float(radius[i]))
+            rows = i + 1 + np.flatnonzero(np.abs(radius[i + 1 :] - radius[i]) <= near)
+            rows = rows[np.linalg.norm(np.cross(direction[rows], direction[i]), axis=1) <= _PARALLEL]
+            off = point[rows] - point[i]
+            off = np.linalg.norm(off - (off @ direction[i])[:, None] * direction[i], axis=1)
+            pairs += [(i, j) for j in rows[off <= near].tolist()]
+        return _grouped(numbers, pairs)
+
+    def _touching(self, cluster: Sequence[int], line: _Line, radius: float) -> list[list[int]]:
+        """Faces of one cylinder that meet along the axis, or are parted by a hole that crosses there."""
+        near = self.near(radius)
+        ends = [(float(h.min()), float(h.max())) for h in (line.heights(self._known(n)) for n in cluster)]
+        across = [{m for m in self.part.neighbours[n - 1] if m not in cluster and self._crosses(m, line)} for n in cluster]
+        pairs = [
+            (i, j)
+            for i in range(len(cluster)) for j in range(i + 1, len(cluster))
+            if (ends[i][0] <= ends[j][1] + near and ends[j][0] <= ends[i][1] + near) or across[i] & across[j]
+        ]  # fmt: skip
+        return _grouped(cluster, pairs)
+
+    def _crosses(self, number: int, line: _Line) -> bool:
+        info = self.info(number)
+        if info.shape != "cylinder" or info.carrier is None or not self.hollow(number):
+            return False
+        return not _parallel(np.array(info.carrier.direction), line.direction)
+
+    def holes(self) -> list[Hole]:
+        """All holes, those with the lowest face number first."""
+        walls = self.walls()
+        rings = [self._about(wall) for wall in walls]
+        # Walls of one axis that share faces are steps of one hole.
+        pairs = [
+            (i, j) for i in range(len(walls)) for j in range(i + 1, len(walls)) if rings[i].keys() & {*walls[j].faces}
+        ]  # fmt: skip
+        result = list[Hole]()
+        for steps in _grouped(range(len(walls)), pairs):
+            own = {number: ring for k in steps for number, ring in self._on(walls[steps[0]].line, rings[k]).items()}
+            hole = self._hole([walls[k] for k in steps], own)
+            if hole is not None:
+                result.append(hole)
+        return sorted(result, key=lambda hole: hole.faces)
+
+    def _on(self, line: _Line, rings: dict[int, _Ring]) -> dict[int, _Ring]:
+        """The same faces, with heights on an axis of the same place."""
+        again = {number: self.ring(number, line) for number in rings}
+        return {number: ring for number, ring in again.items() if ring is not None}
+
+    def _about(self, wall: _Wall) -> dict[int, _Ring]:
+        """Faces about the axis of a wall that are connected with it."""
+        rings: dict[int, _Ring] = {}
+        waiting = [*wall.faces]
+        while waiting:
+            number = waiting.pop()
+            if number in rings:
+                continue
+            ring = self.ring(number, wall.line)
+            if ring is None or (ring.kind == "plane" and not self._is_floor(ring, wall.line)):
+                continue
+            rings[number] = ring
+            waiting += self.part.neighbours[number - 1]
+        return rings
+
+    def _is_floor(self, plane: _Ring, line: _Line) -> bool:
+        """Whether a plane lies within a wall about the axis."""
+        near = self.near(plane.wide)
+        for number in self.part.neighbours[plane.number - 1]:
+            ring = self.ring(number, line)
+            if ring is not None and ring.kind != "plane" and plane.wide <= ring.wide + near:
+                return True
+        return False
+
+    def _hole(self, walls: Sequence[_Wall], rings: dict[int, _Ring]) -> Hole | None:
+        line, radius = walls[0].line, min(wall.radius for wall in walls)
+        near = self.near(radius)
+        core = [rings[n] for wall in walls if wall.radius <= radius + near for n in wall.faces if n in rings]
+        if not core:
+            return None
+        low, high = min(ring.low for ring in core), max(ring.high for ring in core)
+        numbers = {ring.number for ring in core}
+        rest = [ring for ring in rings.values() if ring.number not in numbers]
+        beyond = {
+            up: _outward([r for r in rest if _lies_beyond(r, low, high, up, near)], radius, near, up) for up in (False, True)
+        }
+        if any(self._has_island(ring, rings) for each in beyond.values() for ring in each if ring.kind == "plane"):
+            return None
+        ends = {up: _bottom(each, radius, near, up) for up, each in beyond.items()}
+        closed = self._closed(line, radius, ends, core, {*rings})
+        # A bottom that a cavity breaks through ends the hole all the same.
+        if closed is None or all(up in closed for up in ends):
+            return None
+        wide = {up: max((ring.wide for ring in beyond[up] if ring.wide > radius + near), default=0.0) for up in ends}
+        mouth = (False in closed) if closed else wide[True] >= wide[False] - near
+        # From here on heights are those over the mouth, and negative.
+        way, far = 1.0 if mouth else -1.0, beyond[not mouth]
+        top = max(way * end for ring in (*core, *beyond[mouth]) for end in (ring.low, ring.high))
+        lowest = min(way * end - top for ring in (*core, *(() if closed else far)) for end in (ring.low, ring.high))
+        sinks, bores = [], []
+        for up, ring in [*_steps(beyond[True], near, up=True), *_steps(beyond[False], near, up=False)]:
+            if ring.kind == "cylinder":
+                inner = way * (ring.low if up else ring.high) - top
+                bores.append((2.0 * ring.wide, -inner if up == mouth else inner - lowest))
+            elif not _narrows(ring, up, radius, near):
+                sinks.append((2.0 * ring.wide, 2.0 * _half_angle(ring)))
+        bottom, angle = ends[not mouth] or ("open", None)
+        every = sorted([*core, *beyond[True], *beyond[False]], key=lambda ring: ring.number)
+        return Hole(
+            faces=tuple(ring.number for ring in every), within=tuple(2.0 * ring.wide for ring in every), diameter=2.0 * radius,
+            depth=-lowest, through=not closed, bottom=bottom, cone=angle, countersink=max(sinks, default=None),
+            counterbore=max(bores, default=None), axis=way * line.direction, place=line.point + way * top * line.direction,
+        )  # fmt: skip
+
+    def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
+        """Whether something stands on the floor of a hole: whatever begins there, but for other holes."""
+        return any(n not in rings and not self.hollow(n) for n in self.part.neighbours[floor.number - 1])
+
+    def _closed(
+        self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int]
+    ) -> set[bool] | None:
+        """At which ends something closes a hole; None where something stands in it, or closes it that is no bottom."""
+        longest = max(core, key=lambda ring: ring.high - ring.low)
+        start, near = 0.5 * (longest.low + longest.high), max(self.near(radius), 2.0 * self.triangles.chord_error)
+        span = min(ring.low for ring in core), max(ring.high for ring in core)
+        neighbours = {m for ring in core for m in self.part.neighbours[ring.number - 1]} - own
+        rows, across, closed = self._within(line, radius), _across(line.direction), set[bool]()
+
+        def ended(place: Floats) -> frozenset[bool] | None:
+            """The ends that are closed, by one line; None as of all."""
+            height, face, facing = self._met(rows, place, line.direction)
+            shut = set[bool]()
+            for up in (False, True):
+                way = 1.0 if up else -1.0
+                after = np.flatnonzero(way * (height - start) > 0.0)
+                if not len(after):
+                    continue
+                first = after[(way * height[after]).argmin()]
+                beyond = way * (height[first] - span[up])
+                if way * facing[first] > 0.0 or beyond < -near:
+                    return None
+                if int(face[first]) in own and ends[up] is not None:
+                    shut.add(up)
+                elif beyond <= _DEEP * radius and int(face[first]) in neighbours:
+                    return None
+            return frozenset(shut)
+
+        for share, turn in _LINES:
+            # Between triangles of two faces there are cracks: most of three lines next to each other tell.
+            turns = turn + _TURN * np.arange(3)
+            places = radius * share * np.stack([np.cos(turns), np.sin(turns)], axis=1) @ across.T
+            shut, most = Counter(map(ended, line.point + places)).most_common(1)[0]
+            if shut is None or most == 1:
+                return None
+            closed |= shut
+        return closed | {up for up, bottom in ends.items() if bottom is not None}
+
+    def _within(self, line: _Line, radius: float) -> NDArray[np.int64]:
+        """Rows (k,) of the triangles whose boxes, seen along an axis, meet the square about it."""
+        low, high = self._flat(line.direction)
+        place = line.point @ _across(line.direction)
+        return np.flatnonzero(((low <= place + radius) & (high >= place - radius)).all(axis=1))
+
+    def _flat(self, direction: Floats) -> tuple[Floats, Floats]:
+        """Corners of the boxes (t, 2) of all triangles, seen along a direction."""
+        key = np.round(direction, 12).tobytes()
+        if key not in self._boxes:
+            flat = self.triangles.vertex @ _across(direction)
+            self._boxes.clear()
+            self._boxes[key] = flat.min(axis=1), flat.max(axis=1)
+        return self._boxes[key]
+
+    @cached_property
+    def _boxes(self) -> dict[bytes, tuple[Floats, Floats]]:
+        return {}
+
+    def _met(self, rows: NDArray[np.int64], place: Floats, direction: Floats) -> tuple[Floats, Any, Floats]:
+        """Heights (k,) over a place at which a line meets some triangles, their faces (k,), and their sides (k,)."""
+        vertex = self.triangles.vertex[rows] - place
+        flat, after = vertex @ _across(direction), [1, 2, 0]
+        sides = flat[:, :, 0] * flat[:, after, 1] - flat[:, :, 1] * flat[:, after, 0]
+        # Seen from the side, or all in one point, a triangle has no side that faces the line.
+        whole = sides.sum(axis=1)
+        large = np.linalg.norm(np.roll(flat, -1, axis=1) - flat, axis=2).max(axis=1, initial=0.0)
+        on = (
+            ((sides >= 0.0).all(axis=1) | (sides <= 0.0).all(axis=1))
+            & (np.abs(whole) > _NO_AREA * large**2)
+            & (large > self.same)
+        )
+        # The part of a side belongs to the corner across.
+        weight = sides[on][:, after] / whole[on, None]
+        face = self.triangles.face[rows[on]]
+        height = (weight * (vertex[on] @ direction)).sum(axis=1)
+        return height, face, np.sign(whole[on]) * self.orientation.sign[face - 1]
+
+
+def _parallel(one: Floats, other: Floats) -> bool:
+    """Whether two unit directions are one, or opposite."""
+    cosine = float(one @ other)
+    return 1.0 - cosine * cosine <= _PARALLEL**2
+
+
+def _across(direction: Floats) -> Floats:
+    """Two unit directions (3, 2) square to another, which they turn about to the left."""
+    one, other = np.linalg.svd(direction[None])[2][1:]
+    return np.stack([one, other if np.cross(one, other) @ direction > 0.0 else -other], axis=1)
+
+
+def holes(part: Any, orientation: Orientation, triangles: Triangles, ignored: Collection[int] = ()) -> tuple[Hole, ...]:
+    """Find the holes of a part.
+
+    Parameters
+    ----------
+    part : Part
+    orientation : Orientation
+        The side of each face that is out of the material.
+    triangles : Triangles
+        Close to the part: whatever may stand in a hole.
+    ignored : collection of int
+        Numbers of faces that are not there.
+    """
+    usable = (triangles.face >= 1) & (triangles.face <= len(part.faces))
+    return tuple(_Finder(part, orientation, triangles.take(usable), frozenset(ignored)).holes())
+
+
+def _border(part: Any, number: int) -> Floats | None:
+    trim = part.trim(number)
+    if trim is None or not len(trim.segments):
+        return None
+    pieces = np.where(trim.exact, _ALONG, _CHORD)
+    segment = np.repeat(np.arange(len(pieces)), pieces)
+    nth = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    start, end = trim.segments[segment, 0], trim.segments[segment, 1]
+    uv = start + (nth / pieces[segment])[:, None] * (end - start)
+    points = None
+    with may_refuse():
+        points = part.surface(number).values(*uv.T)
+    return None if points is None or not np.isfinite(points).all() else np.asarray(points)
+
+
+def _grouped(items: Iterable[int], pairs: Sequence[tuple[int, int]]) -> list[list[int]]:
+    """Items together that are connected by pairs of their places."""
+    items = [*items]
+    groups = defaultdict[int, list[int]](list)
+    for item, group in zip(items, connected(len(items), np.array(pairs, np.int32).reshape(-1, 2)).tolist(), strict=True):
+        groups[group].append(item)
+    return [*groups.values()]
+
+
+def _lies_beyond(ring: _Ring, low: float, high: float, up: bool, near: float) -> bool:
+    """Whether a face lies above, or below, what goes from one height to another one."""
+    return ring.low >= high - near if up else ring.high <= low + near
+
+
+def _outward(rings: Sequence[_Ring], radius: float, near: float, up: bool) -> list[_Ring]:
+    """Faces beyond an end that a tool gets to from outside, the outermost first: none that is wider than what is further out."""
+    ordered = sorted(rings, key=lambda ring: (-ring.high, -ring.wide) if up else (ring.low, -ring.wide))
+    result, least = list[_Ring](), np.inf
+    for ring in ordered:
+        if ring.wide <= least + near:
+            result.append(ring)
+            # A bottom, which is narrower than the hole, is no way in.
+            least = min(least, ring.wide) if ring.wide > radius + near else least
+    return result
+
+
+def _bottom(rings: Sequence[_Ring], radius: float, near: float, up: bool) -> tuple[_Bottom, float | None] | None:
+    """The bottom among faces beyond an end, with the angle of a cone; None where there is none."""
+    inner = [ring for ring in rings if ring.wide <= radius + near]
+    kinds = {ring.kind for ring in inner}
+    if kinds & {"torus", "sphere"}:
+        return "round", None
+    for ring in inner:
+        if ring.kind == "cone" and _narrows(ring, up, radius, near):
+            return "cone", 2.0 * _half_angle(ring)
+    return ("flat", None) if "plane" in kinds else None
+
+
+def _narrows(ring: _Ring, up: bool, radius: float, near: float) -> bool:
+    """Whether a cone beyond an end gets narrower from there: a drill's point."""
+    return ring.wide <= radius + near and (ring.at_high < ring.at_low if up else ring.at_low < ring.at_high)
+
+
+def _half_angle(ring: _Ring) -> float:
+    return float(np.arctan2(abs(ring.at_high - ring.at_low), ring.high - ring.low))
+
+
+def _steps(rings: Sequence[_Ring], near: float, *, up: bool) -> list[tuple[bool, _Ring]]:
+    """Cylinders and cones beyond an end, without cones that are the floor of a cylinder."""
+
+    def is_floor(cone: _Ring) -> bool:
+        end = cone.high if up else cone.low
+        return any(
+            ring.kind == "cylinder" and abs(ring.wide - cone.wide) <= near and abs((ring.low if up else ring.high) - end) <= near
+            for ring in rings
+        )
+
+    return [(up, r) for r in rings if r.kind == "cylinder" or (r.kind == "cone" and not is_floor(r))]

@@ -1,0 +1,71 @@
+"""A plan says which holes are for drills, and which drills make them."""
+
+import math
+from collections.abc import Iterator
+
+from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
+from plan_cutters.plan_file.holes import HoleEntry
+from plan_cutters.plan_file.model import Plan
+
+#: Groups that are described; where there are more, their diameters are named: so many of these.
+_GROUPS, _DIAMETERS = 3, 10
+
+
+def holes(plan: Plan) -> Iterator[str]:
+    """One sentence on all of them; nothing where there are none."""
+    if not plan.holes:
+        return
+    groups: dict[int, list[HoleEntry]] = {}
+    for each in plan.holes:
+        groups.setdefault(each.group, []).append(each)
+    ordered = sorted(groups.values(), key=lambda group: (group[0].diameter_mm, group[0].group))
+    if len(groups) <= _GROUPS:
+        what = "; ".join(group_words(group) for group in ordered)
+    else:
+        what = listed([*dict.fromkeys(size(group[0].diameter_mm) for group in ordered)], _DIAMETERS)
+    share = drilled_share(plan)
+    much = "" if share is None else f", {percent(share, some=True, whole=False)} of the area,"
+    number = len(plan.holes)
+    yield f"{count(number, 'hole')}{much} {'is for a drill' if number == 1 else 'are for drills'}: {what}."
+    if any(library.drills for library in plan.libraries):
+        yield _made(plan, ordered)
+
+
+def _made(plan: Plan, groups: list[list[HoleEntry]]) -> str:
+    """Say how many of them tools of the libraries drill, in which time, and which usual drills are missing."""
+    made = sum(each.drilled for each in plan.holes)
+    times = [step.seconds for step in plan.drilling]
+    took = f", {duration(math.fsum(each or 0.0 for each in times))}" if times and None not in times else ""
+    setups = sorted({step.setup + 1 for step in plan.drilling})
+    where = f" in setup{'s' if len(setups) > 1 else ''} {joined([*map(str, setups)])}" if setups and len(plan.setups) > 1 else ""
+    text = f"Drills of the set make {'all' if made == len(plan.holes) else made if made else 'none'} of them{where}{took}"
+    open_groups = [group[0] for group in groups if not all(each.drilled for each in group)]
+    missing = [f"{size(each.diameter_mm)} x {math.ceil(each.depth_mm)}" for each in open_groups]
+    return f"{text}; none makes {listed([*dict.fromkeys(missing)], _DIAMETERS)}." if missing else f"{text}."
+
+
+def group_words(group: list[HoleEntry]) -> str:
+    """Equal holes: how many, how wide and how deep.
+
+    The depth is that of the full diameter.
+    """
+    first, number = group[0], len(group)
+    times = f"{number} x " if number > 1 else ""
+    ends = ", through" if first.through else ""
+    sink = "" if first.countersink is None else f", countersink {size(first.countersink.diameter_mm)}"
+    bore = "" if first.counterbore is None else f", counterbore {size(first.counterbore.diameter_mm)}"
+    return f"{times}{size(first.diameter_mm)}, {reported(first.depth_mm):.4g} deep{ends}{sink}{bore}"
+
+
+def size(diameter: float) -> str:
+    """A diameter as tools are called."""
+    return f"D{reported(diameter):.4g}"
+
+
+def drilled_share(plan: Plan) -> float | None:
+    """Share of the area of the finished target faces that is in holes for drills; None where no area is known."""
+    sizes = {face.id: face.area_mm2 for face in plan.faces}
+    faces = plan.cutters[0].faces
+    whole = sum(sizes[name] * (1.0 - each.inside_share) for name, each in faces.items())
+    mine = sum(sizes[name] * each.drilled_share for name, each in faces.items())
+    return mine / whole if whole > 0.0 else None

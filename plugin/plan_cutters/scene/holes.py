@@ -1,0 +1,68 @@
+"""Which holes of a part are for drills: the narrow ones, whose faces no mill has to reach."""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from cad_io.part.holes import Hole, holes
+from plan_cutters.scene.preparation import Prepared
+
+
+def with_holes(ready: Prepared) -> Prepared:
+    """The same part with its holes for drills, and the samples in them, which no mill has to reach."""
+    below, targets = ready.options.drill_below, {*ready.chosen.targets}
+    if not below:
+        return ready
+    scene, surroundings = ready.scene, ready.conditions.surroundings
+    own = surroundings.alone or surroundings
+    near = own.certain if len(own.certain.triangles) else own.possible
+    key = scene.part.key, scene.orientation.sign, scene.ignored, near.triangles.vertex
+    every = ready.cache.cached("holes", key, lambda: holes(scene.part, scene.orientation, near.triangles, scene.ignored))
+    # What the planner's own steps name is milled by them.
+    named = () if ready.options.process is None else ready.options.process.faces_named
+    narrow = [for_drills(hole, below) for hole in every if hole.diameter < below]
+    mine = tuple(hole for hole in narrow if targets.intersection(hole.faces) and not {*named}.intersection(hole.faces))
+    samples = ready.samples
+    within = np.isin(samples.face, [n for hole in mine for n in hole.faces]) & (samples.unjudged < 0) & ~ready.inside_bodies
+    return replace(ready, holes=mine, drilled=within) if mine else ready
+
+
+def for_drills(hole: Hole, below: float) -> Hole:
+    """A hole with those of its faces alone that are narrower than a diameter, mm."""
+    taken = [(number, wide) for number, wide in zip(hole.faces, hole.within, strict=True) if wide < below]
+    return replace(hole, faces=tuple(n for n, _ in taken), within=tuple(wide for _, wide in taken))
+
+
+def groups(each: Collection[Hole]) -> list[int]:
+    """The group of each hole, from 1: those of one group are equal, and have one axis to the spindle."""
+    firsts, result = list[Hole](), list[int]()
+    for hole in each:
+        number = next((k for k, other in enumerate(firsts) if alike(hole, other)), len(firsts))
+        if number == len(firsts):
+            firsts.append(hole)
+        result.append(number + 1)
+    return result
+
+
+#: Lengths (mm) and angles (rad) of holes that differ by less are equal.
+_LENGTH, _ANGLE = 0.01, np.deg2rad(0.1)
+
+
+def alike(one: Hole, other: Hole) -> bool:
+    """Whether two holes are equal but for their place."""
+    return (
+        one.bottom == other.bottom
+        and one.through == other.through
+        and _equal((one.diameter, one.depth), (other.diameter, other.depth), (_LENGTH, _LENGTH))
+        and _equal((one.cone,), (other.cone,), (_ANGLE,))
+        and _equal(one.countersink, other.countersink, (_LENGTH, _ANGLE))
+        and _equal(one.counterbore, other.counterbore, (_LENGTH, _LENGTH))
+        and bool(one.axis @ other.axis >= np.cos(_ANGLE))
+    )
+
+
+def _equal(one: object, other: object, within: tuple[float, ...]) -> bool:
+    if not isinstance(one, tuple) or not isinstance(other, tuple):
+        return one is other
+    return all(a is b if a is None or b is None else abs(a - b) <= most for a, b, most in zip(one, other, within, strict=True))
