@@ -20,7 +20,7 @@ _ONE = 0.01
 
 
 def words_of(machine: MachineAxes, each: Mapping[str, Any], plane: Floats, other: Mapping[str, Any] | None) -> dict[str, Any]:
-    """What an operation must have as words: as it is written where that is right, else what it must do.
+    """Give the words that an operation must have: as it is written where that is right, else what it must do.
 
     `plane` (3, 3): X, Y and Z of the tilted plane in the machine's frame, as rows; nan where X is not known. `other`: the other
     angles as they are written.

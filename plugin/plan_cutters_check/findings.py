@@ -5,7 +5,7 @@ Every number and word of plan.json is met in one walk: it is compared with what 
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -109,6 +109,16 @@ def same(expected: Any, actual: Any) -> bool:
 
 def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def merged_trees(one: Any, other: Any) -> Any:
+    """Make one tree of two; where both say something, the first is taken."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        both = {name: merged_trees(one[name], other[name]) for name in one if name in other}
+        return type(one)({**one, **{name: other[name] for name in other if name not in one}, **both})  # type: ignore[call-arg]
+    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        return [merged_trees(*pair) for pair in zip(one, other, strict=True)]
+    return one
 
 
 def short(value: Any) -> str:

@@ -282,7 +282,7 @@ class Paper:
         depth = tool.solids[0].depth(np.linalg.norm(away - height[:, None] * axis, axis=1), height)[0]
         keeps = question.tools[each["cutter"]].allowance
         if not (np.abs(depth + keeps) <= question.tolerance + _SAME_MM).all():
-            yield "a sample beside a contact does not lie on the flutes"
+            yield "a sample away from its contact does not lie on the flutes"
 
     def _floor(
         self, plan: Planned, each: Mapping[str, Any], rows: Rows, axis: Floats, scallop: float, accuracy: float

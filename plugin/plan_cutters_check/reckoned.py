@@ -182,3 +182,24 @@ def weighed(area: Floats) -> Floats:
     """Areas as weights: one that is not known weighs nothing; where none is known each weighs as much."""
     known = np.where(np.isfinite(area) & (area > 0.0), area, 0.0)
     return known if known.sum() > 0.0 else np.ones(len(area))
+
+
+#: Angles that are written to three digits are equal within this, deg.
+_WRITTEN = 0.0021
+
+
+def evenly(by: Mapping[str, float], every: Sequence[Mapping[str, float]]) -> Any:
+    """Give the angle, deg, by which a rotary axis turns from one image to the next, if the angles of all images say so."""
+    if len(by) != 1 or not every or not {*by} <= {*every[0]}:
+        return "what one rotary axis turns by"
+    for name, first in every[0].items():
+        away, turn = np.array([each[name] - first for each in every]), by.get(name)
+        near = away if not turn else away - turn * np.rint(away / turn)
+        if np.abs((near + 180.0) % 360.0 - 180.0).max() > _WRITTEN * len(every):
+            return "what the angles of its operations turn by"
+        # It is a whole part of the turn.
+        if turn is not None and not (
+            turn > 0.0 and abs(360.0 / turn - round(360.0 / turn)) < 1e-2 and len({*away}) == len(every)
+        ):
+            return "a whole part of the turn"
+    return dict(by)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Loose
+from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
 from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
 from plan_cutters_check.reckoned import (
     NO_REASON,
@@ -21,6 +21,7 @@ from plan_cutters_check.reckoned import (
     Reckoned,
     Rows,
     Weights,
+    evenly,
     falling,
     weighed,
 )
@@ -35,8 +36,8 @@ _ASSUMED = {"scallop_mm": "scallop_mm", "stepover": "stepover", "overlap_mm": "o
 _OF_FIRST = ("setup", "mode", "angles_deg", "axis", "cutter", "strategy", "g68_2", "g53_1", "rotary_words")
 #: Which plan of operations is the process: the first of these that there is. How its steps of one cutter cut, in their order.
 _PREFERRED, _ORDER = ("process", "fastest", "fewest"), ("floor", "mixed", "wall", "point")
-#: Cosine from the setup axis under which a tool comes from below; by how much each of some written angles may be off, deg.
-_BELOW, _WRITTEN = -0.01, 0.0021
+#: Cosine from the setup axis under which a tool comes from below.
+_BELOW = -0.01
 #: Share of its radius by which faces of one wall may differ.
 _WALL = 2e-3
 #: A number of a reason that is none: a step for it would be hardly any.
@@ -86,18 +87,8 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
         ] if not inside else "faces whose samples were judged are targets",
         "part": {"faces": len(question.part.faces), "size_mm": [Between(s - 1e-6, s + 1e-6) for s in question.part.size]},
     }  # fmt: skip
-    merged: dict[str, Any] = _merged(mine, question.stated)
+    merged: dict[str, Any] = merged_trees(mine, question.stated)
     return merged
-
-
-def _merged(one: Any, other: Any) -> Any:
-    """Two trees in one; where both say something, the first is taken."""
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        both = {name: _merged(one[name], other[name]) for name in one if name in other}
-        return type(one)({**one, **{name: other[name] for name in other if name not in one}, **both})  # type: ignore[call-arg]
-    if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        return [_merged(*pair) for pair in zip(one, other, strict=True)]
-    return one
 
 
 def _operations(reckoned: Reckoned) -> dict[str, Any]:
@@ -340,10 +331,19 @@ class _Process:
             "setups": [self._stand(k, each.z) for k, each in enumerate(self.question.setups)],
             "steps": steps, "plan": self.plan.entry["name"], "left": left, "finished_mm2": finished, "asked_mm2": requested,
             "finished_share": 1.0 if not left else share if self.done.any() else 0.0,
-            "seconds": None if seconds is None else seconds - clamping,
-            "setup_seconds": None if seconds is None else clamping,
+            "seconds": seconds, **self._times(clamping),
             "exempt": self._remaining("sharp_edge", exempt, edges, self.written.get("exempt")) if len(exempt) else None,
         }  # fmt: skip
+
+    def _times(self, clamping: float) -> dict[str, float | None]:
+        """What its seconds are made of, from the plan of operations."""
+        plan, assumed = self.plan.entry, self.question.document["operations"]["assumed"]
+        change = assumed["change_s"] * max(0, len({each["cutter"] for each in self.plan.operations}) - 1)
+        times = {
+            "cutting_seconds": plan["cutting_seconds"], "link_seconds": plan["link_seconds"], "change_seconds": change,
+            "setup_seconds": clamping, "index_seconds": max(0.0, plan["other_seconds"] - change - clamping),
+        }  # fmt: skip
+        return dict.fromkeys(times) if plan["seconds"] is None else times
 
     def _stand(self, setup: int, up: tuple[float, float, float]) -> dict[str, Any]:
         """How the part stands in a setup, as far as the fixtures say it: whether jaws are there is looked at by itself."""
@@ -469,23 +469,6 @@ class _Process:
         return {"cause": cause, **entry, "faces": faces, "place_mm": place}
 
 
-def evenly(by: Mapping[str, float], every: Sequence[Mapping[str, float]]) -> Any:
-    """Give the angle, deg, by which a rotary axis turns from one image to the next, if the angles of all images say so."""
-    if len(by) != 1 or not every or not {*by} <= {*every[0]}:
-        return "what one rotary axis turns by"
-    for name, first in every[0].items():
-        away, turn = np.array([each[name] - first for each in every]), by.get(name)
-        near = away if not turn else away - turn * np.rint(away / turn)
-        if np.abs((near + 180.0) % 360.0 - 180.0).max() > _WRITTEN * len(every):
-            return "what the angles of its operations turn by"
-        # It is a whole part of the turn.
-        if turn is not None and not (
-            turn > 0.0 and abs(360.0 / turn - round(360.0 / turn)) < 1e-2 and len({*away}) == len(every)
-        ):
-            return "a whole part of the turn"
-    return dict(by)
-
-
 def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:
     """Reckon what `cutters` must hold of one, as far as it follows from the tool, the samples and its verdicts."""
     question = reckoned.question
@@ -537,15 +520,16 @@ def _hole(reckoned: Reckoned, written: Mapping[str, Any]) -> dict[str, Any]:
     """Reckon what `holes` must hold of one: its narrowest cylinder."""
     faces = reckoned.question.part.faces
     carriers = [faces[int(name[1:]) - 1].carrier for name in written["faces"] if 1 <= int(name[1:]) <= len(faces)]
-    walls = [each for each in carriers if each is not None and each.minor_radius is None and each.half_angle is None]
-    walls = [each for each in walls if each.radius is not None and each.direction is not None]
+    walls = [
+        each for each in carriers
+        if each and each.radius and each.direction is not None and each.minor_radius is None and each.half_angle is None
+    ]  # fmt: skip
     if not walls:
         return {"faces": "a cylinder among them"}
     wall = min(walls, key=lambda each: each.radius or 0.0)
     direction, diameter = np.array(wall.direction), 2.0 * (wall.radius or 0.0)
     axis = (direction if direction @ np.array(written["axis"]) > 0.0 else -direction).tolist()
-    off = np.array(written["place_mm"]) - np.array(wall.point)
-    on_axis = np.array(wall.point) + (off @ direction) * direction
+    on_axis = np.array(wall.point) + ((np.array(written["place_mm"]) - np.array(wall.point)) @ direction) * direction
     return {
         "diameter_mm": Between(diameter * (1.0 - _WALL), diameter * (1.0 + _WALL)),
         "axis": [Between(x - _WALL, x + _WALL) for x in axis],

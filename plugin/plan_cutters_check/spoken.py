@@ -44,10 +44,12 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     head = _HEAD.search(text["headline"])
     if head is not None:
         size = 25.4**2 if head["unit"] == "in" else 1.0
+        seconds = process["seconds"]
+        on_machine = None if seconds is None else seconds - (process["setup_seconds"] or 0.0)
         pairs = [
             ("share", _share(head["share"] or ("0" if "finishes any of" in head[0] else "100")), process["finished_share"]),
             ("area", _span(head["area"]), process["asked_mm2"] / size),
-            ("time", _time(head["took"]), process["seconds"]),
+            ("time", _time(head["took"]), on_machine),
             ("time to clamp", _time(head["again"]), process["setup_seconds"] or None),
         ]
         yield from (f"the headline has another {what} than the process" for what, span, value in pairs if not _in(span, value))

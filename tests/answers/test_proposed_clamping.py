@@ -16,7 +16,8 @@ from plan_cutters.report.process_file import setup_toml
 from plan_cutters.setups.files import read_setup
 from tests.support.cad_parts import ball, box, rod
 
-HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 4, "area_budget": 0, "machine": "trunnion-ac", "setup": "auto"}
+HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 4, "area_budget": 0, "machine": "trunnion-ac", "setup": "auto",
+       "stock": "part"}  # fmt: skip
 #: The same with a ball, as the slow ones ask.
 BALL = {**HOW, "cutters": "R2L60rc2HR15L30", "grid": 7}
 

@@ -215,6 +215,8 @@ def test_the_search_and_the_checker_agree(words):
     )  # fmt: skip
     setup = Setup((0.0, 0.0, 1.0), None, None, tuple(body for each in options.fixtures for body in bodies_of(each)), frozenset())
     arrays = {"point": samples.point, "normal": samples.normal, "direction_max": samples.direction_max, "face": samples.face}
+    # Verdicts with a contact elsewhere than at the sample are none of this.
+    arrays[f"axis_{cutter.id}"] = np.full_like(samples.point, np.nan)
     document = {"effective": {"tilt_deg": [0.0, 90.0], "rotation_deg": [0.0, 360.0]}}
     question = Question(
         read_part(part), machine, {cutter.id: sizes_of(cutter)}, (setup,), frozenset(), np.zeros(0), 0.01, document, {}, arrays

@@ -12,7 +12,7 @@ from cad_io.part.patterns import patterns
 from plan_cutters.document.features import pattern_entries
 from plan_cutters_check.patterns import Patterns
 from plan_cutters_check.question import Question
-from plan_cutters_check.records import evenly
+from plan_cutters_check.reckoned import evenly
 from tests.support.patterns import impeller, plate
 
 PARTS = {"impeller": lambda: impeller(6), "plate": lambda: plate(3, 1)}

@@ -16,7 +16,7 @@ from plan_cutters.plan_file.words.process import process_story, with_process_wor
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, cone, cut, rod
 
-HOW = {"area_budget": 0, "jobs": 2, "faces": "all", "setup": (0, 0, 1), "machine": "tilt:90"}
+HOW = {"area_budget": 0, "jobs": 2, "faces": "all", "setup": (0, 0, 1), "machine": "tilt:90", "drill_below": 0}
 GOUGES = ("local_gouge", "rear_gouge", "collision")
 
 

@@ -215,14 +215,16 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
     summary(both.plan, verbose=True)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith(f"Take flat end D6 x 30. For the part, {size(both.plan.part.size_mm)}, in 2 setups")
+    head = "Take flat end D6 x 30: it finishes all 1,280 mm². For the part"
+    assert said.startswith(f"{head}, {size(both.plan.part.size_mm)}, in 2 setups")
     assert "over 2 setups" in said
     below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
     assert not below.here["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
     part = f"the part, {size(below.plan.part.size_mm)}"
-    assert said.startswith(f"Take flat end D6 x 30. For the face asked for of {part} (31.2 % of the area), in setup 0,0,-1:")
+    head = "Take flat end D6 x 30: it finishes all 400 mm². For the face asked for"
+    assert said.startswith(f"{head} of {part} (31.2 % of the area), in setup 0,0,-1:")
     names = short_names(both.plan)
     assert headline(both.plan, names).about.startswith(f"For {part}, in 2 setups: ")
     assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

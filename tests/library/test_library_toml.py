@@ -51,7 +51,7 @@ def test_every_angle_survives(tmp_path_factory, taper):
 
 
 def test_a_library_is_converted_with_its_numbers_and_what_was_not_used(tmp_path):
-    tools = [fusion(number=1), fusion(number=9, name='a "second" name\\'), fusion("drill", number=3)]
+    tools = [fusion(number=1), fusion(number=9, name='a "second" name\\'), fusion("probe", number=3), fusion("drill", number=4)]
     library = read_library(write_json(tmp_path / "a.json", tools))
     text = to_toml(library)
     again = read(tmp_path, text)
@@ -59,6 +59,8 @@ def test_a_library_is_converted_with_its_numbers_and_what_was_not_used(tmp_path)
     assert again.numbers(again[0]) == (1, 9)
     assert again.names(again[0]) == ("a tool", 'a "second" name\\')
     assert '# Not used: tool 3 (line' in text  # fmt: skip
+    assert library.drills
+    assert again.drills == library.drills
 
 
 TOOL = """

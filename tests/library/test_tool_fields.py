@@ -373,7 +373,7 @@ def test_a_tapered_ball_nose_of_freecad_is_a_ball_under_a_cone(tmp_path_factory,
     ("change", "why"),
     [
         ({"TaperAngle": None}, "TaperAngle is missing"),
-        ({"TaperDiameter": "3 mm"}, "TaperDiameter 3 is reached 10.51 mm over its tip"),
+        ({"TaperDiameter": "3 mm"}, "TaperDiameter 3 is reached 10.5 mm over its tip"),
         ({"CuttingEdgeAngle": "20 °"}, "CuttingEdgeAngle"),
     ],
 )

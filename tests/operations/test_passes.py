@@ -160,7 +160,7 @@ def test_the_centre_goes_round_a_pin_and_round_a_hole(radius, hole):
     round_ = cq.Workplane().circle(radius).extrude(12.0)
     shape = (cq.Workplane().box(60, 60, 12, centered=(True, True, False)).cut(round_) if hole else round_).val()
     faces = on(shape, lambda face: face.geomType() == "CYLINDER")
-    found = planned(shape, "D12L60F26S11", faces=faces)
+    found = planned(shape, "D12L60F26S11", faces=faces, drill_below=0)
     assert found.operations[0].strategy == "wall"
     assert found.cut_length_mm == pytest.approx(2.0 * math.pi * (radius + (-6.0 if hole else 6.0)), rel=0.01)
 

@@ -393,7 +393,7 @@ def test_without_scripts_it_says_everything_too(browser, path):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(path.as_uri())
-    for word in ("100 % of the 2,520 mm² to machine", "flat end D12 x 60", "flat end D20 x 12", "Worst spots", "F6"):
+    for word in ("finish 100 % of 2,520 mm²", "flat end D12 x 60", "flat end D20 x 12", "Worst spots", "F6"):
         assert word in page.inner_text("body")
     context.close()
 

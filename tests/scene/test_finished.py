@@ -132,7 +132,9 @@ def test_it_is_said_first_and_has_a_colour_of_its_own(capsys, tmp_path):
     result = plan(stacked(), grid=9, **HOW)
     summary(result.plan)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D4 x 60. Inside other bodies: 5.2 % of the target area (90 of 972 samples)")
+    assert said.startswith(
+        "Take flat end D4 x 60: it finishes all 11,400 mm². Inside other bodies: 5.2 % of the target area (90 of 972 samples)"
+    )
     assert said.index("--ignore F7-12") < said.index(" 1 flat end D4 x 60")
     html = page(result).decode()
     assert html.index("5.2 % of the target area") < html.index('<section id="viewer"')

@@ -208,6 +208,7 @@ def test_on_the_command_line(tmp_path):
     done = run(str(ROOT / "samples" / "pocket_top.step"), "--cutter", "R3L40", "--grid", "5", "-o", str(tmp_path),
                         "--formats", "json", "--area-budget", "0", cwd=tmp_path)  # fmt: skip
     said = in_lines(done.stdout)
-    assert "Take flat end D6 x 40. For the free-form face of pocket_top.step, 60 x 40 x 24.51 mm (27.9 % of the area)" in said
+    assert said.startswith("Take flat end D6 x 40: it finishes all 2,520 mm².")
+    assert "For the free-form face of pocket_top.step, 60 x 40 x 24.51 mm (27.9 % of the area)" in said
     assert "5 plane faces were not judged, only obstacles: --faces all." in said
     assert json.loads((tmp_path / "plan.json").read_text())["scope"]["not_judged"] == 5

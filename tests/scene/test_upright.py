@@ -109,7 +109,7 @@ def test_the_floor_of_a_bore_is_cut_to_its_middle(bore, machine):
 
 def test_a_bore_as_wide_as_the_cutter_leaves_one_place():
     shape = cq.Workplane("XY").box(40, 40, 20).faces(">Z").workplane().hole(12.0, 8.0).val()
-    result = plan(shape, cutters="D12L40", faces="all", grid=15, area_budget=0, machine="3-axis")
+    result = plan(shape, cutters="D12L40", faces="all", grid=15, area_budget=0, machine="3-axis", drill_below=0)
     samples, verdicts = result.samples, result.reaches[result.plan.cutters[0].id]
     floor = floor_of(samples)
     assert verdicts.reached[floor].all()
@@ -120,7 +120,7 @@ def test_a_bore_as_wide_as_the_cutter_leaves_one_place():
 def test_a_cutter_that_is_too_wide_for_a_bore_is_proved_to_be():
     """Nothing is called undecided: the walls of the bore leave its axis no place."""
     shape = cq.Workplane("XY").box(40, 40, 20).faces(">Z").workplane().hole(11.9, 8.0).val()
-    result = plan(shape, cutters="D12L40", faces="all", grid=15, area_budget=0, machine="3-axis")
+    result = plan(shape, cutters="D12L40", faces="all", grid=15, area_budget=0, machine="3-axis", drill_below=0)
     samples, verdicts = result.samples, result.reaches[result.plan.cutters[0].id]
     floor = floor_of(samples)
     assert (verdicts.verdict[floor] == INACCESSIBLE).all()
@@ -130,7 +130,8 @@ def test_a_cutter_that_is_too_wide_for_a_bore_is_proved_to_be():
 def test_where_the_triangles_do_not_tell_whether_there_is_a_place_nothing_is_proved():
     """The bore is 0.017 mm narrower than the cutter: its wall lies 0.0085 mm deep all around, and its chords nearly 0.01 mm."""
     shape = cq.Workplane("XY").box(40, 40, 20).faces(">Z").workplane().hole(11.983, 8.0).val()
-    result = plan(shape, cutters="D12L40", faces="all", grid=9, area_budget=0, machine="3-axis", tolerance=0.01)
+    how = {"area_budget": 0, "machine": "3-axis", "tolerance": 0.01, "drill_below": 0}
+    result = plan(shape, cutters="D12L40", faces="all", grid=9, **how)
     samples, verdicts = result.samples, result.reaches[result.plan.cutters[0].id]
     floor = floor_of(samples)
     assert len(floor) > 20
@@ -139,7 +140,7 @@ def test_where_the_triangles_do_not_tell_whether_there_is_a_place_nothing_is_pro
 
 def test_a_rounded_corner_cuts_only_with_what_is_flat(bore):
     """A bull nose D12 rc 2 has a flat of radius 4: on the floor of the bore it comes to 6 mm from its axis, and no farther."""
-    result = plan(bore, cutters="D12L40rc2", faces="all", grid=15, area_budget=0, machine="3-axis")
+    result = plan(bore, cutters="D12L40rc2", faces="all", grid=15, area_budget=0, machine="3-axis", drill_below=0)
     samples, verdicts = result.samples, result.reaches[result.plan.cutters[0].id]
     floor = floor_of(samples)
     away = np.linalg.norm(samples.point[floor, :2], axis=1)

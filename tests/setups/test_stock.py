@@ -13,6 +13,9 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.stock import Stock, StockBody
 from plan_cutters.domain.verdicts import FIXTURE
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.plan_file.part_info import ProposedSetup
+from plan_cutters.report.process_file import setup_toml
+from plan_cutters.setups.files import read_setup
 from tests.support.cad_parts import box, rod, write_step
 from tests.support.vises import block
 
@@ -111,6 +114,17 @@ def test_stock_of_a_file_is_its_box_and_must_enclose_the_part(tmp_path):
 def test_jaws_that_grip_deeper_than_the_stock_reaches_are_refused():
     with pytest.raises(PlanError, match="the stock reaches 2 mm below the part"):
         plan(box(40, 30, 20), fixtures="vise", stock="box:1,1,2", **HOW)
+
+
+def test_a_setup_file_has_the_stock_and_the_vise_on_it(tmp_path):
+    fixtures = ["stock:box:1,1,5", "vise:46x25x65:3:32@20,15,-5,0,0,-90"]
+    setup = ProposedSetup(axis=(0.0, 0.0, 1.0), stands_on=[], clamping="vise", fixtures=fixtures, promised=1.0)
+    file = tmp_path / "setup-1.toml"
+    file.write_text(setup_toml(setup), encoding="utf-8")
+    assert "the vise grips the stock" in file.read_text(encoding="utf-8")
+    assert [each.text for each in read_setup(file).fixtures] == fixtures
+    process = plan(box(40, 30, 20), setup=str(file), **HOW).plan.process
+    assert (process.setups[0].stands_on, process.stock.word) == ("stock", "box:1,1,5")
 
 
 def test_the_word_of_a_fixture_is_read_again():

@@ -86,8 +86,8 @@ def part(name):
 
 
 def ready_of(made, **options):
-    """A part that is prepared to be judged at all of its faces."""
-    return prepare(made, Options.of({"faces": "all", "area_budget": 0, "jobs": 2, **options}))
+    """A part that is prepared to be judged at all of its faces, holes too."""
+    return prepare(made, Options.of({"faces": "all", "area_budget": 0, "jobs": 2, "drill_below": 0, **options}))
 
 
 @cache

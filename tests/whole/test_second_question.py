@@ -63,8 +63,10 @@ def test_the_same_question_is_read_and_has_the_same_bytes(tmp_path, part, words)
     first = answered(part, tmp_path / "first", **words)
     second = answered(part, tmp_path / "second", **words)
     assert without[2] == []
+    # Where the kernel's own form is not what was read to the last bit, the file is read again.
+    again = set() if part == "blade" else {"read"}
     assert {"read", "faces", "triangles", "samples", "tree", "bodies", "verdicts", "witnesses"} <= set(first[2])
-    assert second[2] == []
+    assert set(second[2]) <= again
     same(without, first)
     same(first, second)
 
@@ -75,8 +77,8 @@ def test_the_same_question_is_read_and_has_the_same_bytes(tmp_path, part, words)
     ({"machine": "tilt:60"}, {"verdicts", "witnesses", "area"}),
     ({"answers": ["stick-out"]}, set()),
     ({"spacing": 15.0}, {"samples", "bodies", "coverings", "verdicts", "witnesses", "area"}),
-    ({"ignore": ["F1"]}, {"triangles", "tree", "bodies", "coverings", "samples", "verdicts", "witnesses", "area"}),
-    ({"tolerance": 0.1}, {"triangles", "tree", "bodies", "coverings", "verdicts", "witnesses", "area"}),
+    ({"ignore": ["F1"]}, {"triangles", "holes", "tree", "bodies", "coverings", "samples", "verdicts", "witnesses", "area"}),
+    ({"tolerance": 0.1}, {"triangles", "holes", "tree", "bodies", "coverings", "verdicts", "witnesses", "area"}),
 ])  # fmt: skip
 def test_another_question_makes_what_it_does_not_share_and_answers_as_without(tmp_path, words, made):
     answered("blade", tmp_path / "first", cutters=["R3L40"])

@@ -24,6 +24,7 @@ from plan_cutters.domain.standard_tools import Fitting
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE, Verdicts
 from plan_cutters.judging.limits import AXES, within_limits
+from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
@@ -346,7 +347,7 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, clamping, name, seconds = float(area.sum()) + not_sampled, None, "", None
+    requested, name, seconds, times = float(area.sum()) + not_sampled, "", None, dict[str, Any]()
     short = np.zeros(0, np.int64)
     parts = _Parts(ready, over, area, requested)
     if answers.operations is not None:
@@ -357,8 +358,7 @@ def process_entry(
         done, name, seconds, short = (chosen.label >= 0) & ready.finished, entry.name, entry.seconds, chosen.short
         steps = [*parts.own(answers.operations, chosen, entry), *parts.planned(answers.operations, chosen, entry)]
         if seconds is not None:
-            clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
-            seconds -= clamping
+            times = _times(ready.options, entry, len({step.setup for step in steps}))
     else:
         runs = list(_runs(ready, entries, answers, over))
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
@@ -374,9 +374,19 @@ def process_entry(
     return ProcessEntry(
         steps=steps, setups=list(process_setups(ready)), stock=stock_entry(ready), plan=name, finished_mm2=finished,
         asked_mm2=requested, left=left,
-        seconds=seconds, setup_seconds=clamping,
+        seconds=seconds, **times,
         finished_share=exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left), exempt=exempt,
     )  # fmt: skip
+
+
+def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str, Any]:
+    """What the time of a plan is made of, by the fields of the process."""
+    clamping = options.setup_time * max(0, setups - 1)
+    change = options.change_time * max(0, len({each.cutter for each in plan.operations}) - 1)
+    return {
+        "cutting_seconds": plan.cutting_seconds or 0.0, "link_seconds": plan.link_seconds, "setup_seconds": clamping,
+        "change_seconds": change, "index_seconds": max(0.0, plan.other_seconds - change - clamping),
+    }  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
 from plan_cutters.domain.checks import shown
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import lines_of
@@ -292,7 +293,7 @@ def _tapered_ball(tool: Listed, parameters: dict[str, Any], length: Callable[[An
     ends = wide - (top - flutes) * math.tan(taper)
     if ends > wide + slack(wide):
         tool.doubts.append(
-            f"{_TOP} {2.0 * wide:.10g} is reached {top:.4g} mm over its tip, below the end of its flutes, {tool.cite('LCF')}: "
+            f"{_TOP} {2.0 * wide:.10g} is reached {mm(top)} over its tip, below the end of its flutes, {tool.cite('LCF')}: "
             f"what they are above is not known; {_AS_TOML}"
         )
     elif top > flutes + slack(top):

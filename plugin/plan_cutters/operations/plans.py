@@ -389,8 +389,8 @@ def _stands(task: Task, operation: Operation) -> _Stands:
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter, number = operation.axis, operation.cutter, np.full(len(samples), -1, np.int32)
     number[rows] = 0
-    context, found = Context.of(cutter, task.ready.setups[operation.setup]), task.everywhere[operation.setup][cutter]
-    held = held_at(axis[None], number, samples, context, found)
+    context, searched = Context.of(cutter, task.ready.setups[operation.setup]), task.everywhere[operation.setup][cutter]
+    held = held_at(axis[None], number, samples, context, searched)
     tip = cut_by_tip(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
     passes = task.walls.passes(c, operation.setup, axis, rows)
     wall = passes.cut.pace(task.paths, cutter) > np.nan_to_num(tip.pace(task.paths, cutter))
@@ -405,10 +405,10 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     shift = held.shift.copy()
     shift[mine] = 0.0
     # Where the contact is elsewhere than at the sample.
-    beside = wall | shift[rows].any(axis=1)
+    moved = wall | shift[rows].any(axis=1)
     return _Stands(
         replace(at, point=point, normal=normal), replace(held, tilt=tilt, tilt_direction=tilt_direction, shift=shift), strategy,
-        np.where(beside[:, None], point[rows] + shift[rows], np.nan), cut,
+        np.where(moved[:, None], point[rows] + shift[rows], np.nan), cut,
     )  # fmt: skip
 
 

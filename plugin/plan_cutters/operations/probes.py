@@ -53,8 +53,8 @@ class Probes:
             if len(open_):
                 free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], mine_of)
                 if self.everywhere:
-                    found = self.everywhere[s][self.cutters[c]]
-                    for number, which, _ in slid(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], found):
+                    searched = self.everywhere[s][self.cutters[c]]
+                    for number, which, _ in slid(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], searched):
                         free[number, which] = True
                 table[np.ix_(mine, open_)] = free
                 self.made += made

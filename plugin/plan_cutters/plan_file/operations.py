@@ -469,9 +469,13 @@ class ProcessEntry(Frozen):
         "the other numbers; null where there is none",
     )
     seconds: float | None = Field(
-        description="on the machine: cutting of all steps, orientations and changes of cutters, without `setup_seconds`; null "
+        description="of all steps, with links, orientations, changes of cutters and setups: the sum of the next five; null "
         "without a feed"
     )
+    cutting_seconds: float | None = Field(default=None, description="of all steps, at their feeds")
+    link_seconds: float | None = Field(default=None, description="of links between their passes and to their pieces")
+    index_seconds: float | None = Field(default=None, description="of turns from one orientation to the next")
+    change_seconds: float | None = Field(default=None, description="of changes of cutters")
     setup_seconds: float | None = Field(default=None, description="to clamp the part for each setup after the first")
     next: list[NextEntry] = Field(default=[], description="the best first")
     doubts: list[str] = Field(default=[], description="what changes what one does: a line each, the gravest first")

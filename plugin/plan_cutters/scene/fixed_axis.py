@@ -120,33 +120,34 @@ _NEAR, _LEAST = 1e-5, 0.5
 
 
 def slid(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, found: Verdicts
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, searched: Verdicts
 ) -> Iterator[tuple[int, NDArray[np.int64], Floats]]:
     """Where a cutter stands free with a contact beside the sample, which lies on its flank or under its upper face all the same.
 
-    A posture that was `found` with nearly that axis says which contact is tried. What is under the flat of a tip serves without.
+    A posture that a search has with nearly that axis (`searched`) says which contact is tried. What is under the flat of a tip
+    serves without.
     Of each of some axes (k, 3) at which there are any: its number, which of the samples (m,), and from these to their contacts.
     """
     from plan_cutters.kernels.search.fixed_axis import LEANING
 
     tool = context.outer_tool
-    some = np.flatnonzero(found.reached[rows] & (found.tilt[rows] > _LEAST))
+    some = np.flatnonzero(searched.reached[rows] & (searched.tilt[rows] > _LEAST))
     flanks = [each for each in tool.flanks if each.length > 0.0]
-    some = some[found.shift[rows[some]].any(axis=1) | (len(flanks) > 0)]
+    some = some[searched.shift[rows[some]].any(axis=1) | (len(flanks) > 0)]
     if not len(some):
         return
-    near = cKDTree(found.axis[rows[some]]).query_ball_point(axes, _NEAR)
+    near = cKDTree(searched.axis[rows[some]]).query_ball_point(axes, _NEAR)
     for k in (k for k, each in enumerate(near) if each):
         which = some[np.array(near[k])]
         at = rows[which]
-        normal, shift = samples.normal[at], found.shift[at].copy()
+        normal, shift = samples.normal[at], searched.shift[at].copy()
         cosine = normal @ axes[k]
         ruling = axes[k] - cosine[:, None] * normal
         sine = np.linalg.norm(ruling, axis=1)
         tilt = np.arctan2(sine, cosine)
         for each in flanks:
             # It touched with the upper end of its flank: with this axis the lower end touches as well.
-            upper = (np.abs(tilt - each.tilt) <= _NEAR) & (tool.at(found.tilt[at]) > each.mode) & (tool.at(tilt) <= each.mode)
+            upper = (np.abs(tilt - each.tilt) <= _NEAR) & (tool.at(searched.tilt[at]) > each.mode) & (tool.at(tilt) <= each.mode)
             shift[upper] -= each.length * ruling[upper] / sine[upper, None]
         moved = np.flatnonzero(shift.any(axis=1))
         there = replace(
@@ -158,10 +159,10 @@ def slid(
             yield k, which[free], shift[free]
 
 
-def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Context, found: Verdicts | None = None) -> Verdicts:
+def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Context, searched: Verdicts | None = None) -> Verdicts:
     """Return the postures of samples that go with one of some axes each, as a search would write them.
 
-    Where the tool stands free by none of these ways, it may have `slid` to a contact beside the sample, as was `found`.
+    Where the tool stands free by none of these ways, it may have `slid` to another contact than the sample, as `searched` has it.
 
     Where the axis is the normal within the accuracy of the axes, and the cutter stands with the contact under the flat of its
     tip, the tilt is 0 and the tilt direction goes from the axis to the contact; 1 at the rim of the flat, shorter within. Where
@@ -182,7 +183,7 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Contex
         verdicts.tilt[rows] = np.select([way == UPRIGHT, way == ALONG], [0.0, 0.5 * np.pi], np.arctan2(across, cosine))
         verdicts.verdict[rows] = ACCESSIBLE
         blocked = rows[way < 0]
-        for _, which, shift in slid(blocked, axis[None], samples, context, found) if found is not None else ():
+        for _, which, shift in slid(blocked, axis[None], samples, context, searched) if searched is not None else ():
             verdicts.shift[blocked[which]] = shift
     return verdicts.freeze()
 

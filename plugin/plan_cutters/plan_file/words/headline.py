@@ -503,7 +503,7 @@ def _title(plan: Plan, share: float, *, finished: bool) -> str:
 
 
 def _took(process: ProcessEntry) -> str:
-    took = "" if process.seconds is None else f", {duration(process.seconds)}"
+    took = "" if process.seconds is None else f", {duration(process.seconds - (process.setup_seconds or 0.0))}"
     return f"{took} and {duration(process.setup_seconds)} to clamp it again" if process.setup_seconds else took
 
 

@@ -446,7 +446,10 @@ def roughing(process: ProcessEntry) -> str:
     if stock is None:
         return ""
     took = "" if stock.seconds is None else f", {duration(stock.seconds)}"
-    return f"Roughing: {stock.remove_mm3 / 1000.0:,.3g} of {stock.volume_mm3 / 1000.0:,.3g} cm³ of stock{took}."
+    removed, whole = (
+        f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (0.001 * stock.remove_mm3, 0.001 * stock.volume_mm3)
+    )
+    return f"Roughing: {removed} of {whole} cm³ of stock{took}."
 
 
 def _is_are(setup: ProcessSetup) -> str:
