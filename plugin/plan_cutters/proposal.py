@@ -23,6 +23,7 @@ from plan_cutters.judged_part import JudgedPart
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.part_info import HiddenFaces, ProposedSetup, SetupProposal
+from plan_cutters.plan_file.words.headline import stands_in
 from plan_cutters.plan_file.words.notes import setup_proposed
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
@@ -266,14 +267,6 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
     )
 
 
-def _stands(setup: ProposedSetup) -> str:
-    if len(setup.fixtures) > 1:
-        return f"in a {setup.clamping} that grips the stock"
-    if setup.clamping != TABLE:
-        return f"in a {setup.clamping} that grips {', '.join(setup.grips)}"
-    return f"on {', '.join(setup.stands_on)}" if setup.stands_on else "on no plane"
-
-
 def _described(
     plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], left: list[list[HiddenFaces]], shares: tuple[float, float, int]
 ) -> Plan:
@@ -284,7 +277,7 @@ def _described(
     share, held_share, tried = shares
     setups = [_setup(ranking, k, own, min(1.0, float(each))) for k, own, each in zip(chosen, left, alone, strict=True)]
     held = held_share >= _ENOUGH
-    where = [f"{axis_words(each.axis)} ({_stands(each)})" for each in setups]
+    where = [f"{axis_words(each.axis)} ({stands_in(each, 'no plane')})" for each in setups]
     of = f"{len(ranking.held)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (
         f"With {of} {_among(ranking.words)}, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of "

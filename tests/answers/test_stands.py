@@ -101,3 +101,13 @@ def test_a_plan_says_what_is_below_where_nothing_holds_the_part():
     assert (setup.held, setup.clamping, setup.grips) == (None, None, [])
     assert len(setup.stands_on) == 1
     assert setup.text == f"Setup 1: +Z up, nothing holds it yet; {setup.stands_on[0]} is below."
+
+
+def test_what_gripped_stock_first_grips_the_part_where_it_comes_later():
+    """Proposals are tried one after the other: only the first setup of each has stock to grip."""
+    ranking, (first, last) = proposed(cq.Workplane().box(60, 40, 20).val().wrapped, stock=Stock.of("box"))
+    ranking.settle((last, first))
+    assert (ranking.held[last].stock is not None, ranking.held[first].stock) == (True, None)
+    assert len(ranking.held[first].grips) == 2
+    ranking.settle((first, last))
+    assert (ranking.held[first].stock is not None, ranking.held[last].stock) == (True, None)

@@ -59,9 +59,10 @@ class Candidates(Record):
 
     def preferred(self, every: Sequence[int]) -> list[int]:
         """Some of them in the order in which one would stand the part: firmly, on a large plane, low, along its own axes."""
+        least = max(1e-300, min(each.slender for each in self.bearing))
 
         def place(k: int) -> tuple[object, ...]:
-            mine, least = self.bearing[k], max(1e-300, min(each.slender for each in self.bearing))
+            mine = self.bearing[k]
             large = round(np.log(mine.area) / np.log(_LARGER)) if mine.firm else 0
             off = np.abs(self.axis[k]).max() < _ONE
             return not mine.firm, -large, round(mine.slender / (_LOWER * least)) if np.isfinite(mine.slender) else np.inf, off, k

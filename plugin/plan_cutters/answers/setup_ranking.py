@@ -189,7 +189,7 @@ class Ranking:
     settled: set[int] = field(default_factory=set)
     refused: dict[str, None] = field(default_factory=dict)
     stock: Stock | None = None  #: What the first setup grips; None: the part.
-    stocked: dict[int, Held] = field(default_factory=dict)  #: By candidate that was the first: how its stock is gripped.
+    stocked: dict[int, Held | None] = field(default_factory=dict)  #: By candidate whose stock is gripped: how it was searched.
     gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.
 
     @classmethod
@@ -277,7 +277,11 @@ class Ranking:
     def settle(self, chosen: Sequence[int]) -> None:
         """Try in directions that were chosen whatever may hold the part, and take what holds it best; in the first one its stock
         is gripped."""
-        if chosen and self.stock is not None:
+        # In another proposal it may come later: there what is finished is gripped.
+        for k in [k for k in self.stocked if (k,) != tuple(chosen[:1])]:
+            self.held[k] = self.stocked.pop(k)
+            self.settled.discard(k)
+        if chosen and self.stock is not None and chosen[0] not in self.stocked:
             self._settle_stock(chosen[0])
         for k in chosen:
             self._settle(k)
@@ -300,13 +304,13 @@ class Ranking:
     def _settle_stock(self, k: int) -> None:
         """Grip the stock in a direction, if what is named can, and what is below the part keeps tools off little of it."""
         least = _GRIPPED_FOR * float(self.share(self.served(k)[:, None])[0])
-        for word in [each for each in self.words if each != TABLE] if k not in self.stocked else ():
+        for word in [each for each in self.words if each != TABLE]:
             with suppress(NothingToGripError):
                 # Beside what stands below the part a tool may be lower than it.
                 bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
-                self.stocked[k] = self._held_by(k, word, bound, self.stock)
-                if float(self.share(self.stocked[k].served[:, None])[0]) >= least:
-                    self.held[k] = self.stocked[k]
+                held = self._held_by(k, word, bound, self.stock)
+                if float(self.share(held.served[:, None])[0]) >= least:
+                    self.stocked[k], self.held[k] = self.held[k], held
                     self.settled.add(k)
                 return
 

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
-from plan_cutters.document.stands import process_setups, stock_entry
+from plan_cutters.document.stands import setups_and_stock
 from plan_cutters.domain.answers import Step
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.machine import Machine
@@ -371,8 +371,9 @@ def process_entry(
     if ready.exempt is not None and ready.exempt.any():
         at_edges = np.where(ready.inside_bodies, 0.0, sampled)
         exempt = remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, at_edges, requested)
+    setups, stock = setups_and_stock(ready)
     return ProcessEntry(
-        steps=steps, setups=list(process_setups(ready)), stock=stock_entry(ready), plan=name, finished_mm2=finished,
+        steps=steps, setups=setups, stock=stock, plan=name, finished_mm2=finished,
         asked_mm2=requested, left=left,
         seconds=seconds, **times,
         finished_share=exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left), exempt=exempt,

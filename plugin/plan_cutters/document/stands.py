@@ -1,12 +1,10 @@
 """How the part stands in each setup, what holds it, and where: seen from its triangles and the fixtures."""
 
-from collections.abc import Iterator, Sequence
-from typing import Literal
-
-import numpy as np
+from collections.abc import Collection, Iterable
+from typing import Any, Literal
 
 from cad_io.arrays import Triangles
-from plan_cutters.domain.fixture import STOCK, TABLE
+from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import ProcessSetup, StockEntry
@@ -17,77 +15,73 @@ from plan_cutters.scene.surroundings import PlacedFixture
 from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
 
 
-def process_setups(ready: Prepared) -> Iterator[ProcessSetup]:
-    """Tell of each setup which way is up, what the part stands on, and what grips it where."""
+def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | None]:
+    """Tell of each setup which way is up, what the part stands on, and what grips it where; and what the first one grips, if that
+    is stock.
+    """
+    setups, stock = list[ProcessSetup](), None
+    planes = [face.number for face in ready.scene.part.faces if face.shape == "plane"]
     for number, conditions in enumerate(ready.setups, 1):
         surroundings = conditions.surroundings
-        triangles = (surroundings.alone or surroundings).certain.triangles
-        part = _workpiece(ready, conditions, triangles)
+        every = (surroundings.alone or surroundings).certain.triangles
+        triangles = every.take(every.face > 0) if (every.face <= 0).any() else every
+        up = vector(conditions.setup)
+        part = Workpiece.of(triangles.vertex, triangles.face, ready.scene.orientation.sign, planes, (), up)
+        blank = next((each.fixture for each in surroundings.fixtures if each.fixture.kind == STOCK), None)
         gripping = next((each for each in surroundings.fixtures if each.fixture.clamping is not None), None)
-        if gripping is not None:
-            yield _gripped(number, part, gripping, surroundings.fixtures, triangles)
-            continue
-        bearing = part.bearing(0.0)
-        # A body that the planner gave may hold the part from anywhere.
-        body = next((each for each in surroundings.fixtures if each.fixture.kind not in (TABLE, STOCK)), None)
-        table = next((each for each in surroundings.fixtures if each.fixture.kind == TABLE), None)
-        holding = body or table
-        stock = any(each.fixture.stock for each in surroundings.fixtures)
-        stands_on: list[str] | Literal["stock"] | None = _named(part.face[part.level(0.0)]) or None
-        soft = "" if holding is not table or table is None or bearing.firm else "what it stands on does not carry it"
-        yield ProcessSetup(
-            number=number, up=vector(conditions.setup), stands_on="stock" if stock else stands_on,
-            held=TABLE if holding is table and table is not None else body.fixture.name if body is not None else None,
-            clamping=None if holding is None else holding.fixture.text, soft=soft,
-        )  # fmt: skip
+        on: list[str] | Literal["stock"] | None = "stock"
+        if blank is None:
+            on = _named(part.face[part.level(0.0)].tolist()) if gripping is None else _rests_on(part, gripping.fixture, triangles)
+        held = _gripped(gripping, triangles, stock=blank is not None) if gripping else _stood(part, surroundings.fixtures)
+        setups.append(ProcessSetup(number=number, up=up, stands_on=on or None, **held))
+        if blank is not None and number == 1:
+            stock = _stock(ready, conditions, blank, part.enclosed[0])
+    return setups, stock
 
 
-def stock_entry(ready: Prepared) -> StockEntry | None:
-    """Find what the first setup grips, its volume and how much is to be roughed; None where it grips the part."""
-    conditions, options = ready.setups[0], ready.options
-    surroundings = conditions.surroundings
-    blank = next((each.fixture for each in surroundings.fixtures if each.fixture.stock), None)
-    if blank is None or blank.stock is None:
-        return None
-    alone = surroundings.alone or surroundings
-    body = stock_body(blank, vector(conditions.setup), alone, CHORD_REQUESTED * ready.scene.asked, {})
-    remove = max(0.0, body.volume - _workpiece(ready, conditions, alone.certain.triangles).enclosed[0])
-    rate = options.removal_rate
+def _stock(ready: Prepared, conditions: Conditions, blank: Fixture, volume: float) -> StockEntry:
+    """The entry of stock about a part of a volume, mm3."""
+    surroundings, rate = conditions.surroundings, ready.options.removal_rate
+    chord = CHORD_REQUESTED * ready.scene.asked
+    body = stock_body(blank, vector(conditions.setup), surroundings.alone or surroundings, chord, {})
+    remove = max(0.0, body.volume - volume)
     return StockEntry(
-        word=blank.stock.text, size_mm=vector(body.high - body.low), volume_mm3=body.volume, remove_mm3=remove,
-        seconds=None if rate is None else 60.0 * remove / (1000.0 * rate),
+        word=blank.stock.text if blank.stock else "", size_mm=vector(body.high - body.low), volume_mm3=body.volume,
+        remove_mm3=remove, seconds=None if rate is None else 60.0 * remove / (1000.0 * rate),
     )  # fmt: skip
 
 
-def _gripped(
-    number: int, part: Workpiece, gripping: PlacedFixture, fixtures: Sequence[PlacedFixture], triangles: Triangles
-) -> ProcessSetup:
-    """A setup in a vise or chuck that is in its place."""
+def _stood(part: Workpiece, fixtures: Collection[PlacedFixture]) -> dict[str, Any]:
+    """A setup in which no jaws grip: a body that the planner gave may hold the part from anywhere, a table lies below it."""
+    body = next((each.fixture for each in fixtures if each.fixture.kind not in (TABLE, STOCK)), None)
+    table = next((each.fixture for each in fixtures if each.fixture.kind == TABLE), None)
+    if body is not None:
+        return {"held": body.name, "clamping": body.text}
+    if table is None:
+        return {"held": None}
+    return {"held": TABLE, "clamping": table.text,
+            "soft": "" if part.bearing(0.0).firm else "what it stands on does not carry it"}  # fmt: skip
+
+
+def _gripped(gripping: PlacedFixture, triangles: Triangles, *, stock: bool) -> dict[str, Any]:
+    """A setup in a vise or chuck that is in its place; jaws on stock touch no face."""
     fixture, clamping = gripping.fixture, gripping.fixture.clamping
     assert clamping is not None, "a vise or chuck grips"
-    triangles = triangles.take(triangles.face > 0)
     own = (triangles.vertex - fixture.shift) @ fixture.rotation
-    grips = faces_in_jaws(clamping, own, triangles.face, triangles.chord_error)
-    if any(each.fixture.stock for each in fixtures):
-        return ProcessSetup(
-            number=number, up=vector(part.frame[2]), stands_on="stock", held=fixture.kind, apart_mm=clamping.numbers[-1],
-            grip_mm=clamping.grip, clamping=fixture.text,
-        )  # fmt: skip
+    grips = frozenset[int]() if stock else faces_in_jaws(clamping, own, triangles.face, triangles.chord_error)
+    return {
+        "held": fixture.kind, "grips": _named(grips), "apart_mm": clamping.numbers[-1], "grip_mm": clamping.grip,
+        "clamping": fixture.text, "soft": "" if gripping.hold is None else gripping.hold.soft,
+    }  # fmt: skip
+
+
+def _rests_on(part: Workpiece, fixture: Fixture, triangles: Triangles) -> list[str]:
+    """Planar faces with which a part rests on the ledges of a vise or chuck in its place."""
+    assert fixture.clamping is not None, "a vise or chuck grips"
     level = part.level(float(fixture.shift @ part.frame[2]) - part.lowest)
-    rests = on_ledges(clamping, own[level], triangles.face[level], part.flat)
-    return ProcessSetup(
-        number=number, up=vector(part.frame[2]), stands_on=_named(np.array(sorted(rests), int)) or None,
-        held=fixture.kind, grips=_named(np.array(sorted(grips), int)), apart_mm=clamping.numbers[-1], grip_mm=clamping.grip,
-        clamping=fixture.text, soft="" if gripping.hold is None else gripping.hold.soft,
-    )  # fmt: skip
+    own = (triangles.vertex[level] - fixture.shift) @ fixture.rotation
+    return _named(on_ledges(fixture.clamping, own, triangles.face[level], part.flat))
 
 
-def _workpiece(ready: Prepared, conditions: Conditions, triangles: Triangles) -> Workpiece:
-    planes = [face.number for face in ready.scene.part.faces if face.shape == "plane"]
-    mine = triangles.face > 0
-    sign, setup = ready.scene.orientation.sign, vector(conditions.setup)
-    return Workpiece.of(triangles.vertex[mine], triangles.face[mine], sign, planes, (), setup)
-
-
-def _named(faces: np.ndarray) -> list[str]:
-    return [f"F{number}" for number in np.unique(faces).tolist()]
+def _named(faces: Iterable[int]) -> list[str]:
+    return [f"F{number}" for number in sorted({*faces})]

@@ -11,7 +11,7 @@ from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
 from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
 from plan_cutters.plan_file.operations import ProcessEntry
-from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, Scope
+from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
 from plan_cutters.plan_file.shares import part_of, reached_share
 from plan_cutters.plan_file.words.names import described
 
@@ -298,18 +298,20 @@ def _sentence(each: PatternEntry) -> str:
     return f"{text}{f': judged once{verified}' if each.moved or each.followed else ''}."
 
 
+def stands_in(setup: ProposedSetup, nothing: str) -> str:
+    """Say in what a part stands in a proposed setup, or on what; `nothing` where it stands on no plane."""
+    if setup.clamping != "table":
+        return f"in a {setup.clamping} that grips {', '.join(setup.grips) or 'the stock'}"
+    return f"on {', '.join(setup.stands_on) or nothing}"
+
+
 def proposal(plan: Plan) -> tuple[str, ...]:
     """Which setups were proposed, and whether their plan holds what was promised; nothing where none was requested."""
     entry = plan.setup_proposal
     if entry is None:
         return ()
     one = len(entry.setups) == 1
-    stands = [
-        f"in a {each.clamping} that grips {', '.join(each.grips)}"
-        if each.clamping != "table"
-        else f"on {', '.join(each.stands_on) or 'no plane (something must hold it)'}"
-        for each in entry.setups
-    ]
+    stands = [stands_in(each, "no plane (something must hold it)") for each in entry.setups]
     where = [f"{how}, with {axis_words(each.axis)}" for how, each in zip(stands, entry.setups, strict=True)]
     where[0] += " of the part along the spindle"
     text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
