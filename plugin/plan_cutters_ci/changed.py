@@ -10,11 +10,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from plan_cutters.command.codes import ENDED, run
+from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanRequest, Reported, takes
 from plan_cutters.command.terminal import error, hand_out, say
@@ -428,8 +428,3 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
         plan = load_plan(made[work.PLAN])
         store.publish(folder, made, row_of(plan, name=name, file=path, code=code, key=key, folder=folder, seconds=0.0))
     return cache / folder
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, args)
