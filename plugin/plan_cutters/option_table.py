@@ -315,6 +315,9 @@ ATTRIBUTES = {
     ),
     "propose": Option("propose", bool, False, ""),
 }
+#: The type of each as callers give it; angles in degrees, too.
+TAKES = {word: each.types[0] for word, each in ATTRIBUTES.items()}
+TAKES |= {f"{word}_deg": f"{TAKES[word].removesuffix(' | None')} | None" for word, each in ATTRIBUTES.items() if each.is_angle}
 #: Those of a scene, which a posture map takes, too.
 OF_A_SCENE = ("setup", "flip", "ignore", "fixtures", "tolerance")
 #: Options that count in a plan of operations alone: without one they must not be ignored.

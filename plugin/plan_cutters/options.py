@@ -25,7 +25,7 @@ from plan_cutters.domain.stock import BOX, PART, Stock
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
-from plan_cutters.option_table import ATTRIBUTES, OF_A_SCENE, OPTIONS, Option
+from plan_cutters.option_table import ATTRIBUTES, OF_A_SCENE, OPTIONS, TAKES, Option
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
 #: Options that are angles, and what each may be in degrees.
@@ -37,12 +37,10 @@ if TYPE_CHECKING:
     from plan_cutters.option_types import Kept, PlanOptions, PointOptions, SceneOptions
 else:
     # Who is shown a call reads the words of the table.
-    _TAKEN = {word: each.types[0] for word, each in ATTRIBUTES.items()}
-    _TAKEN |= {f"{word}_deg": f"{_TAKEN[word].removesuffix(' | None')} | None" for word in ANGLES}
     Kept = object
-    PlanOptions = TypedDict("PlanOptions", _TAKEN, total=False)
-    SceneOptions = TypedDict("SceneOptions", {word: _TAKEN[word] for word in OF_A_SCENE}, total=False)
-    PointOptions = TypedDict("PointOptions", {word: _TAKEN[word] for word in OF_A_SCENE if word != "tolerance"}, total=False)
+    PlanOptions = TypedDict("PlanOptions", TAKES, total=False)
+    SceneOptions = TypedDict("SceneOptions", {word: TAKES[word] for word in OF_A_SCENE}, total=False)
+    PointOptions = TypedDict("PointOptions", {word: TAKES[word] for word in OF_A_SCENE if word != "tolerance"}, total=False)
 
 
 def machine_option(value: Any) -> Machine:

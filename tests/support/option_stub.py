@@ -1,6 +1,6 @@
 """The stub by which type checkers know the options, made of their table; `python -m tests.support.option_stub` writes it."""
 
-from plan_cutters.option_table import ATTRIBUTES, OF_A_SCENE
+from plan_cutters.option_table import ATTRIBUTES, OF_A_SCENE, TAKES
 from tests.support.places import PACKAGES
 
 STUB = PACKAGES["plan_cutters"] / "option_types.pyi"
@@ -24,14 +24,11 @@ from plan_cutters.library.raw_tool import Library
 
 def stub() -> str:
     """The text of the stub."""
-    takes = {word: each.types[0] for word, each in ATTRIBUTES.items()}
-    angles = [word for word, each in ATTRIBUTES.items() if each.is_angle]
-    degrees = {f"{word}_deg": f"{takes[word].removesuffix(' | None')} | None" for word in angles}
-    scene = {word: takes[word] for word in OF_A_SCENE}
+    scene = {word: TAKES[word] for word in OF_A_SCENE}
     records = {
         "class PointOptions(TypedDict, total=False)": {word: kind for word, kind in scene.items() if word != "tolerance"},
         "class SceneOptions(PointOptions, total=False)": {"tolerance": scene["tolerance"]},
-        "class PlanOptions(SceneOptions, total=False)": {**{w: kind for w, kind in takes.items() if w not in scene}, **degrees},
+        "class PlanOptions(SceneOptions, total=False)": {word: kind for word, kind in TAKES.items() if word not in scene},
         "@dataclass(frozen=True)\nclass Kept": {word: each.types[1] for word, each in ATTRIBUTES.items()},
     }
     return HEAD + "".join(
