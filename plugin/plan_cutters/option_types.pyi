@@ -76,7 +76,7 @@ class PlanOptions(SceneOptions, total=False):
     index_step_deg: float | None
 
 @dataclass(frozen=True)
-class Kept:
+class OptionValues:
     cutters: tuple[Cutter, ...]
     libraries: tuple[Library, ...]
     holder: Holder | None

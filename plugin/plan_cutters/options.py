@@ -34,10 +34,10 @@ ANGLES |= {each.word: Angle(*each.limits[:2]) for each in OPTIONS.values() if ea
 #: What calls take beside options: it may be meant where a name is mistyped.
 OF_CALLS = ("part", "progress", "cache")
 if TYPE_CHECKING:
-    from plan_cutters.option_types import Kept, PlanOptions, PointOptions, SceneOptions
+    from plan_cutters.option_types import OptionValues, PlanOptions, PointOptions, SceneOptions
 else:
     # Who is shown a call reads the words of the table.
-    Kept = object
+    OptionValues = object
     PlanOptions = TypedDict("PlanOptions", TAKES, total=False)
     SceneOptions = TypedDict("SceneOptions", {word: TAKES[word] for word in OF_A_SCENE}, total=False)
     PointOptions = TypedDict("PointOptions", {word: TAKES[word] for word in OF_A_SCENE if word != "tolerance"}, total=False)
@@ -108,7 +108,7 @@ def _with_attributes(made: type[_Class]) -> type[_Class]:
 @degrees_too(ANGLES)
 @dataclass(frozen=True, slots=True)
 @_with_attributes
-class Options(Kept):
+class Options(OptionValues):
     """Options of a plan: as on the command line, whose help says what each means. Lengths mm, angles rad; degrees as `tilt_deg`,
     `rotation_deg`, `rotation_step_deg`, `index_step_deg`, `axis_accuracy_deg`.
 

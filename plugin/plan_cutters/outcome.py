@@ -123,7 +123,7 @@ class Operations:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """A thing to do next, as the plan file has it, and what stands behind it."""
+    """A step is a thing to do next: as the plan file has it, and what stands behind it."""
 
     entry: StepEntry
     cutters: tuple[Cutter, ...]  #: That do it together, the one that is mended, or what becomes of it, first.
@@ -132,7 +132,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Advice:
-    """What to do next with a cutter, as the plan file has it, and its steps."""
+    """Advice names what to do next with a cutter, as the plan file has it; its steps."""
 
     entry: MendEntry
     steps: tuple[Step, ...] = ()  #: In the order of those of `entry`.

@@ -29,7 +29,7 @@ def stub() -> str:
         "class PointOptions(TypedDict, total=False)": {word: kind for word, kind in scene.items() if word != "tolerance"},
         "class SceneOptions(PointOptions, total=False)": {"tolerance": scene["tolerance"]},
         "class PlanOptions(SceneOptions, total=False)": {word: kind for word, kind in TAKES.items() if word not in scene},
-        "@dataclass(frozen=True)\nclass Kept": {word: each.types[1] for word, each in ATTRIBUTES.items()},
+        "@dataclass(frozen=True)\nclass OptionValues": {word: each.types[1] for word, each in ATTRIBUTES.items()},
     }
     return HEAD + "".join(
         f"\n{record}:\n" + "".join(f"    {word}: {kind}\n" for word, kind in fields.items()) for record, fields in records.items()

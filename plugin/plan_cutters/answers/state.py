@@ -285,9 +285,9 @@ NEARLY, HALF = 0.95, 0.5
 Value = float | tuple[float, ...] | str | None
 
 
-def move_of(thing: str, now: Value, asked: Value, why: str) -> MoveEntry:
+def move_of(thing: str, now: Value, tried: Value, why: str) -> MoveEntry:
     """One change: of what (`domain.answers.MEANS`), from which value to which (mm, deg, a direction, an id), and in words."""
-    return MoveEntry(thing=thing, now=now, asked=asked, why=why)
+    return MoveEntry(thing=thing, now=now, asked=tried, why=why)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
