@@ -126,8 +126,8 @@ _MACHINE = (
         keeps="str", takes="str | None",
         help="What the part is made of: `box[:X,Y,Z]`, margins on each side and below, mm; `cylinder[:R,Z]` along the setup "
         "axis; a STEP file or mesh; or `part`: it is there but for its last cut. A vise or chuck of the first setup grips the "
-        "stock below the part, and hides none of its faces.  [default: where --setup auto places a vise a bar if the part is "
-        "round, or a box; else part]",
+        "stock below the part, and hides none of its faces.  "
+        "[default: with --setup auto a box, or a bar if the part is round; else part]",
     ),
 )  # fmt: skip
 
