@@ -10,8 +10,9 @@ from plan_cutters.domain.figures import capital, count, duration, joined, listed
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
 from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
-from plan_cutters.plan_file.operations import ProcessEntry
+from plan_cutters.plan_file.operations import NOT_PLANNED, SHORT_STEP, UNJUDGED_CAUSE, ProcessEntry, RemainingEntry
 from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
+from plan_cutters.plan_file.reasons import reason
 from plan_cutters.plan_file.shares import part_of, reached_share
 from plan_cutters.plan_file.words.names import described
 
@@ -475,10 +476,13 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     finished = process.finished if process else not best.not_reached
     share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
     title = _title(plan, share, finished=finished)
-    about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {requested(plan)}."
+    machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
+    about = f"{sized(plan, plan.part.file or 'part')}{machine}."
+    if plan.scope is not None and plan.scope.not_judged:
+        about += f" Judged: {requested(plan)}."
     if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
         (only,) = used
-        about = " ".join(filter(None, (about, f"{capital(names[only])}: {described(entries[only], names[only])}.")))
+        about += f" {capital(names[only])}: {described(entries[only], names[only])}."
     if finished:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
@@ -490,18 +494,42 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 
 
 def _title(plan: Plan, share: float, *, finished: bool) -> str:
-    """The part, on which machine; in how many steps and setups how much is finished, and in what time."""
-    machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
-    process, setups = plan.process, 1 + len(plan.effective.other_setups)
+    """In how many steps and setups how much is finished, and in what time; how much stays, and mostly why."""
+    process = plan.process
     whole = process.asked_mm2 if process else math.nan
     of = mm2(whole) if math.isfinite(whole) else "the area to machine"
     much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
-    steps = len(process.steps) if process else 0
-    where = f" in {setups} setups" if setups > 1 else ""
-    what = f"{much} of" if process is None else "no step finishes any of"
-    if steps:
-        what = f"{count(steps, 'step')}{where} finish{'es' * (steps == 1)} {much} of"
-    return f"{sized(plan, plan.part.file or 'part')}{machine}: {what} {of}{'' if process is None else _took(process)}"
+    if process is None:
+        return f"The cutters finish {much} of {of}"
+    if not process.steps:
+        return f"No step finishes any of {of}{_stays(process)}"
+    setups = count(len({step.setup for step in process.steps}), "setup")
+    steps = count(len(process.steps), "step")
+    return f"{steps} in {setups} finish{'es' * (len(process.steps) == 1)} {much} of {of}{_took(process)}{_stays(process)}"
+
+
+#: From this share of what is left on a cause is most of it.
+_MOSTLY = 0.5
+#: Causes that are no reasons of verdicts, as they stand in the headline.
+_STAY_FOR = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "hardly a step"}
+
+
+def _stays(process: ProcessEntry) -> str:
+    """How much stays, and mostly why, as the end of a sentence; empty where nothing does.
+
+    >>> left = RemainingEntry(cause="rear_gouge", area_mm2=3.0, share=0.2, samples=3, faces=["F1"], place_mm=None)
+    >>> entry = ProcessEntry(steps=[], finished_share=0.8, finished_mm2=12.0, asked_mm2=15.0, left=[left], seconds=None)
+    >>> _stays(entry), _stays(entry.model_copy(update={"left": []}))
+    ('; 20 % stay: rear gouge', '')
+    """
+    if not process.left:
+        return ""
+    share, worst = 1.0 - process.finished_share, process.left[0]
+    known = sum(each.share for each in process.left)
+    cause = _STAY_FOR.get(worst.cause) or reason(worst.cause)
+    why = f": {cause}" if len(process.left) == 1 else f", mostly {cause}" if worst.share >= _MOSTLY * known else f", first {cause}"
+    much = percent(share, some=any(each.samples for each in process.left), whole=share >= 1.0)
+    return f"; {much} stay{why}"
 
 
 def _took(process: ProcessEntry) -> str:

@@ -1,6 +1,7 @@
 """Put operations and the process into words: steps in a table of 80 columns, what is left by cause, what to do next."""
 
 import math
+import re
 import shlex
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -519,16 +520,31 @@ def _next(each: NextEntry) -> str:
     return f"Next: {each.words}{stays}{bracket}"
 
 
-def wrapped(texts: list[str], most: int) -> list[str]:
-    """Paragraphs in lines of at most 80 columns, of each as many as are allowed."""
+#: Where a sentence ends, and another begins.
+_SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z]|--)")
+
+
+def wrapped(texts: Iterable[str], most: int) -> list[str]:
+    """Paragraphs in lines of at most 80 columns, of each as many whole sentences as go into so many lines, and the first one.
+
+    >>> wrapped(["One. " + "Two is long " * 8 + "and ends."], 1)
+    ['One.']
+    """
     lines: list[str] = []
     for text in texts:
-        mine = textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
-        if len(mine) > most:
-            mine = [*mine[: most - 1], textwrap.shorten(" ".join(mine[most - 1 :]).strip(), WIDTH - 2, placeholder=" ...")]
-            mine[-1] = f"  {mine[-1]}" if most > 1 else mine[-1]
+        first, *others = _SENTENCE.split(text)
+        mine = _lines(first)
+        for each in others:
+            first = f"{first} {each}"
+            if len(longer := _lines(first)) > most:
+                break
+            mine = longer
         lines += mine
     return lines
+
+
+def _lines(text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
 
 
 def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
