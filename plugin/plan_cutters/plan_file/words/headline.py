@@ -10,7 +10,7 @@ from plan_cutters.domain.figures import capital, count, duration, joined, listed
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
 from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
-from plan_cutters.plan_file.operations import NOT_PLANNED, SHORT_STEP, UNJUDGED_CAUSE, ProcessEntry, RemainingEntry
+from plan_cutters.plan_file.operations import NOT_PLANNED, SHORT_STEP, UNJUDGED_CAUSE, ProcessEntry
 from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
 from plan_cutters.plan_file.reasons import reason
 from plan_cutters.plan_file.shares import part_of, reached_share
@@ -527,9 +527,9 @@ def _stays(process: ProcessEntry) -> str:
     share, worst = 1.0 - process.finished_share, process.left[0]
     known = sum(each.share for each in process.left)
     cause = _STAY_FOR.get(worst.cause) or reason(worst.cause)
-    why = f": {cause}" if len(process.left) == 1 else f", mostly {cause}" if worst.share >= _MOSTLY * known else f", first {cause}"
+    how = ":" if len(process.left) == 1 else ", mostly" if worst.share >= _MOSTLY * known else ", first"
     much = percent(share, some=any(each.samples for each in process.left), whole=share >= 1.0)
-    return f"; {much} stay{why}"
+    return f"; {much} stay{how} {cause}"
 
 
 def _took(process: ProcessEntry) -> str:

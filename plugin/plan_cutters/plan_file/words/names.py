@@ -139,7 +139,8 @@ def named(plan: "Plan", text: str) -> str:
 
 
 #: An option of the command with what follows it, if that is its value; inside brackets all that follows it is.
-_OPTION = re.compile(r"--([a-z][a-z-]*)(?: ((?:[A-Z]*\d|all\b|left\b|mend\b|fewest\b|fastest\b|thorough\b)[^\s;:\])]*?)(?=[.;:,)]?(?:\s|$)))?")
+_VALUE = r"(?:[A-Z]*\d|all\b|left\b|mend\b|fewest\b|fastest\b|thorough\b)[^\s;:\])]*?"
+_OPTION = re.compile(rf"--([a-z][a-z-]*)(?: ({_VALUE})(?=[.;:,)]?(?:\s|$)))?")
 _TYPED = re.compile(r"\[(?:add )?(--[^\]]*)\]")
 
 

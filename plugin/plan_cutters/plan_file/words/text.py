@@ -27,16 +27,8 @@ from plan_cutters.plan_file.words.headline import (
 from plan_cutters.plan_file.words.holes import holes
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.process import (
-    ProcessStory,
-    in_short,
-    one_more,
-    operations,
-    process_story,
-    shortened,
-    with_process_words,
-    wrapped,
-)
+from plan_cutters.plan_file.words.operations import in_short, one_more, operations
+from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
 
 
 @dataclass(frozen=True, slots=True)
