@@ -101,14 +101,17 @@ function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
 }
 
 /** What stays of the process: pale and hatched, so that it is no colour of a step. */
-const STAYS: Omit<Entry, "share"> = { colour: "#c4c9ce", pattern: "hatch", label: "stays" };
+export const STAYS: Omit<Entry, "share"> = { colour: "#c4c9ce", pattern: "hatch", label: "stays" };
+
+/** Holes that wait for a drill: no colour of a step, too. */
+const DRILLED: Entry = { colour: "#b9a3d6", pattern: "dots", label: "for drills" };
 
 /** Which step finishes each sample, with the shares of the plan; the rest is hatched, but for what no cutter has to reach. */
 function processLook(meta: Meta, arrays: Arrays, samples: Samples, process: Process, cutter: string): Look {
   const { steps } = process;
   const number = stepOf(arrays);
   const others = ["unjudged", "drilled", "inside_bodies"];
-  const entries: Entry[] = [...steps.map(({ colour, pattern, label }) => ({ colour, pattern, label })), STAYS, ...others.map((word) => plain(meta, word))];
+  const entries: Entry[] = [...steps.map(({ colour, pattern, label }) => ({ colour, pattern, label })), STAYS, ...others.map((word) => (word === "drilled" ? DRILLED : plain(meta, word)))];
   const look = painted(meta, "Process, by step", entries, samples, (i) => {
     const k = number(i);
     const other = k ? -1 : others.indexOf(samples.verdict(cutter, i));

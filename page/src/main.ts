@@ -110,7 +110,7 @@ async function start(): Promise<void> {
   const links = new Links(app);
   panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
   document.querySelector("#summary .first")?.append(
-    el("div", { class: "tools", id: "page-tools" }, ...notes.buttons(), schemeSwitch(() => panel.draw())),
+    el("div", { class: "tools", id: "page-tools" }, ...notes.buttons()),
   );
   const alone = new Alone(say);
   const sides = new Map<string, LostViews>();
@@ -152,6 +152,7 @@ async function start(): Promise<void> {
     links.button,
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
+    schemeSwitch(() => panel.draw()),
   );
   frame.append(marks.root as unknown as Node, scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
   viewer.append(legend(app), selection.root);

@@ -37,7 +37,7 @@ export class Notes {
       el("h2", {}, "Review"),
       el("p", { class: "hint" }, "Notes and the decision are kept in the copy that ", el("strong", {}, "Save copy"), " writes, and nowhere else."),
       this.stored ? null : el("p", { class: "wrong" }, "The notes in this file cannot be read, and a copy of it would not have them."),
-      el("p", { class: "tools" }, this.made, this.withdraw),
+      el("p", {}, this.made, " ", this.withdraw),
       this.list,
       el("label", { for: "note" }, "New note"),
       this.box,

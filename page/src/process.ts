@@ -1,10 +1,12 @@
 // The process made alive: a step shows its samples and its tool, and plays; a setup shows how the part stands; what stays is flown to.
 
 import type { App } from "./app.ts";
+import { STAYS } from "./colours.ts";
 import { copyButton } from "./copy.ts";
 import { button } from "./dom.ts";
 import type { Process, Step, Vec } from "./meta.ts";
 import { enliven, lookAt, PROCESS, stepOf } from "./operations.ts";
+import { swatch } from "./patterns.ts";
 import { moreOf, press } from "./tables.ts";
 import { distance } from "./vectors.ts";
 import { flyTo } from "./view.ts";
@@ -38,6 +40,7 @@ export class ProcessTable {
     for (const row of document.querySelectorAll<HTMLTableRowElement>("#process tr[data-place]")) {
       press(row.querySelector("th")!, () => this.fly(row.dataset.place!.split(",").map(Number) as Vec, row.cells[1].textContent!));
     }
+    for (const head of document.querySelectorAll("#left .left th")) head.prepend(swatch(STAYS.colour, STAYS.pattern), " ");
     app.on("sample", () => this.mark());
     app.on("look", () => this.mark());
     this.mark();

@@ -379,14 +379,21 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
-def _comes_last(plan: Plan) -> str:
-    """The cutter that does alone, where the process has cutters of more wanted kinds before it; else empty."""
-    entry = next((each for each in plan.cutters if each.id == plan.selected), None)
-    steps = plan.process.steps if plan.process else []
-    # Operations are chosen by their time: there only what comes last in any case gives way.
-    if entry is None or (entry.group != "last" and any(step.mode != "any" for step in steps)):
+def _by_others(plan: Plan) -> str:
+    """The cutter that does alone, or over all setups, where the process has other cutters; else empty."""
+    does = plan.selected or plan.selected_over_setups
+    return does if does and plan.process and {step.cutter for step in plan.process.steps} - {does} else ""
+
+
+def _alone_too(plan: Plan, cutter: str, called: str) -> str:
+    """A sentence on the cutter that does alone, and why the process has others."""
+    if not cutter:
         return ""
-    return entry.id if {step.cutter for step in steps} - {entry.id} else ""
+    entry = next(each for each in plan.cutters if each.id == cutter)
+    # Operations are chosen by their time or number: there only what comes last in any case gives way by its kind.
+    timed = any(step.mode != "any" for step in plan.process.steps) if plan.process else False
+    why = "" if timed and entry.group != "last" else ", but its kind comes after that of step 1"
+    return f" {capital(called)} does alone{why or ', too'}."
 
 
 def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
@@ -459,9 +466,9 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process and process.finished_share >= 1.0 else ""
         return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
 
-    late = _comes_last(plan)
+    others = _by_others(plan)
     if process is None or process.finished:
-        if plan.selected and not late:
+        if plan.selected and not others:
             # Of several setups one may do by itself.
             alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
             if alone not in (None, plan.effective.setup):
@@ -469,7 +476,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
                 return take(plan.selected, why, where=f", in setup {axis_words(alone or ())}")
             if setups == 1 or alone:
                 return take(plan.selected, first_of(plan, entries[plan.selected], every(plan)))
-        if plan.selected_over_setups:
+        if plan.selected_over_setups and not others:
             why = f"Together they reach {every(plan)}; no setup does alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
     best = nearest(plan.cutters)
@@ -487,7 +494,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
-        single = f" {capital(names[late])} does alone, but its kind comes after that of step 1." if late else ""
+        single = _alone_too(plan, others, names.get(others, ""))
         return Headline(title, True, about, f"{why}.{single}{could_not(plan)}")
     undecided = not any(c.blocked for c in plan.cutters)
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
@@ -505,7 +512,8 @@ def _title(plan: Plan, share: float, *, finished: bool) -> str:
         return f"No step finishes any of {of}{_stays(process)}"
     setups = count(len({step.setup for step in process.steps}), "setup")
     steps = count(len(process.steps), "step")
-    return f"{steps} in {setups} finish{'es' * (len(process.steps) == 1)} {much} of {of}{_took(process)}{_stays(process)}"
+    finish = f"finish{'es' * (len(process.steps) == 1)} {'all' if much == '100 %' else f'{much} of'} {of}"
+    return f"{steps} in {setups} {finish}{_took(process)}{_stays(process)}"
 
 
 #: From this share of what is left on a cause is most of it.

@@ -25,7 +25,7 @@ from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text, stepped
+from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
 from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
 from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
@@ -82,11 +82,20 @@ def _operation(plan: Plan, of: OperationPlanEntry, number: int, row: int | None)
     }  # fmt: skip
 
 
+def _in_order(plan: Plan, of: OperationPlanEntry, texts: list[OperationText]) -> list[tuple[int, OperationText]]:
+    """Rows with their places in the plan: those of the process in the order of its steps."""
+    number = {name: tuple(map(int, step.split("."))) for name, step in operation_names(plan).items()}
+    rows = list(enumerate(texts))
+    return (
+        sorted(rows, key=lambda row: number.get(row[1].entry.id, (0,))) if plan.process and of.name == plan.process.plan else rows
+    )
+
+
 class OperationTables(NamedTuple):
     """These are what the template shows of the operations."""
 
     lines: list[Line]
-    plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
+    plans: list[tuple[OperationPlanEntry, str, list[tuple[int, OperationText]], bool]]
 
 
 def tables(plan: Plan, story: Story) -> OperationTables | None:
@@ -98,7 +107,7 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         (
             each,
             key(each),
-            [operation_text(plan, each, one) for one in each.operations],
+            _in_order(plan, each, [operation_text(plan, each, one) for one in each.operations]),
             all(o.seconds is not None for o in each.operations),
         )
         for each in operations.plans
