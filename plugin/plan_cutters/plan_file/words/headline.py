@@ -532,6 +532,8 @@ def _stays(process: ProcessEntry) -> str:
     """
     if not process.left:
         return ""
+    if process.finished:
+        return f"; {listed([face for each in process.left for face in each.faces], _FACES)} not judged"
     share, worst = 1.0 - process.finished_share, process.left[0]
     known = sum(each.share for each in process.left)
     cause = _STAY_FOR.get(worst.cause) or reason(worst.cause)
