@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, percent, some
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry, ProcessEntry
 from plan_cutters.plan_file.words.names import Line, named
 
 #: The id of an operation in a text.
@@ -39,11 +39,15 @@ def operations(plan: Plan) -> list[Line]:
 
 def operation_names(plan: Plan) -> dict[str, str]:
     """Number the operations of the process, by their ids, as their steps: `3`, or `3.2` where that is done several times."""
-    process, names = plan.process, dict[str, str]()
-    plans = [] if plan.operations is None or process is None else plan.operations.plans
-    entries = [each for one in plans if process and one.name == process.plan for each in one.operations]
+    return {} if plan.operations is None or plan.process is None else numbered(plan.operations, plan.process)
+
+
+def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, str]:
+    """The numbers of `operation_names`."""
+    names = dict[str, str]()
+    entries = [each for one in operations.plans if one.name == process.plan for each in one.operations]
     by_id = {each.id: each for each in entries}
-    for number, step in enumerate(process.steps if process else [], 1):
+    for number, step in enumerate(process.steps, 1):
         made = by_id.get(step.operation)
         orbit = None if made is None else made.orbit
         images = [each for each in entries if each is made or (orbit is not None and each.orbit == orbit)] if made else []
