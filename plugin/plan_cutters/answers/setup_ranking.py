@@ -302,17 +302,24 @@ class Ranking:
         self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
-        """Grip the stock in a direction, if what is named can, and what is below the part keeps tools off little of it."""
-        least = _GRIPPED_FOR * float(self.share(self.served(k)[:, None])[0])
-        for word in [each for each in self.words if each != TABLE]:
-            with suppress(NothingToGripError):
-                # Beside what stands below the part a tool may be lower than it.
-                bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
-                held = self._held_by(k, word, bound, self.stock)
-                if float(self.share(held.served[:, None])[0]) >= least:
-                    self.stocked[k], self.held[k] = self.held[k], held
-                    self.settled.add(k)
-                return
+        """Grip the stock in a direction, if what is named can without soft jaws, and what is below the part keeps tools off little
+        of it."""
+        assert self.stock is not None, "without stock the part is gripped"
+        most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
+        for stock in self.stock.choices(round_=self.candidates.bearing[k].round):
+            for word in [each for each in self.words if each != TABLE]:
+                with suppress(NothingToGripError):
+                    # Beside what stands below the part a tool may be lower than it.
+                    bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                    held = self._held_by(k, word, bound, stock)
+                    share = float(self.share(held.served[:, None])[0])
+                    if not held.soft and share >= best_share + _TURNED_FOR:
+                        best, best_share = held, share
+            if best_share >= most - _TURNED_FOR:
+                break
+        if best is not None and best_share >= _GRIPPED_FOR * most:
+            self.stocked[k], self.held[k] = self.held[k], best
+            self.settled.add(k)
 
     def completed(self, chosen: tuple[int, ...], most: int) -> tuple[int, ...]:
         """Chosen directions, held as they are by now, and those that serve more of what these do not."""

@@ -117,7 +117,7 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
     assert clamping is not None, "what was placed is in its place"
     what, apart = _called(clamping)
     words = f"{what}; it grips the stock, {apart}; the jaws reach {mm(requested.grip)} above where it rests"
-    return Hold(hold.fixture, (), (), 0.0, words)
+    return Hold(hold.fixture, (), (), 0.0, words, hold.soft)
 
 
 def _nothing(fixture: Fixture, requested: Requested, part: Workpiece, why: str) -> NothingToGripError:

@@ -11,6 +11,7 @@ import numpy as np
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
+from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
     PARALLEL,
     TOGETHER,
@@ -109,6 +110,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
+    tall = float(part.vertex[..., 2].max()) - above
     for turn in range(0, math.ceil(360 / chuck.jaws), _TURN):
         at = start + turn + 360.0 / chuck.jaws * np.arange(chuck.jaws)
         bins = [np.floor(np.arange(each - half, each + half, 1.0) % _BINS).astype(int) % _BINS for each in at]
@@ -121,9 +123,14 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
             area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
+            _too_tall(tall, chuck.diameter) if tall > TALL * chuck.diameter else "",
         )  # fmt: skip
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
+
+
+def _too_tall(tall: float, wide: float) -> str:
+    return f"it stands {mm(tall)} high on {mm(wide)}"
 
 
 def _degrees_of(vertex: Floats, centre: Floats) -> Floats:
@@ -250,6 +257,8 @@ def _at(
             soft = f"they touch {mm(least / reach)} of its length"
         elif not bearing.broad:
             soft = "hardly any plane of the part rests in them"
+        elif tall - above > TALL * min(right - left, least / reach):
+            soft = _too_tall(tall - above, min(right - left, least / reach))
         place = Place(
             vise, x, origin, grips, least, hidden, above, size, float(np.linalg.norm((origin - part.middle)[:2])),
             float(np.abs((part.outline - origin) @ x).max()), soft,
