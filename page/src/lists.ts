@@ -3,6 +3,7 @@
 import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
+import { NARROW } from "./legend.ts";
 import { PROCESS } from "./operations.ts";
 import { filterTools, holds, moreOf, press, sortable } from "./tables.ts";
 import { showFace, showSpot } from "./view.ts";
@@ -11,8 +12,8 @@ import { showFace, showSpot } from "./view.ts";
 const SHORT = 24;
 /** From so many rows on a table has a box that filters them. */
 const MANY = 6;
-/** From so many on cutters that finish like the one shown are folded; so many faces are shown. */
-const [FEW, FACES] = [4, 20];
+/** From so many on cutters that finish like the one shown are folded; so many faces are shown, and on a phone. */
+const [FEW, FACES, NARROWLY] = [4, 20, 6];
 
 /** Rows of a table that are folded on the screen until a button shows them; whoever filters sees those that fit. */
 function fold(table: HTMLTableElement, rows: HTMLElement[], label: string): void {
@@ -144,7 +145,7 @@ export class SpotList {
     this.at = -1;
     for (const more of document.querySelectorAll<HTMLDetailsElement>("#spots details[data-cutter]")) {
       more.hidden = more.dataset.cutter !== this.app.cutter.id;
-      more.open = !more.hidden;
+      more.open = !more.hidden && !NARROW.matches;
     }
     this.none.hidden = this.mine.length > 0;
   }
@@ -206,7 +207,7 @@ export class FaceTable {
     });
     this.tools();
     if (this.table) sortable(this.table);
-    const beyond = [...this.rows.values()].slice(FACES);
+    const beyond = [...this.rows.values()].slice(NARROW.matches ? NARROWLY : FACES);
     if (this.table && beyond.length) fold(this.table, beyond, `All ${this.rows.size} faces`);
   }
 

@@ -14,7 +14,7 @@ from plan_cutters_check.reckoned import Reckoned
 _HEAD = re.compile(
     r"finish(?:es)? (?:(?P<share>[<>]?[\d.]+) % of|any of|all) (?P<area>[\d,.]+) (?P<unit>mm|in)²"
     r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?"
-    r"(?:; (?P<stays>[<>]?[\d.]+) % stay(?:: |, mostly |, first )[^;]+|; F[^;]* not judged)?\.$"
+    r"(?:; (?P<stays>[<>]?[\d.]+) % stay(?:: |, mostly )[^;]+|; F[^;]* not judged)?\.$"
 )
 _STEP = re.compile(
     r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<share>[<>]?[\d.]+) %"

@@ -536,8 +536,11 @@ def _stays(process: ProcessEntry) -> str:
         return f"; {listed([face for each in process.left for face in each.faces], _FACES)} not judged"
     share, worst = 1.0 - process.finished_share, process.left[0]
     known = sum(each.share for each in process.left)
-    cause = _STAY_FOR.get(worst.cause) or reason(worst.cause)
-    how = ":" if len(process.left) == 1 else ", mostly" if worst.share >= _MOSTLY * known else ", first"
+    how, cause = ", mostly" if worst.share >= _MOSTLY * known else ":", _STAY_FOR.get(worst.cause) or reason(worst.cause)
+    if len(process.left) == 1:
+        how = ":"
+    elif worst.share < _MOSTLY * known:
+        cause = f"{cause} ({percent(worst.share, some=True, whole=False)}) and other causes"
     much = percent(share, some=any(each.samples for each in process.left), whole=share >= 1.0)
     return f"; {much} stay{how} {cause}"
 
