@@ -505,7 +505,7 @@ def _title(plan: Plan, share: float, *, finished: bool) -> str:
     process = plan.process
     whole = process.asked_mm2 if process else math.nan
     of = mm2(whole) if math.isfinite(whole) else "the area to machine"
-    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
+    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0 and not (process and process.left))
     if process is None:
         return f"The cutters finish {much} of {of}"
     if not process.steps:
