@@ -138,8 +138,9 @@ def test_the_bar_and_the_axes_are_true(page):
         assert unit == "mm"
         assert end - start == pytest.approx(float(length) * (two - one)[0], rel=1e-3)
         drawn = page.evaluate(
-            """() => Object.fromEntries([...document.querySelectorAll("#scale [data-side]")].map(side =>
-                 [side.dataset.side, side.querySelector("polygon").getAttribute("points").split(" ").map(p => p.split(",").map(Number))]))"""
+            """() => Object.fromEntries([...document.querySelectorAll("#scale [data-side]")].map(side => {
+                 const points = side.querySelector("polygon").getAttribute("points").split(" ");
+                 return [side.dataset.side, points.map(each => each.split(",").map(Number))]; }))"""
         )
         back = page.evaluate("review.stage.table.frame().back")
         # The sides that face the eye, and each where it lies along its axis, of half the cube's size from its middle.
