@@ -523,13 +523,7 @@ _STAY_FOR = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP
 
 
 def _stays(process: ProcessEntry) -> str:
-    """How much stays, and mostly why, as the end of a sentence; empty where nothing does.
-
-    >>> left = RemainingEntry(cause="rear_gouge", area_mm2=3.0, share=0.2, samples=3, faces=["F1"], place_mm=None)
-    >>> entry = ProcessEntry(steps=[], finished_share=0.8, finished_mm2=12.0, asked_mm2=15.0, left=[left], seconds=None)
-    >>> _stays(entry), _stays(entry.model_copy(update={"left": []}))
-    ('; 20 % stay: rear gouge', '')
-    """
+    """How much stays, and mostly why, as the end of a sentence; empty where nothing does."""
     if not process.left:
         return ""
     if process.finished:

@@ -20,7 +20,7 @@ from plan_cutters.report.page.arrays import Arrays, Stored
 from plan_cutters.report.protocol import Judged
 
 #: What stays, with its share, at the beginning of a sentence; and what one would type, at the end.
-_LEFT, _TYPED = re.compile(r"Left(?: besides)?, ([<>]?[\d.]+ %), "), re.compile(r" \[--[^\]]*\]$")
+_REMAINING, _TYPED = re.compile(r"Left(?: besides)?, ([<>]?[\d.]+ %), "), re.compile(r" \[--[^\]]*\]$")
 #: Patterns of steps, another one each time that the colours come round.
 PATTERNS = ("plain", "cross", "dots", "bars")
 
@@ -112,7 +112,7 @@ def _parted(text: str) -> tuple[str, str]:
     >>> _parted("Left, 18.7 %, 38 mm², rear gouge: F8."), _parted("Not required: F8.")
     (('38 mm², rear gouge: F8.', '18.7 %'), ('Not required: F8.', ''))
     """
-    match = _LEFT.match(text)
+    match = _REMAINING.match(text)
     return (as_fields(text), "") if match is None else (as_fields(capital(text[match.end() :])), match[1])
 
 
