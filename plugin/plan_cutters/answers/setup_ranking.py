@@ -302,8 +302,7 @@ class Ranking:
         self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
-        """Grip the stock in a direction, if what is named can without soft jaws, and what is below the part keeps tools off little
-        of it."""
+        """Grip the stock in a direction, if plain jaws can, and what is below the part keeps tools off little of it."""
         assert self.stock is not None, "without stock the part is gripped"
         most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
         for stock in self.stock.choices(round_=self.candidates.bearing[k].round):
