@@ -53,7 +53,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
             ("area", _span(head["area"]), process["asked_mm2"] / size),
             ("time", _time(head["took"]), on_machine),
             ("time to clamp", _time(head["again"]), process["setup_seconds"] or None),
-            ("rest", head["stays"] and _share(head["stays"]), 1.0 - process["finished_share"] if stays else None),
+            ("rest", _share(head["stays"]) if head["stays"] else None, 1.0 - process["finished_share"] if stays else None),
         ]
         yield from (f"the headline has another {what} than the process" for what, span, value in pairs if not _in(span, value))
     elif not text["headline"].startswith("Take ") or any(each["cause"] != "unjudged" for each in process["left"]):
