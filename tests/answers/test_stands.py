@@ -9,12 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import Options, Scene, plan
+from plan_cutters.answers import setup_ranking
 from plan_cutters.answers.setup_ranking import Held, best_hold, ranked
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.stock import Stock
 from plan_cutters.pipeline import prepare
 from plan_cutters.setups.clamping import NothingToGripError, refuse_ungripped
-from tests.support.cad_parts import box, compound, rod
+from plan_cutters_base import stage_cache
+from tests.support.cad_parts import box, compound, rod, write_step
 
 HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
 WORDS = ("table", "vise", "chuck")
@@ -180,3 +182,24 @@ def test_bodies_that_lie_against_each_other_are_one_clamping():
     apart, near = (compound(box(20, 20, 10), box(20, 20, 10, at=(at, 0, 0))) for at in (30.0, 20.0))
     codes = [plan(part, **HOW).plan.note_codes for part in (apart, near)]
     assert ["bodies_apart" in each for each in codes] == [True, False]
+
+
+def test_setups_are_not_compared_again_for_the_next_question(tmp_path, monkeypatch):
+    """The same part, cutters and machine, and another feed: the proposal is read, and is the same."""
+    file = write_step(box(40.0, 30.0, 30.0), tmp_path / "block.step")
+    monkeypatch.setenv("PLAN_CUTTERS_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(stage_cache, "_WORTH", 0.0)
+    shares = []
+    how = {**HOW, "setup": "auto", "grid": 9}
+    first = plan(file, progress=lambda stage, *share: shares.append((stage, share)), **how)
+    stage_cache.settle()
+    # "Comparing setups" tells its share.
+    assert len({share for stage, share in shares if stage == "proposal"}) > 3
+    monkeypatch.setattr(setup_ranking, "ranked", lambda *_: pytest.fail("setups were compared again"))
+    again = plan(file, feed=900.0, operations="fastest", **how)
+    assert again.plan.setup_proposal == first.plan.setup_proposal
+    monkeypatch.undo()
+    monkeypatch.setenv("PLAN_CUTTERS_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(setup_ranking, "ranked", lambda *_: (_ for _ in ()).throw(RuntimeError("compared")))
+    with pytest.raises(RuntimeError, match="compared"):
+        plan(file, **{**how, "machine": "trunnion-bc"})

@@ -110,7 +110,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
-    tall = float(part.vertex[..., 2].max()) - above
+    tall = part.tall - above
     for turn in range(0, math.ceil(360 / chuck.jaws), _TURN):
         at = start + turn + 360.0 / chuck.jaws * np.arange(chuck.jaws)
         bins = [np.floor(np.arange(each - half, each + half, 1.0) % _BINS).astype(int) % _BINS for each in at]
@@ -271,7 +271,7 @@ def _at(
         wide = f"{names} are {mm(right - left)} apart, and the vise opens to {mm(widest)}"
         return [], wide if right - left > widest else f"{names} begin too high above its lowest point for the jaws"
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
-    tall, bearing = float(part.vertex[..., 2].max()), part.bearing(0.0, above)
+    tall, bearing = part.tall, part.bearing(0.0, above)
     centre = part.enclosed[1]
     lug = (right - left) * (end - start) < _LUG * part.section
     places, why = list[Place](), apart
