@@ -449,7 +449,7 @@ class Ranking:
 
 
 #: What is kept of a ranking for the next question.
-_KEPT = tuple(each.name for each in fields(Ranking) if each.name not in ("ready", "progress"))
+_STORED = tuple(each.name for each in fields(Ranking) if each.name not in ("ready", "progress"))
 
 
 def _bound(ready: Prepared, candidates: Candidates, rows: Rows, k: int, word: str) -> NDArray[np.bool_]:
@@ -499,14 +499,14 @@ def proposed(
         ranking = ranked(ready, most, words, stock, progress)
         chosen = ranking.chosen_and_held(most)
         # Written while the ranking goes on to be asked.
-        return {name: copy(getattr(ranking, name)) for name in _KEPT}, chosen
+        return {name: copy(getattr(ranking, name)) for name in _STORED}, chosen
 
     cutters = tuple(replace(each, name="") for each in ready.cutters)
     follows_from = (
         GroundDigests().of(ready), ready.samples.area, ready.scene.targets, ready.scene.part.key, cutters, most, words, stock,
     )  # fmt: skip
-    kept, chosen = ready.cache.cached("proposal", follows_from, made)
-    return Ranking(ready, **{name: copy(value) for name, value in kept.items()}), chosen
+    stored, chosen = ready.cache.cached("proposal", follows_from, made)
+    return Ranking(ready, **{name: copy(value) for name, value in stored.items()}), chosen
 
 
 def ranked(

@@ -126,9 +126,9 @@ def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:
 
 def _of_bodies(ready: Prepared) -> Iterator[Note]:
     """Name bodies with faces to machine that surely do not touch, for their boxes do not: nobody clamps these together."""
-    around, targets = ready.conditions.surroundings, set(ready.chosen.targets)
-    triangles = (around.alone or around).certain.triangles
-    bodies = [each for each in material_bodies(around.bodies, ready.scene.orientation.sign) if each & targets]
+    surroundings, targets = ready.conditions.surroundings, set(ready.chosen.targets)
+    triangles = (surroundings.alone or surroundings).certain.triangles
+    bodies = [each for each in material_bodies(surroundings.bodies, ready.scene.orientation.sign) if each & targets]
     corners = [triangles.vertex[np.isin(triangles.face, list(each))].reshape(-1, 3) for each in bodies]
     boxes = [(each.min(axis=0) - TOGETHER, each.max(axis=0) + TOGETHER) for each in corners if len(each)]
     touching = [

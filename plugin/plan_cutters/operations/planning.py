@@ -46,7 +46,7 @@ from plan_cutters.operations.plans import (
     small_pieces,
     worth_their_turn,
 )
-from plan_cutters.operations.probes import Probes, with_room
+from plan_cutters.operations.probes import Probes, with_margin
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.task import Problems, Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
@@ -321,8 +321,10 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     )
     rows = np.flatnonzero(reached)
     compared = [{cutter: verdicts[cutter] for cutter in cutters} for verdicts in everywhere]
-    room = with_room(ready.samples, rows, compared, ready.setups, open_) if options.process is None else None
-    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere, room=room)
+    # The fewest are proved: there whatever is safe counts.
+    quick = options.process is None and options.operations == "fastest"
+    margin = with_margin(ready.samples, rows, compared, ready.setups, open_) if quick else None
+    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere, margin=margin)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     machine = ready.conditions.machine
     paths = Paths(

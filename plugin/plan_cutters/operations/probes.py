@@ -10,7 +10,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.verdicts import Verdicts, blank
-from plan_cutters.plan_file.operations import ROOM
+from plan_cutters.plan_file.operations import MARGIN
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of
 from plan_cutters.scene.distances import clear_by
 from plan_cutters.scene.fixed_axis import served_by, slid
@@ -22,10 +22,10 @@ Rows = NDArray[np.int64]
 
 def roomy(cutter: Cutter) -> Cutter:
     """The same tool with room about its neck, shank and holder."""
-    return replace(cutter, clearance=max(ROOM, cutter.clearance or 0.0))
+    return replace(cutter, clearance=max(MARGIN, cutter.clearance or 0.0))
 
 
-def with_room(
+def with_margin(
     samples: SurfaceSamples,
     rows: Rows,
     everywhere: Sequence[Mapping[Cutter, Verdicts]],
@@ -38,16 +38,16 @@ def with_room(
     for conditions, open_, by_cutter in zip(setups, outside, everywhere, strict=True):
         for cutter, verdicts in by_cutter.items():
             mine = rows[~result[rows] & open_[rows]]
-            result[mine] = clear_by(ROOM, samples, cutter, verdicts, conditions, mine)
+            result[mine] = clear_by(MARGIN, samples, cutter, verdicts, conditions, mine)
     for conditions, open_, by_cutter in zip(setups, outside, everywhere, strict=True):
         for cutter, verdicts in by_cutter.items():
             mine = rows[~result[rows] & open_[rows] & verdicts.reached[rows]]
             if cutter.stages and len(mine):
-                found = blank(len(samples))
+                there = blank(len(samples))
                 search(
-                    contacts_of(samples), samples.face, mine, Context.of(roomy(cutter), conditions), found, fixed=True, brief=True
+                    contacts_of(samples), samples.face, mine, Context.of(roomy(cutter), conditions), there, fixed=True, brief=True
                 )
-                result |= found.reached
+                result |= there.reached
     return result
 
 
@@ -57,7 +57,7 @@ class Probes:
     `setups`: of each setup, with its own machine frame, fixtures and obstacles. `outside` (sequence of (n,) bool): of each setup
     the samples that can be machined there: not clamped faces, not inside material. `barred`: index of a cutter -> samples (n,) at
     which it is not to be planned. `everywhere`: of each setup the verdicts by cutter, whose postures serve with their axes.
-    `room` (n,) bool: where tools are put down with room about them; None: nowhere.
+    `margin` (n,) bool: where tools are put down with room about them; None: nowhere.
 
     `contexts`: of each cutter in each setup. `made`: times that the tool was put down.
     """
@@ -70,9 +70,9 @@ class Probes:
         outside: Sequence[NDArray[np.bool_]],
         barred: Mapping[int, NDArray[np.bool_]] | None = None,
         everywhere: Sequence[Mapping[Cutter, Verdicts]] = (),
-        room: NDArray[np.bool_] | None = None,
+        margin: NDArray[np.bool_] | None = None,
     ) -> None:
-        self.room = room
+        self.margin = margin
         self.barred, self.everywhere = barred or {}, everywhere
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
@@ -83,9 +83,9 @@ class Probes:
 
     def tight(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """As `table`, with no more room than is required."""
-        return self.table(rows, columns, room=False)
+        return self.table(rows, columns, margin=False)
 
-    def table(self, rows: Rows, columns: Columns, progress: Progress | None = None, *, room: bool = True) -> NDArray[np.bool_]:
+    def table(self, rows: Rows, columns: Columns, progress: Progress | None = None, *, margin: bool = True) -> NDArray[np.bool_]:
         """Where each column serves: (rows, columns)."""
         table = np.zeros((len(columns), len(rows)), bool)
         kinds = {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}
@@ -95,7 +95,7 @@ class Probes:
             may = self.outside[s][rows]
             open_ = np.flatnonzero(may & ~self.barred[c][rows] if c in self.barred else may)
             if len(open_):
-                free, made = self._served(rows[open_], columns.axis[mine], c, s, mine_of, room=room)
+                free, made = self._served(rows[open_], columns.axis[mine], c, s, mine_of, margin=margin)
                 if self.everywhere:
                     searched = self.everywhere[s][self.cutters[c]]
                     for number, which, _ in slid(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], searched):
@@ -105,9 +105,9 @@ class Probes:
         return table.T
 
     def _served(
-        self, rows: Rows, axes: Floats, c: int, s: int, progress: Progress | None, *, room: bool
+        self, rows: Rows, axes: Floats, c: int, s: int, progress: Progress | None, *, margin: bool
     ) -> tuple[NDArray[np.bool_], int]:
-        apart = self.room[rows] if room and self.room is not None and self.cutters[c].stages else np.zeros(len(rows), bool)
+        apart = self.margin[rows] if margin and self.margin is not None and self.cutters[c].stages else np.zeros(len(rows), bool)
         free, made = np.zeros((len(axes), len(rows)), bool), 0
         for context, mine in ((self.contexts[c][s], ~apart), (self._roomy[c][s], apart)):
             if mine.any():

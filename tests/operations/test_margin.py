@@ -8,10 +8,10 @@ from plan_cutters import plan
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.judging.judge import judge
-from plan_cutters.operations.probes import Probes, roomy, with_room
+from plan_cutters.operations.probes import Probes, roomy, with_margin
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.plan_file.operations import ROOM
+from plan_cutters.plan_file.operations import MARGIN
 from tests.support.cad_parts import box
 
 HOW = {"faces": "all", "area_budget": 0, "feed": 1000.0, "machine": "trunnion-ac", "grid": 9, "operations": "fastest"}
@@ -25,7 +25,7 @@ def step():
 
 
 def test_a_tool_with_room_is_the_same_tool_and_asks_for_no_less():
-    for own, wanted in ((None, ROOM), (0.2, ROOM), (3.0, 3.0)):
+    for own, wanted in ((None, MARGIN), (0.2, MARGIN), (3.0, 3.0)):
         wide = roomy(Cutter.flat(radius=6, length=40, clearance=own))
         assert (wide.clearance, wide.radius, wide.length) == (wanted, 6.0, 40.0)
 
@@ -34,8 +34,8 @@ def test_where_a_posture_has_room_no_step_goes_without():
     """All of a block lower than the tool is long, less the room, is cut with room; of one as high nothing at its foot can be."""
     low, high = (plan(box(30, 30, tall), cutters=TIGHT, **HOW) for tall in (38.0, 39.9))
     clear = [min(s.clearance_mm for s in each.plan.process.steps if s.clearance_mm is not None) for each in (low, high)]
-    assert clear[0] >= ROOM
-    assert 0.0 < clear[1] < ROOM
+    assert clear[0] >= MARGIN
+    assert 0.0 < clear[1] < MARGIN
     assert high.plan.process.finished_share == low.plan.process.finished_share
     lines = " ".join(high.plan.text.lines)
     assert "where no orientation of the plan has 1 mm" in lines
@@ -49,10 +49,10 @@ def test_what_serves_with_room_serves_without(cutter):
     (tool,) = ready.cutters
     everywhere, open_ = [{tool: judge(ready, tool)}], ready.machinable
     rows = np.flatnonzero(everywhere[0][tool].reached & open_[0])
-    room = with_room(ready.samples, rows, everywhere, ready.setups, open_)
+    room = with_margin(ready.samples, rows, everywhere, ready.setups, open_)
     assert room[rows].any()
     assert (room[rows] == judge(ready, roomy(tool)).reached[rows]).all()
-    probes = [Probes(ready.samples, ready.cutters, ready.setups, open_, room=each) for each in (room, None)]
+    probes = [Probes(ready.samples, ready.cutters, ready.setups, open_, margin=each) for each in (room, None)]
     columns = columns_of(np.array([[0.0, 0.0, 1.0], [np.sin(0.3), 0.0, np.cos(0.3)]]), np.zeros((2, 2)))
     with_, without = (each.table(rows, columns) for each in probes)
     assert not (with_ & ~without).any()
