@@ -13,7 +13,8 @@ from plan_cutters_check.reckoned import Reckoned
 
 _HEAD = re.compile(
     r"finish(?:es)? (?:(?P<share>[<>]?[\d.]+) % of|any of|all) (?P<area>[\d,.]+) (?P<unit>mm|in)²"
-    r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?\.$"
+    r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?"
+    r"(?:; (?P<stays>[<>]?[\d.]+) % stay(?:: |, mostly )[^;]+|; F[^;]* not judged)?\.$"
 )
 _STEP = re.compile(
     r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<share>[<>]?[\d.]+) %"
@@ -44,6 +45,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     head = _HEAD.search(text["headline"])
     if head is not None:
         size = 25.4**2 if head["unit"] == "in" else 1.0
+        stays = any(each["cause"] != "unjudged" for each in process["left"])
         seconds = process["seconds"]
         on_machine = None if seconds is None else seconds - (process["setup_seconds"] or 0.0)
         pairs = [
@@ -51,6 +53,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
             ("area", _span(head["area"]), process["asked_mm2"] / size),
             ("time", _time(head["took"]), on_machine),
             ("time to clamp", _time(head["again"]), process["setup_seconds"] or None),
+            ("rest", _share(head["stays"]) if head["stays"] else None, 1.0 - process["finished_share"] if stays else None),
         ]
         yield from (f"the headline has another {what} than the process" for what, span, value in pairs if not _in(span, value))
     elif not text["headline"].startswith("Take ") or any(each["cause"] != "unjudged" for each in process["left"]):

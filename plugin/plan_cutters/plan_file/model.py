@@ -319,9 +319,11 @@ class VerdictText(Frozen):
 class TextEntry(Frozen):
     """The plan in words, made once: every reader shows these."""
 
-    headline: str = Field(description="which cutter to take for what, or that none does")
+    headline: str = Field(description="how much is finished in how many steps, what stays and why; or which cutter to take")
     tone: Tone
-    lines: list[str] = Field(description="why, what is not judged, what is left: at most 25 lines of at most 80 columns")
+    lines: list[str] = Field(
+        description="why, what is not judged or left: at most 25 lines of at most 80 columns; options as fields of their names"
+    )
     cutters: dict[str, str] = Field(description="id of a cutter -> how much it reaches, or does not reach and why")
     verdicts: dict[str, VerdictText] = Field(description="id of a cutter -> whether it is feasible")
     shares: dict[str, dict[str, str]] = Field(
