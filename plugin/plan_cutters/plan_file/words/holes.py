@@ -1,6 +1,7 @@
 """A plan says which holes are for drills, and which drills make them."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 
 from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
@@ -28,20 +29,21 @@ def holes(plan: Plan) -> Iterator[str]:
     number = len(plan.holes)
     yield f"{count(number, 'hole')}{much} {'is for a drill' if number == 1 else 'are for drills'}: {what}."
     if any(library.drills for library in plan.libraries):
-        yield _made(plan, ordered)
+        yield _made(plan)
 
 
-def _made(plan: Plan, groups: list[list[HoleEntry]]) -> str:
-    """Say how many of them tools of the libraries drill, in which time, and which usual drills are missing."""
+def _made(plan: Plan) -> str:
+    """Say how many of them tools of the libraries make, in which time, and what is missing, by its usual size."""
     made = sum(each.drilled for each in plan.holes)
-    times = [step.seconds for step in plan.drilling]
+    steps = [] if plan.process is None else plan.process.drilling
+    times = [None if step.seconds is None else step.seconds + step.link_seconds for step in steps]
     took = f", {duration(math.fsum(each or 0.0 for each in times))}" if times and None not in times else ""
-    setups = sorted({step.setup + 1 for step in plan.drilling})
+    setups = sorted({step.setup + 1 for step in steps})
     where = f" in setup{'s' if len(setups) > 1 else ''} {joined([*map(str, setups)])}" if setups and len(plan.setups) > 1 else ""
     text = f"Drills of the set make {'all' if made == len(plan.holes) else made if made else 'none'} of them{where}{took}"
-    open_groups = [group[0] for group in groups if not all(each.drilled for each in group)]
-    missing = [f"{size(each.diameter_mm)} x {math.ceil(each.depth_mm)}" for each in open_groups]
-    return f"{text}; none makes {listed([*dict.fromkeys(missing)], _DIAMETERS)}." if missing else f"{text}."
+    missing = Counter(words for each in plan.holes for words in each.missing)
+    named = [f"{number} x {words}" if number > 1 else words for words, number in missing.items()]
+    return f"{text}; no tool makes {listed(named, _DIAMETERS)}." if missing else f"{text}."
 
 
 def group_words(group: list[HoleEntry]) -> str:

@@ -8,8 +8,24 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, size, some
+from plan_cutters.domain.drill import CONES
+from plan_cutters.domain.figures import (
+    ROUNDING,
+    area,
+    bound,
+    count,
+    duration,
+    joined,
+    listed,
+    mm,
+    percent,
+    place,
+    reported,
+    size,
+    some,
+)
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
@@ -348,12 +364,16 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     process = plan.process
     if process is None:
         return None
-    setups = len({step.setup for step in process.steps}) > 1
+    setups = len({step.setup for step in (*process.steps, *process.drilling)}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: _STEPS if len(steps) > _STEPS + 1 else None]
-    rows = tuple(_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest))
+    rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
+    # Steps that drill follow those of mills in their setup.
+    for k, step in enumerate(process.drilling, len(steps) + 1):
+        after = max((i for i, row in enumerate(rows, 1) if row.at <= step.setup), default=0)
+        rows.insert(after, _drilling_row(k, step, setups=setups, fixed=fixed or not steps))
     more = ""
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
@@ -362,7 +382,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
     return ProcessStory(
-        rows=rows,
+        rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
         roughing=roughing(process),
         more=more,
@@ -417,6 +437,27 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         operation=step.operation,
         at=step.setup,
     )
+
+
+def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool) -> StepRow:
+    return StepRow(
+        number=str(number),
+        setup=f"setup {step.setup + 1}" if setups else "",
+        turned=angles_text(step.angles_deg or {}) if fixed else "",
+        cutter=drilling_words(step),
+        share=count(len(step.holes), "hole"),
+        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
+        faces=[],
+        alone="",
+        operation="",
+        at=step.setup,
+    )
+
+
+def drilling_words(step: DrillingStep) -> str:
+    """The tool of a step that drills, with what it leaves."""
+    deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
+    return f"{step.kind} D{reported(step.diameter_mm):.4g}{deep}"
 
 
 def stand_text(plan: Plan, setup: ProcessSetup) -> str:
