@@ -20,6 +20,8 @@ from plan_cutters.scene.preparation import Prepared
 _NO_WAY = 1e-12
 #: Share of the area of a bottom that mills have to finish.
 _BOTTOM = 0.99
+#: Cosine of the angle between directions that are one.
+_ALONG = 1.0 - 1e-9
 
 
 class _Way(NamedTuple):
@@ -66,7 +68,8 @@ class _Maker:
         """The tools of a hole."""
         uses, missing = self._cylinder(hole), list[str]()
         if not uses or not self._floored(hole):
-            uses, missing = [], [f"D{_number(hole.diameter)} x {math.ceil(hole.depth - 1e-6)}"]
+            why = f"no mill reaches its {hole.bottom} bottom" if uses else self._why(hole)
+            uses, missing = [], [f"D{_number(hole.diameter)} x {math.ceil(hole.depth - 1e-6)}{f' ({why})' if why else ''}"]
         for step in hole.steps:
             if not {*step.faces}.intersection(hole.faces):
                 # A mill makes it.
@@ -75,6 +78,16 @@ class _Maker:
             uses += [] if use is None else [use]
             missing += [_step_words(step)] if use is None else []
         return Bored(tuple(uses), tuple(missing))
+
+    def _why(self, hole: Hole) -> str:
+        """Why no tools make its narrowest cylinder; empty where none has its size."""
+        chains, setups = [*self._chains(hole)], self.ready.setups
+        if not chains:
+            return ""
+        if not any(setups[way.setup].allows(way.axis[None])[0] for way in self._ways(hole)):
+            return "no setup has its axis"
+        long = any(all(task.body is not None and task.drill.reach >= task.depth for task in chain) for chain in chains)
+        return "something is in the way" if long else "flutes are too short"
 
     def _floored(self, hole: Hole) -> bool:
         """Whether mills finish a bottom that no drill leaves."""
@@ -89,7 +102,7 @@ class _Maker:
         tasks = [each for each in self._chains(hole) if all(task.body is not None for task in each)]
         for chain in tasks:
             for way in self._ways(hole):
-                made = [self._use(task, way) for task in chain]
+                made = [self._use(task, way) or self._onto_stock(task, hole, way) for task in chain]
                 if all(made):
                     first = self._centre(hole, way)
                     return [*([] if first is None else [first]), *(use for use in made if use is not None)]
@@ -141,6 +154,17 @@ class _Maker:
             yield _Way(setup, hole.axis, hole.place)
             if hole.through:
                 yield _Way(setup, -hole.axis, hole.place - hole.depth * hole.axis)
+
+    def _onto_stock(self, task: _Task, hole: Hole, way: _Way) -> Drilled | None:
+        """A tool through a hole whose point goes into the stock below the part, which is cut away later."""
+        conditions = self.ready.setups[way.setup]
+        surroundings, up = conditions.surroundings, np.asarray(conditions.setup, float)
+        below = max((each.fixture.stock.below for each in surroundings.fixtures if each.fixture.stock is not None), default=0.0)
+        point, end = task.drill.point_length, way.mouth - hole.depth * way.axis
+        lowest = float(((surroundings.alone or surroundings).certain.lowest(up) @ up).min())
+        if not hole.through or way.axis @ up < _ALONG or not below > point or end @ up > lowest + conditions.tolerance:
+            return None
+        return self._use(task._replace(depth=hole.depth), way)
 
     def _use(self, task: _Task, way: _Way) -> Drilled | None:
         """A tool in a hole if it stands free there; None: it does not, or is too short."""

@@ -65,8 +65,8 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
     for place, k in enumerate(_in_order(number)):
         for use in made[k].uses:
             kind, axis = KINDS.index(use.drill.kind), np.round(use.axis, _DIGITS) + 0.0
-            depth = round(use.depth, _DIGITS)
-            key = use.setup, _IN_TURN.index(kind), use.drill.diameter, use.drill.id, tuple(axis.tolist()), number[k], depth
+            size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
+            key = use.setup, _IN_TURN.index(kind), use.drill.diameter, use.drill.id, tuple(axis.tolist()), size
             same.setdefault(key, []).append((place, use))
     steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
@@ -76,7 +76,7 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
         before += [axis] * begins
         steps.append(
             DrillingStep(
-                kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name, group=key[-2],
+                kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
                 holes=[StrokeEntry(hole=place, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for place, each in same[key]],
                 setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=round(use.depth, _DIGITS),

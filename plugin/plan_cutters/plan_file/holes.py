@@ -57,7 +57,6 @@ class DrillingStep(Frozen):
     kind: Kind = Field(description="of the tool")
     tool: str = Field(description="id")
     name: str = Field(description="of that tool in its library; empty where it has none")
-    group: int = Field(description="of the holes")
     holes: list[StrokeEntry]
     setup: int = Field(description="0 is the first")
     axis: Vector = Field(description="unit tool axis")

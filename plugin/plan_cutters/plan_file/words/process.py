@@ -282,6 +282,8 @@ def _faces(each: OperationEntry) -> str:
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
+#: Rows of mills and drills that are listed together, and so many of drills in any case.
+_ROWS, _DRILLED = 10, 4
 #: Fixed orientations by how many rotary axes index, and how many axes move at once otherwise.
 _INDEXED = {1: ("3+1", "four"), 2: ("3+2", "five")}
 #: Shares are sums of areas: a gain that is less than it should be by this is that.
@@ -305,8 +307,8 @@ _MINOR = 0.001
 class StepRow(NamedTuple):
     """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
 
-    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, and `at` its
-    setup, counted from 0.
+    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, `at` its
+    setup, counted from 0, and `holes` how many it drills, 0 for a mill.
     """
 
     number: str
@@ -319,6 +321,7 @@ class StepRow(NamedTuple):
     alone: str
     operation: str
     at: int
+    holes: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,10 +344,13 @@ class ProcessStory:
     def table(self) -> list[str]:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
         each setup."""
-        rows = [(row.number, *row[2:6]) for row in self.rows]
+        drills = sorted((row for row in self.rows if row.holes), key=lambda row: -row.holes)
+        unshown = drills[max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
+        shown = [row for row in self.rows if row not in unshown]
+        rows = [(row.number, *row[2:6]) for row in shown]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
         stands, lines, setup = dict(enumerate(self.stands)), list[str](), None if self.rows else -1
-        for row, texts in zip(self.rows, rows, strict=True):
+        for row, texts in zip(shown, rows, strict=True):
             if row.at != setup:
                 setup = row.at
                 lines += wrapped([stands.pop(setup, f"Setup {setup + 1} again:")], 2)
@@ -356,6 +362,8 @@ class ProcessStory:
             line = "  " + "  ".join(cells)
             lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
         idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
+        if unshown:
+            lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
         return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
 
 
@@ -451,6 +459,7 @@ def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool)
         alone="",
         operation="",
         at=step.setup,
+        holes=len(step.holes),
     )
 
 
