@@ -548,15 +548,20 @@ def _steps(rings: Sequence[_Ring], radius: float, near: float, *, up: bool, dept
 
     def is_floor(ring: _Ring, bore: _Ring) -> bool:
         """Whether a face begins where a cylinder ends."""
-        return ring.kind != "cylinder" and abs(ring.wide - bore.wide) <= near and abs(ends[ring.number][0] - ends[bore.number][1]) <= near
+        met = abs(ends[ring.number][0] - ends[bore.number][1]) <= near
+        return ring.kind != "cylinder" and met and abs(ring.wide - bore.wide) <= near
+
+    def is_one(ring: _Ring, other: _Ring) -> bool:
+        apart = np.subtract((*ends[ring.number], ring.wide), (*ends[other.number], other.wide))
+        return ring.kind == other.kind and bool(np.abs(apart).max() <= near)
 
     bores = [ring for ring in whole if ring.kind == "cylinder"]
     floors = {ring.number for ring in whole for bore in bores if is_floor(ring, bore)}
     seen = list[_Ring]()
     for ring in whole:
-        same = [r for r in whole if r.kind == ring.kind and np.allclose((*ends[r.number], r.wide), (*ends[ring.number], ring.wide), 0.0, near)]
         if ring.kind not in ("cylinder", "cone") or ring.number in floors or ring in seen or _narrows(ring, up, radius, near):
             continue
+        same = [r for r in whole if is_one(r, ring)]
         seen += same
         below = [r for r in whole if r.number in floors and ring.kind == "cylinder" and is_floor(r, ring)]
         kinds = {r.kind for r in below}

@@ -28,7 +28,18 @@ from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.scene.faces import choose, clamped_faces, ignored_faces, ignored_words
 from plan_cutters_check.findings import same, short
-from plan_cutters_check.question import FREE, Body, DrillSizes, Grip, MachineAxes, Question, Section, Setup, ToolSizes, require_operations
+from plan_cutters_check.question import (
+    FREE,
+    Body,
+    DrillSizes,
+    Grip,
+    MachineAxes,
+    Question,
+    Section,
+    Setup,
+    ToolSizes,
+    require_operations,
+)
 
 #: How far the chords of a chuck's jaws may be from their bore, mm.
 _BORE = 1e-3

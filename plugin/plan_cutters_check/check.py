@@ -57,7 +57,7 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
         return replace(first, findings=(*first.findings, last))
     bench = Bench(fixtures.resting(question), tell)
     clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
-    findings += drilling.findings(question, bench, clock["placed"])
+    findings += drilling.findings(question, bench, clock["clearance"])
     findings += Trials(reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
     return _compared(question, findings, Compared().compare(expected, question.document))
 

@@ -1,6 +1,6 @@
 """Steps that drill holes: what they must say, and whether their tools stand free where they cut.
 
-A tool for holes is put down as wide as the hole that it leaves, from above its point up; a countersink or centre drill as its cone.
+A tool for holes is put down as wide as the hole that it leaves, from above its point up; one that cuts with a cone as this.
 """
 
 import math
@@ -47,6 +47,7 @@ def entries(question: Question) -> list[Any]:
         seen.add(turn)
         constant = document["operations"]["assumed"]["index_s"]
         index = 0.0 if not first or not timed else Loose(0.0, math.inf) if rates or not question.machine.names else constant
+        first_way = np.array(step["holes"][0]["mouth_mm"], float) - np.array(step["holes"][0]["tip_mm"], float)
         tip = (np.array([each["mouth_mm"] for each in step["holes"]]) - (deep + drill.beyond) * np.array(step["axis"])).tolist()
         steps.append({
             "kind": drill.kind, "tool": drill.sizes.id, "name": drill.name, "setup": step["setup"],
@@ -56,6 +57,7 @@ def entries(question: Question) -> list[Any]:
                 for each, point in zip(step["holes"], tip, strict=True)
             ],
             **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
+            "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
             "seconds": None if feed is None else number * _WAY * deep / feed * 60.0,
             "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
         })  # fmt: skip
@@ -186,7 +188,7 @@ def _strokes(question: Question, step: Mapping[str, Any]) -> Iterator[_Stroke]:
 
 
 def _body(drill: DrillSizes, diameter: float, angle: float) -> Tool | None:
-    """A tool as wide as what it leaves, above its point; of one that cuts with its point its cone. None: its flutes are too short."""
+    """A tool above its point, as wide as what it leaves; one that cuts with a cone as this. None: its flutes are too short."""
     sizes, radius = drill.sizes, drill.sizes.radius
     if drill.kind in _CONES:
         high = radius / math.tan(0.5 * angle)
@@ -237,9 +239,10 @@ def _faults(
     elif drill.kind in ("counterbore", "drill"):
         if not any(abs(2.0 * radius - wide) <= _ROUNDED for radius in _cylinders(question, of)):
             yield "has no cylinder of its diameter"
-    elif drill.kind == "countersink":
-        if not any(abs(math.degrees(two - drill.angle)) <= _SINK for _, two in _cones(question, of)):
-            yield "has no cone of its angle"
+    elif drill.kind == "countersink" and not any(
+        abs(math.degrees(two - drill.angle)) <= _SINK for _, two in _cones(question, of)
+    ):
+        yield "has no cone of its angle"
 
 
 def _cylinders(question: Question, of: Mapping[str, Any]) -> list[float]:

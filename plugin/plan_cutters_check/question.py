@@ -46,8 +46,8 @@ class ToolSizes:
 
 @dataclass(frozen=True, slots=True)
 class DrillSizes:
-    """A tool for holes: its kind, its body as a cutter with a flat end, the whole angle of its point, rad, if that is known, its feed,
-    mm/min, and its name.
+    """A tool for holes: its kind, its body as a cutter with a flat end, its name; and if they are known, the whole angle of its
+    point, rad, and its feed, mm/min.
     """
 
     kind: str

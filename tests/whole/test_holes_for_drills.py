@@ -203,7 +203,9 @@ def drill(diameter, flutes=40.0, length=60.0, point=118.0, kind="drill", holder=
 def made_with(*drills, shape=None, **words):
     options = {**WORDS_OF_PLAN, **words, "libraries": [_library(*drills)]}
     ready = prepare(plate() if shape is None else shape, Options.of(options))
-    return {round(hole.diameter, 3): by for hole, by in zip(ready.holes, drilled(ready), strict=True)}
+    made = drilled(ready, np.ones(len(ready.samples), bool))
+    by = [next((use for use in each.uses if use.main), None) for each in made]
+    return {round(hole.diameter, 3): each for hole, each in zip(ready.holes, by, strict=True)}
 
 
 def test_a_drill_of_its_size_makes_a_hole():
@@ -258,12 +260,13 @@ def test_a_machine_that_cannot_hold_the_axis_drills_nothing():
 def test_steps_have_minutes_and_what_none_makes_is_named():
     words = {**WORDS_OF_PLAN, "libraries": [_library(drill(3.3))]}
     made = plan(plate(), **words).plan
-    (step,) = made.drilling
+    (step,) = made.process.drilling
     deep = 16.0 + 1.65 / np.tan(np.radians(59.0))
-    assert (step.holes, step.setup, step.angles_deg) == (4, 0, {"C": 0.0, "A": 0.0})
-    assert step.seconds == pytest.approx(4 * (1.3 * deep / 300.0 * 60.0 + 1.0))
+    assert (len(step.holes), step.setup, step.angles_deg) == (4, 0, {"C": 0.0, "A": 0.0})
+    assert step.seconds == pytest.approx(4 * 1.3 * deep / 300.0 * 60.0)
+    assert step.link_seconds == 4.0
     assert [hole.drilled for hole in made.holes].count(True) == 4
     text = " ".join(made.text.lines)
     assert "Drills of the set make 4 of them" in text
-    assert "none makes D8 x 7, D12 x 6." in text
+    assert "no tool makes D8 x 7, D12 x 6." in text
     assert replace(drill(3.3), point=None).id != drill(3.3).id

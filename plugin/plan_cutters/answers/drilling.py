@@ -191,7 +191,7 @@ def _floors(drill: Drill, step: Step) -> bool:
 
 
 def _down(drill: Drill, hole: Hole, diameter: float, *, main: bool = False) -> _Task:
-    """A tool down to the bottom: through it until all of its width is, of a cone until it is as wide, over a floor with its tip."""
+    """A tool down to the bottom: until all of its width is through, or as wide as a cone is; over a floor with its tip."""
     deep, point = hole.depth, drill.point_length
     if hole.through:
         deep += point

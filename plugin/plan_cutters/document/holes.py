@@ -7,7 +7,7 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
-from plan_cutters.domain.drill import KINDS, Bored, Drilled, time_of_hole
+from plan_cutters.domain.drill import Bored, Drilled, Kind, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, StrokeEntry
@@ -17,10 +17,10 @@ from plan_cutters.scene.preparation import Prepared
 
 #: Decimals of lengths and angles: behind them there is noise alone.
 _DIGITS = 6
-#: Times, s, in which rotary axes come to each of some positions: the solutions of each (s, k), limits (k, 2), rad, rates (k,), rad/s.
+#: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 #: Tools in the order in which they come in a setup.
-_IN_TURN = tuple(KINDS.index(kind) for kind in ("centre drill", "drill", "reamer", "counterbore", "countersink", "tap"))
+_IN_TURN: tuple[Kind, ...] = ("centre drill", "drill", "reamer", "counterbore", "countersink", "tap")
 
 
 def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[HoleEntry]:
@@ -33,9 +33,7 @@ def _in_order(number: Sequence[int]) -> list[int]:
     return sorted(range(len(number)), key=lambda k: number[k])
 
 
-def with_drilling(
-    process: ProcessEntry, ready: Prepared, made: Sequence[Bored], index_times: IndexTimes
-) -> ProcessEntry:
+def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored], index_times: IndexTimes) -> ProcessEntry:
     """The process with the steps that drill holes, and their seconds in its own where these are known."""
     drilling = _steps(ready, made, index_times, timed=process.seconds is not None)
     if not drilling:
@@ -45,7 +43,7 @@ def with_drilling(
         names = ("seconds", "cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
         return process.model_copy(update={"drilling": drilling, **dict.fromkeys(names)})
     tools = len({step.tool for step in drilling}) + len({step.cutter for step in process.steps if step.operation})
-    setups = len({step.setup for step in (*drilling, *process.steps)})
+    setups = len({*(step.setup for step in drilling), *(step.setup for step in process.steps)})
     times: dict[str, Any] = {
         "cutting_seconds": (process.cutting_seconds or 0.0) + sum(each or 0.0 for each in seconds),
         "link_seconds": (process.link_seconds or 0.0) + sum(step.link_seconds for step in drilling),
@@ -64,27 +62,30 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
     same: dict[tuple[Any, ...], list[tuple[int, Drilled]]] = {}
     for place, k in enumerate(_in_order(number)):
         for use in made[k].uses:
-            kind, axis = KINDS.index(use.drill.kind), np.round(use.axis, _DIGITS) + 0.0
             size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
-            key = use.setup, _IN_TURN.index(kind), use.drill.diameter, use.drill.id, tuple(axis.tolist()), size
+            key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
     steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
-        axis = tuple((np.round(use.axis, _DIGITS) + 0.0).tolist())
+        axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
         steps.append(
             DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
-                holes=[StrokeEntry(hole=place, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for place, each in same[key]],
+                holes=[_stroke(place, each) for place, each in same[key]],
                 setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
-                diameter_mm=round(use.diameter, _DIGITS), depth_mm=round(use.depth, _DIGITS),
-                seconds=None if feed is None else len(same[key]) * time_of_hole(use.depth, feed),
+                diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
+                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed),
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
     return [step for group in _by_tool(steps) for step in _indexed(ready, group, index_times)]
+
+
+def _stroke(hole: int, use: Drilled) -> StrokeEntry:
+    return StrokeEntry(hole=hole, mouth_mm=_rounded(use.mouth), tip_mm=_rounded(use.tip))
 
 
 def _by_tool(steps: Sequence[DrillingStep]) -> list[list[DrillingStep]]:

@@ -120,7 +120,7 @@ class Bored:
     missing: tuple[str, ...]
 
     @property
-    def by(self) -> Drilled | None:
+    def by(self) -> Drill | None:
         """The tool that makes its narrowest cylinder; None: none does."""
         return next((use.drill for use in self.uses if use.main), None)
 

@@ -25,7 +25,10 @@ class CounterboreEntry(Frozen):
 class HoleEntry(Frozen):
     """A hole for drills: a cylinder with more than half a turn of material around it, and what lies about its axis."""
 
-    faces: list[str] = Field(description="its faces that are narrower than `effective.drill_below_mm`: no mill has to reach them")
+    faces: list[str] = Field(
+        description="its faces that no mill has to reach: narrower than `effective.drill_below_mm`, without a bottom that is no "
+        "cone, and without a counterbore that is milled"
+    )
     diameter_mm: float = Field(description="of its narrowest cylinder")
     depth_mm: float = Field(description="from the mouth to the lower end of that cylinder, without the point of a drill")
     through: bool
@@ -40,7 +43,9 @@ class HoleEntry(Frozen):
         description="tools of the libraries make its narrowest cylinder (`process.drilling`), and its bottom, or a mill does"
     )
     tool: str | None = Field(description="the tool that makes that cylinder last; null where none does")
-    missing: list[str] = Field(default=[], description="in words with its size, each thing of it that no tool of the libraries makes")
+    missing: list[str] = Field(
+        default=[], description="in words with its size, each thing of it that no tool of the libraries makes"
+    )
 
 
 class StrokeEntry(Frozen):
@@ -48,7 +53,9 @@ class StrokeEntry(Frozen):
 
     hole: int = Field(description="its place in `holes`, from 0")
     mouth_mm: Vector = Field(description="where it enters: the middle of the mouth of the hole, countersink or counterbore")
-    tip_mm: Vector = Field(description="where its tip stands at the deepest; a point of an angle that is not stated is one of 90 deg")
+    tip_mm: Vector = Field(
+        description="where its tip stands at the deepest; a point of an angle that is not stated is one of 90 deg"
+    )
 
 
 class DrillingStep(Frozen):

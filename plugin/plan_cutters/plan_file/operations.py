@@ -460,8 +460,8 @@ class ProcessEntry(Frozen):
     drilling: list[DrillingStep] = Field(
         default=[],
         exclude_if=lambda steps: not steps,
-        description="steps that drill `holes` with tools of the libraries, by setup; their numbers follow those of `steps`, and their "
-        "seconds are in those of the process; not written where there are none",
+        description="steps that drill `holes` with tools of the libraries, by setup; their numbers follow those of `steps`, "
+        "and their seconds are in those of the process; not written where there are none",
     )
     setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
     stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")

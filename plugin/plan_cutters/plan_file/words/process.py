@@ -372,16 +372,16 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     process = plan.process
     if process is None:
         return None
-    setups = len({step.setup for step in (*process.steps, *process.drilling)}) > 1
+    setups = len({*(step.setup for step in process.steps), *(step.setup for step in process.drilling)}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: _STEPS if len(steps) > _STEPS + 1 else None]
     rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
     # Steps that drill follow those of mills in their setup.
-    for k, step in enumerate(process.drilling, len(steps) + 1):
-        after = max((i for i, row in enumerate(rows, 1) if row.at <= step.setup), default=0)
-        rows.insert(after, _drilling_row(k, step, setups=setups, fixed=fixed or not steps))
+    for k, bores in enumerate(process.drilling, len(steps) + 1):
+        after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
+        rows.insert(after, _drilling_row(k, bores, setups=setups, fixed=fixed or not steps))
     more = ""
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
