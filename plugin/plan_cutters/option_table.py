@@ -97,7 +97,8 @@ _MACHINE = (
         "stock", str, None, brief="What the first setup grips: box, cylinder, FILE, part.",
         help="What the part is made of: `box[:X,Y,Z]`, margins on each side and below, mm; `cylinder[:R,Z]` along the setup "
         "axis; a STEP file or mesh; or `part`: it is there but for its last cut. A vise or chuck of the first setup grips the "
-        "stock below the part, and hides none of its faces.  [default: box where --setup auto places a vise, else part]",
+        "stock below the part, and hides none of its faces.  "
+        "[default: with --setup auto a box, or a bar if the part is round; else part]",
     ),
 )  # fmt: skip
 

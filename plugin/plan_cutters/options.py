@@ -22,7 +22,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
 from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.standard_tools import builtin
-from plan_cutters.domain.stock import BOX, PART, Stock
+from plan_cutters.domain.stock import PART, USUAL, Stock
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
@@ -340,7 +340,7 @@ class Options:
                             propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
         vise = self.propose and (not self.fixtures or self.fixtures[0].kind == VISE)
         known = next((each.stock for each in self.fixtures if each.stock), None)
-        take(stock=(stock or known or Stock.of(BOX if vise else PART)).text)
+        take(stock=(stock or known or Stock.of(USUAL if vise else PART)).text)
         take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))
         take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
         for word, each in OPTIONS.items():

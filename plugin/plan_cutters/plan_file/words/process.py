@@ -30,6 +30,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
+    ROOM,
     SHORT_STEP,
     UNJUDGED_CAUSE,
     NextEntry,
@@ -389,6 +390,8 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
+    if known and least < ROOM and steps[step].mode == "fixed" and steps[step].own is None:
+        clearance = f"{clearance[:-1]}, where no orientation of the plan has {mm(ROOM)}."
     return ProcessStory(
         rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
