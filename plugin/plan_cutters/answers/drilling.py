@@ -75,7 +75,8 @@ class _Maker:
                 # A mill makes it.
                 continue
             use = self._widened(hole, step)
-            uses += [] if use is None else [use]
+            # Where there is no hole nothing is sunk.
+            uses += [use] if uses and use is not None else []
             missing += [_step_words(step)] if use is None else []
         return Bored(tuple(uses), tuple(missing))
 

@@ -233,7 +233,9 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
                 # Its drawing has none.
                 tool.take("RE", "0 mm", "CornerRadius", length)
             if re.search("[1-9]", str(parameters.get(_CAP) or "")):
-                tool.doubts.append(f"{_CAP} {shown(parameters[_CAP])}: what is below its blade does not cut, and no tool is known so")
+                tool.doubts.append(
+                    f"{_CAP} {shown(parameters[_CAP])}: what is below its blade does not cut, and no tool is known so"
+                )
         if tool.sort == "tapered mill":
             _tapered_ball(tool, parameters, length)
     # FreeCAD writes 0 for a stick-out that nobody gave.
