@@ -588,9 +588,13 @@ def test_a_slitting_saw_of_freecad_is_as_thick_as_its_blade(tmp_path):
         "ShankDiameter": "16 mm",
         "CuttingEdgeHeight": None,
     }
-    (entry,) = listing(write_bit(tmp_path / "a.fctb", "SlittingSaw", CapHeight="0 mm", **sizes), 40, "none").entries
+    (entry,) = listing(
+        write_bit(tmp_path / "a.fctb", "SlittingSaw", CapHeight="0 mm", **sizes), assume_stickout=40, holder="none"
+    ).entries
     assert entry.cutter.id == "R30L40F3S8"
     # What stands out below the blade would be taken for what cuts.
-    (entry,) = listing(write_bit(tmp_path / "b.fctb", "SlittingSaw", CapHeight="3 mm", **sizes), 40, "none").entries
+    (entry,) = listing(
+        write_bit(tmp_path / "b.fctb", "SlittingSaw", CapHeight="3 mm", **sizes), assume_stickout=40, holder="none"
+    ).entries
     assert entry.cutter is None
     assert "CapHeight" in entry.unused

@@ -12,14 +12,15 @@ import pytest
 from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.options import Options
+from plan_cutters.plan_file.words.holes import missing_words
 from plan_cutters_check.asking import question_of
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check, on_paper
 from plan_cutters_check.drilling import findings
 from plan_cutters_check.fixtures import resting
 from plan_cutters_check.surface import Clock
+from tests.support.drills import drill, library_of
 from tests.support.plates import block, drilled
-from tests.whole.test_holes_for_drills import _library, drill
 
 WORDS = {"cutters": ["D6L40F25S6"], "faces": "all", "grid": 3, "area_budget": 0, "machine": "trunnion-ac", "feed": 800,
          "operations": "fastest"}  # fmt: skip
@@ -37,7 +38,7 @@ TOOLS = (drill(4.5), drill(6.6), drill(5.0), drill(8.0), drill(9.8), drill(10.0,
 
 
 def made_with(*tools, shape=None, **words):
-    return plan(plate() if shape is None else shape, **{**WORDS, **words, "libraries": [_library(*tools)]}).plan
+    return plan(plate() if shape is None else shape, **{**WORDS, **words, "libraries": [library_of(*tools)]}).plan
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +98,7 @@ def test_a_flat_bottom_is_asked_of_mills(planned):
     wide = made_with(*TOOLS, cutters=["D10L40F25S10"])
     same = next(hole for hole in wide.holes if hole.diameter_mm == 8.0)
     assert (same.drilled, same.tool) == (False, None)
-    assert same.missing == ["D8 x 12 (no mill reaches its flat bottom)"]
+    assert [missing_words(each) for each in same.missing] == ["D8 x 12 (no mill reaches its bottom)"]
     floor = next(face.id for face in wide.faces if face.shape == "plane" and face.centre_mm[2] == pytest.approx(-12.0))
     assert any(floor in each.faces for each in wide.process.left)
     assert wide.process.finished_share < 1.0
@@ -114,7 +115,7 @@ def test_a_hole_over_a_floor_that_is_less_deep_than_a_point_is_milled():
 def test_what_no_tool_makes_is_named(without, kind, missing):
     made = made_with(*(tool for k, tool in enumerate(TOOLS) if k != without))
     assert not of_kind(made, kind)
-    assert [each for hole in made.holes for each in hole.missing] == [missing]
+    assert [missing_words(each) for hole in made.holes for each in hole.missing] == [missing]
     assert f"no tool makes {missing}." in " ".join(" ".join(made.text.lines).split())
 
 
@@ -125,7 +126,7 @@ def test_a_counterbore_without_its_tool_is_milled():
     # Of mills that are all wider it is not asked, and named.
     wide = made_with(*TOOLS[:7], cutters=["D12L40F25S12"])
     assert not any(walls.intersection(step.faces) for step in wide.process.steps)
-    assert ["counterbore D11"] in [hole.missing for hole in wide.holes]
+    assert ["counterbore D11"] in [[missing_words(each) for each in hole.missing] for hole in wide.holes]
 
 
 def test_a_drill_of_its_size_comes_before_a_reamer():
@@ -155,7 +156,7 @@ def test_a_chamfer_at_the_far_end_is_sunk_from_there():
     shape = block(30, 30, 16).cut(tool.revolve(360, (0, 0, 0), (0, 1, 0))).val()
     tools = drill(4.0), drill(12.4, flutes=12.0, kind="countersink", point=90.0)
     made = made_with(*tools, shape=shape, setup="+z", machine="tilt:5")
-    assert any("countersink" in each for hole in made.holes for each in hole.missing)
+    assert any(each.thing == "countersink" for hole in made.holes for each in hole.missing)
     both = made_with(*tools, shape=shape, setup="+z", other_setups=["-z"], machine="tilt:5")
     assert {step.setup for step in of_kind(both, "countersink")} == {1}
     assert all(step.axis == pytest.approx((0.0, 0.0, -1.0)) for step in of_kind(both, "countersink"))
@@ -164,11 +165,11 @@ def test_a_chamfer_at_the_far_end_is_sunk_from_there():
 def test_an_axis_that_no_setup_has_is_named():
     shape = block(40, 40, 20).cut(drilled(5.0, 12.0).rotate((0, 0, 0), (0, 1, 0), 90).translate((20, 0, -10))).val()
     made = made_with(drill(5.0), shape=shape, machine="tilt:5", setup="+z")
-    assert [hole.missing for hole in made.holes] == [["D5 x 12 (no setup has its axis)"]]
+    assert [missing_words(each) for each in made.holes[0].missing] == ["D5 x 12 (no setup has its axis)"]
 
 
 def test_a_drill_without_a_feed_has_no_time():
-    library = _library(*TOOLS, feed=None)
+    library = library_of(*TOOLS, feed=None)
     made = plan(plate(), **{**WORDS, "libraries": [library], "feed": None, "operations": None}).plan
     assert {step.seconds for step in made.process.drilling} == {None}
     assert made.process.seconds is None
@@ -177,7 +178,7 @@ def test_a_drill_without_a_feed_has_no_time():
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("drilled")
-    words = {**WORDS, "libraries": [_library(*TOOLS)]}
+    words = {**WORDS, "libraries": [library_of(*TOOLS)]}
     cq.exporters.export(cq.Workplane(plate()), str(folder / "plate.step"))
     plan(folder / "plate.step", **words).write(folder, ["json", "npz"])
     document = json.loads((folder / "plan.json").read_text())

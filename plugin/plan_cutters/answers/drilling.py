@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.part.holes import Hole, Step
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled
+from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled, Missing, Why
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, free_in_posture
 from plan_cutters.scene.holes import made_of
@@ -66,10 +66,10 @@ class _Maker:
 
     def bored(self, hole: Hole) -> Bored:
         """The tools of a hole."""
-        uses, missing = self._cylinder(hole), list[str]()
+        uses, missing = self._cylinder(hole), list[Missing]()
         if not uses or not self._floored(hole):
-            why = f"no mill reaches its {hole.bottom} bottom" if uses else self._why(hole)
-            uses, missing = [], [f"D{_number(hole.diameter)} x {math.ceil(hole.depth - 1e-6)}{f' ({why})' if why else ''}"]
+            missing.append(Missing("hole", hole.diameter, hole.depth, why="bottom" if uses else self._why(hole)))
+            uses = []
         for step in hole.steps:
             if not {*step.faces}.intersection(hole.faces):
                 # A mill makes it.
@@ -77,18 +77,19 @@ class _Maker:
             use = self._widened(hole, step)
             # Where there is no hole nothing is sunk.
             uses += [use] if uses and use is not None else []
-            missing += [_step_words(step)] if use is None else []
+            deep, angle = (None, step.angle) if step.kind == "countersink" else (abs(step.inner - step.outer), None)
+            missing += [Missing(step.kind, step.diameter, deep, angle)] if use is None else []
         return Bored(tuple(uses), tuple(missing))
 
-    def _why(self, hole: Hole) -> str:
-        """Why no tools make its narrowest cylinder; empty where none has its size."""
+    def _why(self, hole: Hole) -> Why:
+        """Why no tools make its narrowest cylinder."""
         chains, setups = [*self._chains(hole)], self.ready.setups
         if not chains:
             return ""
         if not any(setups[way.setup].allows(way.axis[None])[0] for way in self._ways(hole)):
-            return "no setup has its axis"
+            return "axis"
         long = any(all(task.body is not None and task.drill.reach >= task.depth for task in chain) for chain in chains)
-        return "something is in the way" if long else "flutes are too short"
+        return "in_the_way" if long else "short"
 
     def _floored(self, hole: Hole) -> bool:
         """Whether mills finish a bottom that no drill leaves."""
@@ -201,16 +202,6 @@ def _down(drill: Drill, hole: Hole, diameter: float, *, main: bool = False) -> _
     else:
         deep -= point
     return _Task(drill, drill.in_hole(diameter) if deep > 0.0 else None, deep, diameter, main)
-
-
-def _step_words(step: Step) -> str:
-    """A countersink or counterbore with its size."""
-    size = f"{step.kind} D{_number(step.diameter)}"
-    return f"{size} x {math.degrees(step.angle):.4g} deg" if step.kind == "countersink" and step.angle is not None else size
-
-
-def _number(length: float) -> str:
-    return f"{length:.4g}"
 
 
 def _free(context: Context, conditions: Conditions, tip: Floats, axis: Floats) -> bool:

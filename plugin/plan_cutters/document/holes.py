@@ -7,10 +7,10 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
-from plan_cutters.domain.drill import Bored, Drilled, Kind, time_of_hole
+from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, StrokeEntry
+from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, MissingEntry, StrokeEntry
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
 from plan_cutters.scene.preparation import Prepared
@@ -140,7 +140,17 @@ def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
         group=group,
         drilled=by is not None,
         tool=None if by is None else by.id,
-        missing=list(made.missing),
+        missing=[_missing(each) for each in made.missing],
+    )
+
+
+def _missing(each: Missing) -> MissingEntry:
+    return MissingEntry(
+        thing=each.thing,
+        diameter_mm=round(each.diameter, _DIGITS),
+        depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
+        angle_deg=None if each.angle is None else _degrees(each.angle),
+        why=each.why,
     )
 
 

@@ -112,12 +112,27 @@ class Drilled:
 CONES: tuple[Kind, ...] = ("centre drill", "countersink")
 
 
+#: Why tools of its size do not make something; empty: there is none of its size.
+Why = Literal["", "axis", "short", "in_the_way", "bottom"]
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """No tool makes this of a hole: its narrowest cylinder, or a countersink or counterbore."""
+
+    thing: Literal["hole", "countersink", "counterbore"]
+    diameter: float  #: mm
+    depth: float | None = None  #: mm; not of a countersink.
+    angle: float | None = None  #: rad; of a countersink.
+    why: Why = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Bored:
-    """All that tools make of a hole, in their order; and what none of them makes, each in words with its size."""
+    """All that tools make of a hole, in their order; and what none of them makes."""
 
     uses: tuple[Drilled, ...]
-    missing: tuple[str, ...]
+    missing: tuple[Missing, ...]
 
     @property
     def by(self) -> Drill | None:

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.domain.drill import Kind
+from plan_cutters.domain.drill import Kind, Why
 from plan_cutters.plan_file.frozen import Frozen, Vector
 
 
@@ -20,6 +20,19 @@ class CounterboreEntry(Frozen):
 
     diameter_mm: float
     depth_mm: float = Field(description="from that mouth")
+
+
+class MissingEntry(Frozen):
+    """No tool of the libraries makes this of a hole."""
+
+    thing: Literal["hole", "countersink", "counterbore"] = Field(description="hole: its narrowest cylinder, with its bottom")
+    diameter_mm: float
+    depth_mm: float | None = Field(description="null of a countersink")
+    angle_deg: float | None = Field(description="the whole angle of a countersink, else null")
+    why: Why = Field(
+        description="empty: no tool has its size; of those that have it: axis: no setup has it; short: flutes are too short; "
+        "in_the_way: they do not stand free; bottom: no mill reaches its bottom, which is no cone"
+    )
 
 
 class HoleEntry(Frozen):
@@ -43,9 +56,7 @@ class HoleEntry(Frozen):
         description="tools of the libraries make its narrowest cylinder (`process.drilling`), and its bottom, or a mill does"
     )
     tool: str | None = Field(description="the tool that makes that cylinder last; null where none does")
-    missing: list[str] = Field(
-        default=[], description="in words with its size, each thing of it that no tool of the libraries makes"
-    )
+    missing: list[MissingEntry] = Field(default=[], description="what of it no tool of the libraries makes")
 
 
 class StrokeEntry(Frozen):

@@ -4,12 +4,15 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
+from plan_cutters.domain.drill import CONES, Why
 from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
-from plan_cutters.plan_file.holes import HoleEntry
+from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry
 from plan_cutters.plan_file.model import Plan
 
 #: Groups that are described; where there are more, their diameters are named: so many of these.
 _GROUPS, _DIAMETERS = 3, 10
+#: A length that is more than a whole one by less is that.
+_WHOLE = 1e-6
 
 
 def holes(plan: Plan) -> Iterator[str]:
@@ -41,9 +44,31 @@ def _made(plan: Plan) -> str:
     setups = sorted({step.setup + 1 for step in steps})
     where = f" in setup{'s' if len(setups) > 1 else ''} {joined([*map(str, setups)])}" if setups and len(plan.setups) > 1 else ""
     text = f"Drills of the set make {'all' if made == len(plan.holes) else made if made else 'none'} of them{where}{took}"
-    missing = Counter(words for each in plan.holes for words in each.missing)
+    missing = Counter(missing_words(thing) for each in plan.holes for thing in each.missing)
     named = [f"{number} x {words}" if number > 1 else words for words, number in missing.items()]
     return f"{text}; no tool makes {listed(named, _DIAMETERS)}." if missing else f"{text}."
+
+
+#: Why tools of its size do not make something.
+_WHY: dict[Why, str] = {
+    "": "", "axis": "no setup has its axis", "short": "flutes are too short", "in_the_way": "something is in the way",
+    "bottom": "no mill reaches its bottom",
+}  # fmt: skip
+
+
+def missing_words(missing: MissingEntry) -> str:
+    """Name the tool that is missing by its usual size, and say why others of it do not do."""
+    deep = "" if missing.depth_mm is None else f" x {math.ceil(reported(missing.depth_mm) - _WHOLE)}"
+    angle = "" if missing.angle_deg is None else f" x {missing.angle_deg:.4g} deg"
+    what = "" if missing.thing == "hole" else f"{missing.thing} "
+    why = f" ({_WHY[missing.why]})" if missing.why else ""
+    return f"{what}{size(missing.diameter_mm)}{deep if missing.thing == 'hole' else ''}{angle}{why}"
+
+
+def drilling_words(step: DrillingStep) -> str:
+    """The tool of a step that drills, with what it leaves."""
+    deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
+    return f"{step.kind} {size(step.diameter_mm)}{deep}"
 
 
 def group_words(group: list[HoleEntry]) -> str:

@@ -8,28 +8,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.drill import CONES
-from plan_cutters.domain.figures import (
-    ROUNDING,
-    area,
-    bound,
-    count,
-    duration,
-    joined,
-    listed,
-    mm,
-    percent,
-    place,
-    reported,
-    size,
-    some,
-)
+from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, size, some
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     NOT_PLANNED,
-    OTHER_ORIENTATION,
     ROOM,
     SHORT_STEP,
     UNJUDGED_CAUSE,
@@ -45,8 +29,10 @@ from plan_cutters.plan_file.operations import (
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
+from plan_cutters.plan_file.words.holes import drilling_words
 from plan_cutters.plan_file.words.names import Line, named
 from plan_cutters.plan_file.words.notes import doubts
+from plan_cutters.plan_file.words.own_steps import angles_text, fault, own_steps
 
 #: Operations that are listed, and faces that are named of one.
 _LISTED, _OF_OPERATION = 12, 4
@@ -299,10 +285,6 @@ _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
 _OTHER_CAUSES = {
     UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "because a step for it would take less than 1 s"
 }  # fmt: skip
-#: Steps of the planner's own whose faults are told.
-_OWN_STEPS = 3
-#: A step that leaves less of what it is asked does all, as a share: crumbs at borders are no fault.
-_MINOR = 0.001
 
 
 class StepRow(NamedTuple):
@@ -466,12 +448,6 @@ def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool)
     )
 
 
-def drilling_words(step: DrillingStep) -> str:
-    """The tool of a step that drills, with what it leaves."""
-    deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
-    return f"{step.kind} D{reported(step.diameter_mm):.4g}{deep}"
-
-
 def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     """Say which way is up, what holds the part, and what it stands on."""
     along = [f"{sign}{name}" for name, each in zip("XYZ", setup.up, strict=True) for sign in "+-" if each == float(f"{sign}1")]
@@ -582,59 +558,3 @@ def wrapped(texts: list[str], most: int) -> list[str]:
             mine[-1] = f"  {mine[-1]}" if most > 1 else mine[-1]
         lines += mine
     return lines
-
-
-def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
-    """Rotary axes with their angles, and by how much some turn from one time to the next.
-
-    >>> angles_text({"C": 0.0, "A": 12.5}, {"C": 36.0})
-    'C 0 + 36 A 12.5'
-    """
-    return " ".join(f"{name} {angle:g}" + (f" + {by[name]:g}" if by and name in by else "") for name, angle in angles.items())
-
-
-def own_steps(process: ProcessEntry) -> Iterator[str]:
-    """Sentences on the planner's own steps, first which they are, then what is wrong with each; none where all were planned."""
-    own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
-    if not own:
-        return
-    planned = len(process.steps) - len(own)
-    mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
-    behind = f"; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned" if planned else ""
-    yield f"{mine if planned else 'All steps are'} yours{behind}."
-    yield from (text for k, step in own.items() if (text := fault(k, step)))
-
-
-def shortened(sentences: Sequence[str]) -> list[str]:
-    """The first of the sentences on the planner's own steps, and how many more there are.
-
-    >>> shortened(["Steps 1 to 5 are yours.", *(f"Step {k} leaves 3 mm²." for k in range(1, 6))])[3:]
-    ['Step 3 leaves 3 mm².', '2 more steps of yours leave something: the review page and plan.json say what.']
-    """
-    rest = len(sentences) - _OWN_STEPS - 1
-    more = [f"{count(rest, 'more step')} of yours leave something: the review page and plan.json say what."] if rest > 0 else []
-    return [*sentences[: _OWN_STEPS + 1], *more]
-
-
-def fault(number: int, step: ProcessStep) -> str:
-    """Say what is wrong with a step; empty where it does what it is asked, and where it was planned."""
-    own = step.own
-    if own is None:
-        return ""
-    near = "" if own.nearest is None else f": {angles_text(own.nearest.angles_deg)} would take {area(own.nearest.area_mm2)}"
-    if own.wrong:
-        return f"Step {number}: {own.wrong}{near}."
-    left = sum(each.area_mm2 for each in own.leaves)
-    if left > _MINOR * own.asked_mm2:
-        worst = own.leaves[0]
-        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else reason(worst.cause)
-        return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
-    if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
-        return f"Step {number} does nothing: steps that share its faces are quicker."
-    if step.area_mm2 <= 0.0:
-        return (
-            f"Step {number} finds nothing left to do."
-            if own.asked_mm2 <= 0.0
-            else f"Step {number} reaches nothing that is left{near}."
-        )
-    return ""

@@ -27,13 +27,13 @@ from plan_cutters.plan_file.words.headline import (
 from plan_cutters.plan_file.words.holes import holes
 from plan_cutters.plan_file.words.names import Line, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
+from plan_cutters.plan_file.words.own_steps import shortened
 from plan_cutters.plan_file.words.process import (
     ProcessStory,
     in_short,
     one_more,
     operations,
     process_story,
-    shortened,
     with_process_words,
     wrapped,
 )
