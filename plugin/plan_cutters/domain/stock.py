@@ -61,7 +61,7 @@ class Stock:
         return self.kind != PART
 
     def choices(self, *, round_: bool) -> tuple["Stock", ...]:
-        """What to try in a setup, the first that serves: a bar for a part that is round there, else a box; then more below."""
+        """A setup tries these, the first that serves: a bar for a part that is round there, else a box; then more below."""
         if self.kind != USUAL:
             return (self,)
         first = [Stock.of(CYLINDER)] * round_ + [Stock.of(BOX)]

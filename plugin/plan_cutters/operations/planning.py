@@ -321,7 +321,9 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     )
     rows = np.flatnonzero(reached)
     compared = [{cutter: verdicts[cutter] for cutter in cutters} for verdicts in everywhere]
-    room = with_room(ready.samples, rows, compared, ready.setups, open_) if options.process is None else None
+    # The fewest are proved: there whatever is safe counts.
+    quick = options.process is None and options.operations == "fastest"
+    room = with_room(ready.samples, rows, compared, ready.setups, open_) if quick else None
     probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere, room=room)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     machine = ready.conditions.machine

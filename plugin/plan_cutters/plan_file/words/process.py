@@ -520,6 +520,13 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
     if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
+    sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
+    if sharp >= WORTH and plan.effective.sharp_edges == "asked":
+        # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
+        words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
+        yield NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        if left - sharp < WORTH:
+            return
     if advice is None:
         if "mend" not in plan.effective.answers:
             yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
