@@ -301,7 +301,7 @@ class OperationsEntry(Frozen):
 UNJUDGED_CAUSE, NOT_PLANNED, SHORT_STEP = "unjudged", "not_planned", "short_step"
 #: Why a step of the planner's own leaves something: another orientation of its cutter would reach it.
 OTHER_ORIENTATION = "orientation"
-#: Neck, shank and holder keep so far from everything where any posture does, mm.
+#: Neck, shank and holder keep so far from everything where a step of the plan has that at no twice the time, mm.
 MARGIN = 1.0
 
 

@@ -139,9 +139,8 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
-    # The fewest orientations are proved among all that is safe.
-    if known and least < MARGIN and steps[step].mode == "fixed" and process.plan == "fastest":
-        clearance = f"{clearance[:-1]}, where no orientation of the plan has {mm(MARGIN)}."
+    if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
+        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: --holder-clearance {MARGIN:g}."
     return ProcessStory(
         rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
