@@ -23,6 +23,7 @@ from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
+from plan_cutters.report.question import question_of
 from plan_cutters.scene.conditions import rotations_of
 
 
@@ -52,6 +53,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         "surface_class": result.surface_class,
         "inside_bodies": result.inside_bodies,
     }
+    if len(question := question_of(result)):
+        arrays["question"] = question
     if result.exempt is not None:
         arrays["exempt"] = result.exempt
     for name, verdicts in result.reaches.items():
