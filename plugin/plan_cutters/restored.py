@@ -70,7 +70,7 @@ def restored(
     arrays = _arrays(plan, folder, "npz")
     question = read_question(arrays["question"]) if "question" in arrays else None
     if question is None:
-        raise PlanError(f"was made by another version, or of objects of a script: {_AGAIN}", file=file_name("npz"))
+        raise PlanError(f"made by another version, or of objects of a script: {_AGAIN}", file=file_name("npz"))
     ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache))
     over = _over_setups(plan, arrays, ready)
     operations = _operations(plan, folder, ready) if plan.operations is not None else None
@@ -80,9 +80,9 @@ def restored(
 def _arrays(plan: Plan, folder: Path, form: str) -> dict[str, NDArray[Any]]:
     path, entry = folder / file_name(form), plan.files.get(form)
     if entry is None or not path.is_file():
-        raise PlanError(f"is not in {folder}, and models are made of it: {_AGAIN}", file=file_name(form))
+        raise PlanError(f"not in {folder}, and models are made of it: {_AGAIN}", file=file_name(form))
     if sha256(path) != entry.sha256:
-        raise PlanError(f"is not the file that plan.json names: {_AGAIN}", file=file_name(form))
+        raise PlanError(f"not the file that plan.json names: {_AGAIN}", file=file_name(form))
     with Archive(path, "arrays of a plan", PlanError) as archive:
         return {name: archive.read(name) for name in archive.headers}
 
@@ -97,7 +97,7 @@ def _prepared(plan: Plan, arrays: Arrays, question: Question, prepared: Callable
     point, near = ready.samples.point, _SAME * max(1.0, float(np.linalg.norm(ready.scene.part.size)))
     same = arrays["point"].shape == point.shape and np.array_equal(arrays["face"], ready.samples.face)
     if not same or not np.allclose(arrays["point"], point, rtol=0.0, atol=near, equal_nan=True):
-        raise PlanError(f"has samples that this version takes elsewhere: {_AGAIN}", file=file_name("npz"))
+        raise PlanError(f"its samples are not those that this version takes: {_AGAIN}", file=file_name("npz"))
     return ready
 
 
@@ -105,7 +105,7 @@ def _over_setups(plan: Plan, arrays: Arrays, ready: Prepared) -> OverSetups:
     # In the order in which they were judged.
     ids = [name.removeprefix("verdict_") for name in arrays if name.startswith("verdict_")]
     if sorted(ids) != sorted(each.id for each in plan.cutters):
-        raise PlanError(f"has other cutters than plan.json: {_AGAIN}", file=file_name("npz"))
+        raise PlanError(f"its cutters are not those of plan.json: {_AGAIN}", file=file_name("npz"))
     reaches = {name: _verdicts(arrays, name, ready) for name in ids}
     # What each setup reaches alone is no part of a model.
     others = tuple((axis, dict(reaches)) for axis in ready.options.other_setups)
