@@ -297,7 +297,7 @@ def prepare(
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
     whole = stands.part if isinstance(stands, Scene) else stands
-    stages = NO_CACHE if cache is None or whole.key is None else cache
+    stages = NO_CACHE if cache is None else cache
     with clock.stage("measure"):
         whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):

@@ -95,7 +95,7 @@ class Making:
         write = getattr(import_module(f"plan_cutters.report.{writer.module}"), writer.function)
         schema = {"schema": self._schema} if path.suffix == ".step" else {}
         write(self._result, split, path, **schema, **(writer.options or {}))
-        return FileEntry(name=path.name, sha256=sha256(path))
+        return FileEntry(name=path.name, sha256=sha256(path), size_bytes=path.stat().st_size)
 
     def files(self, formats: Sequence[str]) -> Generator[tuple[str, Callable[[], "FileEntry"]]]:
         """Formats, and what to call for the file of each, which raises what its making does.
@@ -187,8 +187,8 @@ class Staging:
         self.out = out
         #: Whether a plan of this run is in the output already.
         self.stands = False
-        #: The file of the samples that is there already, and how many maps of radii it has: nothing else of it is added later.
-        self.samples: tuple[int, FileEntry] | None = None
+        #: What the samples that are in the output already differ by from those of a later stage (`arrays.state`), and their file.
+        self.samples: tuple[Any, FileEntry] | None = None
         self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
         named(self.folder)
         try:
@@ -272,20 +272,23 @@ def write_all(
         stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
         steps = result.plan.process is not None and bool(result.plan.process.steps)
-        arrays = [*(["npz"] if "npz" in formats else []), *_setup_files(result)]
+        stands = "npz" in formats and _has_samples(staging, result)
+        arrays = [*(["npz"] if "npz" in formats and not stands else []), *_setup_files(result)]
         arrays += ["process"] if steps and not _edited(result, out) else []
         arrays += [*(["postures"] if result.maps else []), *(["operations", "operations_csv"] if result.plan.operations else [])]
         try:
             for name in arrays:
                 with clock.stage(name, shown=False):
                     written.files[name] = making.file(name)
+            if stands and staging.samples is not None:
+                written.files["npz"] = staging.samples[1]
         except OSError as error:
             raise _unwritable(out, error) from None
         written.put()
         # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
         if not staging.stands:
             _clear(out, result)
-        written.publish(written.files)
+        written.publish(arrays)
         staging.stands = True
         if listener:
             with clock.stage("show", shown=False):
@@ -364,18 +367,27 @@ def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, c
     written = _Written(result.plan, staging, clock, staging.out, others, as_json=True)
     making = Making(result, staging.folder, "", clock, lambda what: None)
     written.files |= {name: making.file(name) for name in _setup_files(result)}
-    news = staging.samples is None or staging.samples[0] != len(result.answers.radius_maps)
-    if "npz" in formats and news:
-        staging.samples = len(result.answers.radius_maps), making.file("npz")
+    news = [] if "npz" not in formats or _has_samples(staging, result) else ["npz"]
+    if news:
+        from plan_cutters.report.arrays import state
+
+        staging.samples = state(result), making.file("npz")
     if staging.samples is not None:
         written.files["npz"] = staging.samples[1]
         del written.missing["npz"]
     written.put()
     if not staging.stands:
         _clear(staging.out, result)
-    written.publish(name for name in written.files if news or name != "npz")
+    written.publish([*_setup_files(result), *news])
     staging.stands = True
     return True
+
+
+def _has_samples(staging: Staging, result: Judged) -> bool:
+    """Whether the samples in the output are those of a result, though it is one of a later stage."""
+    from plan_cutters.report.arrays import state
+
+    return staging.samples is not None and staging.samples[0] == state(result)
 
 
 def _setup_files(result: Judged) -> list[str]:
