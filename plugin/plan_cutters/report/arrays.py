@@ -90,8 +90,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         if result.kinematics is not None and name in machined:
             angles, taken = result.rotary(name)
             if name in result.travels:
-                arrays[f"travel_{name}"] = result.travels[name].position.astype(np.float32)
-            arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles).astype(np.float32), taken
+                arrays[f"travel_{name}"] = result.travels[name].position
+            arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
     if result.elsewhere:
         arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
         for name, verdicts in result.here.items():
@@ -172,11 +172,11 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     }
     for k, plan in enumerate(operations.plans):
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""
-        arrays |= {f"{word}{behind}": each for word, each in _columns(plan, result.plan.effective.tolerance_mm).items()}
+        arrays |= {f"{word}{behind}": each for word, each in _columns(plan).items()}
     write_arrays(arrays, path)
 
 
-def _columns(plan: OperationPlan, tolerance: float) -> dict[str, Any]:
+def _columns(plan: OperationPlan) -> dict[str, Any]:
     axis, piece = np.full((len(plan.label), 3), np.nan), np.full(len(plan.label), -1, np.int32)
     for each in plan.operations:
         if each.moving is not None:
@@ -191,7 +191,7 @@ def _columns(plan: OperationPlan, tolerance: float) -> dict[str, Any]:
         "lean": plan.lean,
         "strategy": plan.strategy,
         "contact": plan.contact,
-        "moving_axis": rounded(axis, tolerance),
+        "moving_axis": axis,
         "moving_piece": piece,
     }
 
