@@ -63,7 +63,7 @@ class SceneOptions(PointOptions, total=False):
 class PlanOptions(SceneOptions, total=False):
     """Options of a plan: the names of `Options`, those of its angles in degrees, and the types that it takes, not keeps."""
 
-    cutters: Cutter | str | Library | Sequence[Cutter | str] | None
+    cutters: Cutter | str | Library | Sequence[Cutter | str] | Mapping[str, Cutter | str] | None
     libraries: Library | Sequence[Library] | None
     holder: Holder | str | None
     allowance: float
@@ -190,7 +190,7 @@ class Options:
     ----------
     cutters, libraries : tuple of Cutter, tuple of Library
         Those of libraries (`library.read_library`) are judged, too. May be given as one cutter, text such as `R6L80` or library,
-        or as a list. Neither: the built-in cutters.
+        as a list, or by names of your own: `{"Finisher": "R6L80"}`. Neither: the built-in cutters.
     holder : Holder, optional
         Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float

@@ -16,7 +16,7 @@ from tests.support.places import SAMPLES
 @pytest.fixture(scope="module")
 def result():
     return plan(
-        SAMPLES / "peaks_and_valleys.step", cutters=["R6L80", "R4L60rc4"], machine="trunnion-ac", spacing=2.0, area_budget=0
+        SAMPLES / "peaks_and_valleys.step", cutters=["R6L80", "R4L60rc4"], machine="trunnion-ac", spacing=0.8, area_budget=0
     )
 
 
