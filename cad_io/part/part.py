@@ -33,8 +33,8 @@ from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
 from plan_cutters_base.forks import SideProcess
-from plan_cutters_base.values import digest
 from plan_cutters_base.user_files import fingerprint
+from plan_cutters_base.values import digest
 
 #: Reasons that others look at.
 NO_AREA = "has no area"

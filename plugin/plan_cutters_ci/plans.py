@@ -169,8 +169,15 @@ def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: A
     return FaceDifference(
         old=a.id if a else None, new=b.id if b else None, matched_by=how, name=face.name, kind=face.kind or face.shape,
         area_mm2=face.area_mm2 if math.isfinite(face.area_mm2) else None, centre_mm=face.centre_mm, was=was, now=now, lost=loses,
-        won=wins,
+        won=wins, radius_mm=_radii(a, b),
     )  # fmt: skip
+
+
+def _radii(a: FaceEntry | None, b: FaceEntry | None) -> tuple[float, float] | None:
+    """The radii of a face's shape in both plans, where they differ by more than rounding."""
+    carriers = [None if each is None else each.carrier for each in (a, b)]
+    old, new = (None if each is None else each.minor_radius_mm or each.radius_mm for each in carriers)
+    return None if old is None or new is None or math.isclose(old, new, rel_tol=1e-4) else (old, new)
 
 
 def _cutter(
