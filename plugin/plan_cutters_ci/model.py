@@ -49,7 +49,8 @@ class FaceDifference(Frozen):
     area_mm2: float | None = Field(description="null where it is not known")
     centre_mm: Vector | None
     radius_mm: tuple[float, float] | None = Field(
-        default=None, description="of its cylinder, sphere or tube of a torus, old and new; null where it is the same or unknown"
+        default=None,
+        description="of its cylinder, sphere or tube, old and new, where a face of another radius took the place of one",
     )
     was: FaceState | None = None
     now: FaceState | None = None
