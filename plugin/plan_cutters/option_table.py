@@ -1,11 +1,11 @@
 """The options of a plan, each declared once: the command line, its requests, checks and defaults are made of this table.
 
-It is read before help is shown: nothing large is imported. `Options` has the types that a type checker sees, and
-`plan_file.effective` the entry in a plan.
+It is read before help is shown: nothing large is imported. The stub `option_types.pyi`, by which type checkers know the options,
+is written of it by `python -m tests.support.option_stub`; `plan_file.effective` has the entry in a plan.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Literal, NamedTuple
 
 from cad_io.units import UNITS
@@ -20,6 +20,13 @@ _LONGEST, _MOST_JOBS = 1e6, 1024
 _POSITIVE = math.ulp(0.0), _LONGEST, f"must be a positive number of mm, at most {_LONGEST:g}"
 _NOT_NEGATIVE = 0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"
 _AT_LEAST_1 = 1, math.inf, "must be at least 1"
+
+
+def _literal(words: Iterable[str]) -> str:
+    return f"Literal{[*words]}".replace("'", '"')
+
+
+_ANSWER = _literal([*(each.word for each in KINDS), "all"])
 
 
 class Option(NamedTuple):
@@ -45,27 +52,45 @@ class Option(NamedTuple):
     several: bool = False
     #: Whether it is about one posture already, as in a posture map.
     of_a_point: bool = False
+    #: Its type as callers give it, and as `Options` keeps it, where they are not those of `kind`, `choices` and `default`.
+    takes: str = ""
+    keeps: str = ""
 
     @property
     def called(self) -> str:
         """Its word of the command line, with `_` for `-`."""
         return self.typed or self.word
 
+    @property
+    def is_angle(self) -> bool:
+        """Whether it may also be given in degrees, by a name that ends in `_deg`."""
+        return self.unit == "deg" or self.kind == "range"
+
+    @property
+    def types(self) -> tuple[str, str]:
+        """Its type as callers give it, and as `Options` keeps it."""
+        plain = _literal(self.choices) if self.choices else getattr(self.kind, "__name__", "")
+        keeps = self.keeps or plain + (" | None" if self.default is None else "")
+        return self.takes or keeps, keeps
+
 
 _CUTTERS = (
     Option(
         "cutters", str, (), typed="cutter", several=True, brief="D12L80, then rc1, T5, F20, N11x40, S12; repeatable.",
+        takes="Cutter | str | Library | Sequence[Cutter | str] | Mapping[str, Cutter | str] | None", keeps="tuple[Cutter, ...]",
         help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
         "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
         "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in tool set]",
     ),
     Option(
         "libraries", str, (), typed="cutters", several=True, brief="Tool library: Fusion, FreeCAD, CSV, TOML; repeatable.",
+        takes="Library | Sequence[Library] | None", keeps="tuple[Library, ...]",
         help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
         "the command `tools` shows how it is understood. Repeatable.",
     ),
     Option(
         "holder", str, None, brief="Holder of cutters without one: er32, D30L30.", of_a_point=True,
+        takes="Holder | str | None", keeps="Holder | None",
         help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
         "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
         "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
@@ -75,12 +100,14 @@ _CUTTERS = (
 _MACHINE = (
     Option(
         "machine", str, "unlimited", brief="Built-in name, tilt:DEG, or a machine file.", of_a_point=True,
+        takes="Machine | str | os.PathLike[str] | None", keeps="Machine",
         help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
         "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch.  "
         "[default: unlimited]",
     ),
     Option(
         "setup", str, ("0,0,1",), several=True, brief="Part axis along the spindle: +z, x,y,z; or `auto`.",
+        takes="Setup", keeps="tuple[float, float, float]",
         help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
         "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
         "proposes the fewest that reach most, in a vise, a chuck or on a table, and plans what it proposes; setups named "
@@ -88,6 +115,7 @@ _MACHINE = (
     ),
     Option(
         "fixtures", str, (), typed="fixture", several=True, brief="Body in the way: a file, table, vise, chuck.", of_a_point=True,
+        takes="Any", keeps="tuple[Fixture, ...]",
         help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
         "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. "
         "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
@@ -95,15 +123,18 @@ _MACHINE = (
     ),
     Option(
         "stock", str, None, brief="What the first setup grips: box, cylinder, FILE, part.",
+        keeps="str", takes="str | None",
         help="What the part is made of: `box[:X,Y,Z]`, margins on each side and below, mm; `cylinder[:R,Z]` along the setup "
         "axis; a STEP file or mesh; or `part`: it is there but for its last cut. A vise or chuck of the first setup grips the "
-        "stock below the part, and hides none of its faces.  [default: box where --setup auto places a vise, else part]",
+        "stock below the part, and hides none of its faces.  "
+        "[default: with --setup auto a box, or a bar if the part is round; else part]",
     ),
 )  # fmt: skip
 
 _FACES = (
     Option(
         "faces", str, "sculptured,blends", brief="sculptured, blends, all, F3,7-12, name:REGEX.",
+        keeps="Any",
         help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
         "`blends` (fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, "
         "`name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
@@ -111,6 +142,7 @@ _FACES = (
     ),
     Option(
         "ignore", str, (), several=True, brief="Faces neither machined nor in the way.", of_a_point=True,
+        keeps="Any",
         help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
     ),
     Option("flip", bool, False, "Machine the other side of open shells and loose faces.", of_a_point=True),
@@ -125,6 +157,7 @@ _FACES = (
     ),
     Option(
         "unit", str, None, choices=tuple(UNITS), of_a_point=True,
+        keeps="str | None",
         help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",
     ),
 )  # fmt: skip
@@ -162,10 +195,12 @@ _SAMPLES = (
 _POSTURES = (
     Option(
         "tilt", "range", None, of_a_point=True,
+        takes="Range | None", keeps="tuple[float, float]",
         help="Tilts to search, deg from the normal.  [default: 0:90, or as far as cutters touch]",
     ),
     Option(
         "rotation", "range", "0:360", of_a_point=True,
+        takes="Range", keeps="tuple[float, float]",
         help="Rotations to search, degrees from the direction of the largest curvature.  [default: 0:360]",
     ),
     Option("rotation_step", float, 10.0, "Step between rotations.", unit="deg", of_a_point=True),
@@ -194,6 +229,7 @@ _OUTPUT = (
 _ANSWERS = (
     Option(
         "answers", str, "", brief="More questions to answer, or all.",
+        takes=f"{_ANSWER} | Sequence[{_ANSWER}]", keeps=f"tuple[{_ANSWER}, ...]",
         help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all.",
     ),
     Option(
@@ -248,6 +284,7 @@ _OPERATIONS = (
     ),
     Option(
         "process", str, None, brief="Your own steps: an edited process.toml.",
+        takes="OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None", keeps="OwnProcess | None",
         help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
         "order, and the rest is planned behind them.",
     ),
@@ -257,6 +294,7 @@ _RUN = (
     Option("patterns", bool, True, "Judge and plan each face by itself, also where faces are equal.", typed="no_patterns"),
     Option(
         "jobs", int, None, "Threads.  [default: all cores]", brief=True,
+        takes="int | None", keeps="int",
         limits=(1, _MOST_JOBS, f"must be at least 1 and at most {_MOST_JOBS}"),
     ),
 )  # fmt: skip
@@ -268,5 +306,20 @@ GROUPS = {
 }  # fmt: skip
 #: By its word.
 OPTIONS = {each.word: each for group in GROUPS.values() for each in group}
+#: With those that no command has: setup files and the setup `auto` make them of its words.
+ATTRIBUTES = {
+    **OPTIONS,
+    "other_setups": Option("other_setups", str, (), "", takes="Sequence[Setup]", keeps="tuple[tuple[float, float, float], ...]"),
+    "placement": Option("placement", str, None, "", keeps="Placement | None"),
+    "other_placements": Option(
+        "other_placements", str, (), "", takes="Sequence[Placement | None]", keeps="tuple[Placement | None, ...]"
+    ),
+    "propose": Option("propose", bool, False, ""),
+}
+#: The type of each as callers give it; angles in degrees, too.
+TAKES = {word: each.types[0] for word, each in ATTRIBUTES.items()}
+TAKES |= {f"{word}_deg": f"{TAKES[word].removesuffix(' | None')} | None" for word, each in ATTRIBUTES.items() if each.is_angle}
+#: Those of a scene, which a posture map takes, too.
+OF_A_SCENE = ("setup", "flip", "ignore", "fixtures", "tolerance")
 #: Options that count in a plan of operations alone: without one they must not be ignored.
 OF_OPERATIONS = tuple(each.word for each in _OPERATIONS if each.kind is not str)

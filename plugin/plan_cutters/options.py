@@ -3,7 +3,7 @@
 import inspect
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 
@@ -18,101 +18,29 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.own_process import OwnProcess, operations_requested
-from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, HostAxis, HostPlane, PostureRange, Range
+from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, PostureRange
 from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.standard_tools import builtin
-from plan_cutters.domain.stock import BOX, PART, Stock
+from plan_cutters.domain.stock import PART, USUAL, Stock
 from plan_cutters.errors import OptionError
 from plan_cutters.library.cutting import feed_of
 from plan_cutters.library.raw_tool import Entry, Library, libraries_of
-from plan_cutters.option_table import OPTIONS, Option
+from plan_cutters.option_table import ATTRIBUTES, OF_A_SCENE, OPTIONS, TAKES, Option
 from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
-#: Axes of the part by name; `auto`: the setups that the plan proposes.
-SetupWord = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "X", "+X", "-X", "Y", "+Y", "-Y", "Z", "+Z", "-Z", "auto"]
-#: A text is a word: type checkers find those that are none. A setup file is a path.
-Setup = SetupWord | HostAxis | Iterable[float] | HostPlane | Placement | os.PathLike[str]
 #: Options that are angles, and what each may be in degrees.
 ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP}
-ANGLES |= {word: Angle(*limits[:2]) for word in ("index_step", "axis_accuracy") if (limits := OPTIONS[word].limits)}
+ANGLES |= {each.word: Angle(*each.limits[:2]) for each in OPTIONS.values() if each.is_angle and each.limits}
 #: What calls take beside options: it may be meant where a name is mistyped.
 OF_CALLS = ("part", "progress", "cache")
-#: Words of options that take no other text.
-Operations = Literal["fewest", "fastest", "both"]
-Answer = Literal["stick-out", "radius", "mend", "all"]
-SharpEdges = Literal["asked", "left"]
-Effort = Literal["quick", "normal", "thorough"]
-
-
-class PointOptions(TypedDict, total=False):
-    """Options of one point, of a scene and of a plan, as a caller may give them: `Options` says what each means."""
-
-    setup: Setup
-    flip: bool
-    ignore: Any
-    fixtures: Any
-
-
-class SceneOptions(PointOptions, total=False):
-    """Options of a scene and of a plan."""
-
-    tolerance: float
-
-
-class PlanOptions(SceneOptions, total=False):
-    """Options of a plan: the names of `Options`, those of its angles in degrees, and the types that it takes, not keeps."""
-
-    cutters: Cutter | str | Library | Sequence[Cutter | str] | Mapping[str, Cutter | str] | None
-    libraries: Library | Sequence[Library] | None
-    holder: Holder | str | None
-    allowance: float
-    holder_clearance: float
-    machine: Machine | str | os.PathLike[str] | None
-    other_setups: Sequence[Setup]
-    faces: Any
-    grid: int | None
-    spacing: float | None
-    tilt: Range | None
-    rotation: Range
-    rotation_step: float
-    tilt_deg: Range | None
-    rotation_deg: Range | None
-    rotation_step_deg: float | None
-    jobs: int | None
-    area_budget: int | None
-    posture_maps: bool
-    map_budget: int | None
-    answers: Answer | Sequence[Answer]
-    length_over_radius: float
-    operations: Operations | None
-    feed: float | None
-    scallop: float
-    stepover: float
-    index_step: float | None
-    index_step_deg: float | None
-    axis_accuracy: float | None
-    axis_accuracy_deg: float | None
-    index_time: float | None
-    change_time: float
-    setup_time: float
-    removal_rate: float | None
-    overlap: float
-    link_time: float
-    border_cost: float
-    most_operations: int | None
-    sharp_edges: SharpEdges
-    drill_below: float
-    effort: Effort
-    max_orientations: int
-    process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
-    patterns: bool
-    units: Literal["mm", "in"] | None
-    unit: str | None
-    placement: Placement | None
-    other_placements: Sequence[Placement | None]
-    propose: bool
-    stock: str | None
+if TYPE_CHECKING:
+    from plan_cutters.option_types import OptionValues, PlanOptions, PointOptions, SceneOptions
+else:
+    # Who is shown a call reads the words of the table.
+    OptionValues = object
+    PlanOptions = TypedDict("PlanOptions", TAKES, total=False)
+    SceneOptions = TypedDict("SceneOptions", {word: TAKES[word] for word in OF_A_SCENE}, total=False)
+    PointOptions = TypedDict("PointOptions", {word: TAKES[word] for word in OF_A_SCENE if word != "tolerance"}, total=False)
 
 
 def machine_option(value: Any) -> Machine:
@@ -154,9 +82,8 @@ def _within_limits(value: Any, option: Option) -> float:
 
 #: Defaults that are none of the command line.
 _DEFAULTS: dict[str, Any] = {
-    "machine": field(default_factory=Machine), "setup": (0.0, 0.0, 1.0), "other_setups": (), "faces": None, "tilt": None,
-    "rotation": (0.0, 2 * math.pi), "jobs": field(default_factory=cores), "answers": (), "placement": None,
-    "other_placements": (), "propose": False,
+    "machine": field(default_factory=Machine), "setup": (0.0, 0.0, 1.0), "faces": None,
+    "rotation": (0.0, 2 * math.pi), "jobs": field(default_factory=cores), "answers": (),
 }  # fmt: skip
 
 
@@ -169,20 +96,19 @@ def _own_process(value: Any) -> OwnProcess | None:
     return process_requested(value)
 
 
-def _with_defaults(made: type[_Class]) -> type[_Class]:
-    """Give attributes their defaults: these, or those of the command line, angles in radians."""
-    values = {
-        each.word: math.radians(x) if (x := each.default) is not None and each.unit == "deg" else x for each in OPTIONS.values()
-    }
-    for word, default in {**values, **_DEFAULTS}.items():
-        setattr(made, word, default)
+def _with_attributes(made: type[_Class]) -> type[_Class]:
+    """Give a class all options, with these defaults or those of the command line, angles in radians."""
+    made.__annotations__ = {word: each.types[1] for word, each in ATTRIBUTES.items()}
+    for word, each in ATTRIBUTES.items():
+        default = math.radians(each.default) if each.default is not None and each.unit == "deg" else each.default
+        setattr(made, word, _DEFAULTS.get(word, default))
     return made
 
 
 @degrees_too(ANGLES)
 @dataclass(frozen=True, slots=True)
-@_with_defaults
-class Options:
+@_with_attributes
+class Options(OptionValues):
     """Options of a plan: as on the command line, whose help says what each means. Lengths mm, angles rad; degrees as `tilt_deg`,
     `rotation_deg`, `rotation_step_deg`, `index_step_deg`, `axis_accuracy_deg`.
 
@@ -234,7 +160,8 @@ class Options:
     propose : bool
         The setups are to be proposed: as `setup="auto"` says it.
     stock : str
-        What the first setup grips, in the words of the command line. `part` unless it is given, or a vise may be proposed.
+        What the first setup grips, in the words of the command line, with all its numbers. `part` unless it is given, or a vise
+        may be proposed.
 
     Raises
     ------
@@ -251,57 +178,6 @@ class Options:
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: grid 1 must lie between 2 and 5000 samples a side
     """
-
-    cutters: tuple[Cutter, ...]
-    libraries: tuple[Library, ...]
-    holder: Holder | None
-    allowance: float
-    holder_clearance: float
-    machine: Machine
-    setup: tuple[float, float, float]
-    other_setups: tuple[tuple[float, float, float], ...]
-    faces: Any
-    ignore: Any
-    grid: int | None
-    spacing: float | None
-    tilt: tuple[float, float]
-    rotation: tuple[float, float]
-    rotation_step: float
-    tolerance: float
-    jobs: int
-    flip: bool
-    area_budget: int | None
-    posture_maps: bool
-    map_budget: int | None
-    answers: tuple[Answer, ...]
-    length_over_radius: float
-    operations: Operations | None
-    feed: float | None
-    scallop: float
-    stepover: float
-    index_step: float | None
-    axis_accuracy: float | None
-    index_time: float | None
-    change_time: float
-    setup_time: float
-    removal_rate: float | None
-    overlap: float
-    link_time: float
-    border_cost: float
-    most_operations: int | None
-    sharp_edges: SharpEdges
-    drill_below: float
-    effort: Effort
-    max_orientations: int
-    process: OwnProcess | None
-    patterns: bool
-    units: Literal["mm", "in"] | None
-    unit: str | None
-    fixtures: tuple[Fixture, ...]
-    placement: Placement | None
-    other_placements: tuple[Placement | None, ...]
-    propose: bool
-    stock: str  #: As given, with all its numbers; `part` unless it was given or a vise is proposed.
 
     if TYPE_CHECKING:
 
@@ -340,7 +216,7 @@ class Options:
                             propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
         vise = self.propose and (not self.fixtures or self.fixtures[0].kind == VISE)
         known = next((each.stock for each in self.fixtures if each.stock), None)
-        take(stock=(stock or known or Stock.of(BOX if vise else PART)).text)
+        take(stock=(stock or known or Stock.of(USUAL if vise else PART)).text)
         take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))
         take(holder=None if self.holder is None else Holder.of(self.holder), jobs=cores() if self.jobs is None else self.jobs)
         for word, each in OPTIONS.items():
@@ -349,7 +225,7 @@ class Options:
                 take(**{word: flag(value, word)})
             elif each.limits is not None and (value is not None or each.default is not None):
                 take(**{word: _within_limits(value, each)})
-            elif word in ("sharp_edges", "effort", "units") and value != each.default and value not in each.choices:
+            elif each.choices and word not in ("operations", "unit") and value != each.default and value not in each.choices:
                 raise OptionError(f"{word.replace('_', ' ')}: {shown(value)} is none of {', '.join(each.choices)}")
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from plan_cutters.domain.answers import Advice, LeastSet, RadiusMap
+from plan_cutters.domain.answers import LeastSet, RadiusMap
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.own_process import Mode, OwnResult
 from plan_cutters.domain.stick_out import StickOut
+from plan_cutters.plan_file.answers import MendEntry, StepEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 
 
@@ -118,6 +119,23 @@ class Operations:
     candidates: Columns  #: That the proof of the fewest is about; none beside a process of the planner's own.
     chosen: NDArray[np.int64]  #: (k,) int64: of the candidates.
     own: tuple[OwnResult, ...] = ()  #: What the planner's own steps do, in their order; empty where all steps were planned.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """A step is a thing to do next: as the plan file has it, and what stands behind it."""
+
+    entry: StepEntry
+    cutters: tuple[Cutter, ...]  #: That do it together, the one that is mended, or what becomes of it, first.
+    freed: NDArray[np.int64]  #: (m,) int64: the samples that it frees.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Advice:
+    """Advice names what to do next with a cutter, as the plan file has it; its steps."""
+
+    entry: MendEntry
+    steps: tuple[Step, ...] = ()  #: In the order of those of `entry`.
 
 
 @dataclass(frozen=True, slots=True, eq=False)

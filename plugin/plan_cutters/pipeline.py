@@ -43,6 +43,7 @@ from plan_cutters.scene.preparation import (
     conditions_of,
     fixtures_of,
     places,
+    refuse_unholdable,
     sampled,
     spacing_key,
     with_setups,
@@ -269,6 +270,7 @@ def prepare(
             ignore=options.ignore,
             fixtures=options.fixtures,
         )
+    refuse_unholdable(scene, options)
     if scene.fixtures:
         with clock.stage("fixtures"):
             scene.read_fixtures(read_timeout)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from plan_cutters.answers.candidates import touching
-from plan_cutters.answers.setup_ranking import Held, Ranking, ranked
+from plan_cutters.answers.setup_ranking import Held, Ranking, proposed
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE
@@ -88,29 +88,28 @@ def judged_proposed(
     unproposed, stock = replace(options, propose=False, fixtures=(), stock=PART), Stock.of(options.stock)
     ready = stages.prepare(part, unproposed)
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
-    with stages.clock.stage("proposal"):
-        ranking = ranked(ready, MOST_PROPOSED, words, stock if stock.solid else None)
+    with stages.clock.stage("proposal") as tell:
+        ranking, chosen = proposed(ready, MOST_PROPOSED, words, stock if stock.solid else None, tell)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
-        chosen = ranking.choose(MOST_PROPOSED, failed)
-        with stages.clock.stage("proposal"):
-            ranking.settle(chosen)
-            chosen = ranking.completed(chosen, MOST_PROPOSED)
+        if failed:
+            with stages.clock.stage("proposal"):
+                chosen = ranking.chosen_and_held(MOST_PROPOSED, failed)
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
-        proposed = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried)
+        outcome = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried)
         try:
             judged = stages.judge(
                 ready.scene.turned_to(_axis(ranking, chosen[0])),
                 _options(unproposed, ranking, chosen, folder),
-                partial(_stand, stand, proposed) if best is None else lambda made: None,
+                partial(_stand, stand, outcome) if best is None else lambda made: None,
             )
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
-        (reached_share, held_share, worst), describe = proposed(judged)
+        (reached_share, held_share, worst), describe = outcome(judged)
         if held_share >= _ENOUGH:
             return judged, describe
         if best is None or reached_share > best[0]:

@@ -16,7 +16,7 @@ from plan_cutters.files.pictures import draws_pictures
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters_agents.access import CallError, Limits, Permissions
-from plan_cutters_agents.outputs import tools_in
+from plan_cutters_agents.plan_answers import tools_in
 from plan_cutters_agents.requests import MapQuestion
 from plan_cutters_base.user_files import WITHIN
 from plan_cutters_base.workers.child import Assignment, Child, command

@@ -2,14 +2,12 @@
 
 import os
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import NoReturn
 
 import click
 
-from plan_cutters.command.codes import ENDED, run
+from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.validation import Folder
@@ -87,8 +85,3 @@ def command(request: McpRequest) -> int:
     # A thread may still wait for standard input.
     sys.stdout.flush()
     os._exit(0)
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, args)

@@ -10,6 +10,7 @@ from plan_cutters.domain.answer_kinds import ANSWERS, KINDS
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.process_file import ProcessTable, process_of
 from plan_cutters.machines.toml import explained
+from plan_cutters.option_table import OPTIONS
 
 #: Words of the command line are short.
 Word = Annotated[str, Field(min_length=1, max_length=300)]
@@ -48,6 +49,14 @@ Process = Annotated[ProcessTable, WrapValidator(_process), WithJsonSchema({"type
 Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk"]
 
 
+def _plain(word: str) -> Any:
+    """The field of an option whose value an agent gives as a command line has it: all of it is in the option's row."""
+    row = OPTIONS[word]
+    low, high = row.limits[:2] if row.limits else (None, None)
+    about = row.brief if isinstance(row.brief, str) else row.help
+    return Field(row.default, ge=low, le=high, description=about.partition("  [")[0].rstrip("."))
+
+
 class Question(BaseModel):
     """A question has these fields and no others: a word that is mistyped must not be lost."""
 
@@ -66,19 +75,17 @@ class Conditions(Question):
         [], max_length=50, description="bodies in the way: FILE@X,Y,Z[,RX,RY,RZ][:UNIT], box:X,Y,Z@..., cylinder:R,H@..., table"
     )
     ignore: list[Word] = Field([], max_length=50, description="faces that are neither machined nor obstacles")
-    unit: Literal["um", "mm", "cm", "m", "km", "mil", "in", "ft"] | None = Field(
-        None, description="if the file states a wrong one"
-    )
-    flip: bool = Field(False, description="machine the other side of open shells")
-    tolerance_mm: float = Field(0.01, gt=0.0, le=10.0, description="gouge tolerance")
-    allowance_mm: float = Field(0.0, ge=-100.0, le=100.0, description="stock left on the surface")
-    holder_clearance_mm: float = Field(0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder")
+    unit: Literal["um", "mm", "cm", "m", "km", "mil", "in", "ft"] | None = _plain("unit")
+    flip: bool = _plain("flip")
+    tolerance_mm: float = _plain("tolerance")
+    allowance_mm: float = _plain("allowance")
+    holder_clearance_mm: float = _plain("holder_clearance")
 
 
 class Sampling(Question):
     """How densely a surface is looked at: by default from its curvature and the smallest cutter."""
 
-    grid: int | None = Field(None, ge=2, le=2000, description="so many samples a side and face")
+    grid: int | None = _plain("grid")
     spacing_mm: float | None = Field(
         None, gt=0.0, description="largest distance of neighbouring samples: with one value in all calls shares can be compared"
     )
@@ -116,7 +123,7 @@ class PlanQuestion(PartQuestion):
     operations: Literal["fewest", "fastest", "both"] | None = Field(
         None, description="plan fixed orientations and simultaneous steps: `steps` has them; fastest and both need a feed"
     )
-    feed_mm_min: float | None = Field(None, ge=0.1, le=1e6, description="of all cutters; a library may state feeds")
+    feed_mm_min: float | None = _plain("feed")
     process: Process | None = Field(
         None,
         description="your own steps, judged as they stand, in their order: edit `steps` of an answer; the rest is planned behind "

@@ -17,8 +17,6 @@ from plan_cutters_agents import plan_answers as answers
 from plan_cutters_agents import requests
 from plan_cutters_agents.access import CallError, spelled
 from plan_cutters_agents.child import Call
-from plan_cutters_agents.outputs import built_in_tools, machines_in, nearest_sample, postures_of, tools_in
-from plan_cutters_agents.plan_answers import chosen, compared, cutter_of, difference, explained, pictured, planned
 from plan_cutters_agents.short import LISTS, short
 
 #: How long lists may be, until the answer is short enough; of rotations in an explanation.
@@ -84,13 +82,13 @@ async def plan_part(question: requests.PlanQuestion, call: Call) -> Reply:
         with _whole(out):
             plan, code = await call.plan([*words, f"--out={out}", f"--formats={formats}"])
         files = {"json": str(out / "plan.json"), **{name: str(out / each.name) for name, each in plan.files.items()}}
-    return Reply(planned(plan, code, files), files=files)
+    return Reply(answers.planned(plan, code, files), files=files)
 
 
 async def compare_cutters(question: requests.CompareQuestion, call: Call) -> Reply:
     """Judge some cutters and tell them apart."""
     plan, code = await call.plan(await _part(question, call))
-    return Reply(compared(plan, code))
+    return Reply(answers.compared(plan, code))
 
 
 async def render(question: requests.RenderQuestion, call: Call) -> Reply:
@@ -102,7 +100,7 @@ async def render(question: requests.RenderQuestion, call: Call) -> Reply:
         raise CallError(plan.not_written.get("png", "the picture was not written"), file=plan.part.file)
     if picture.stat().st_size > _PICTURE:
         raise CallError(f"the picture has more than {_PICTURE >> 20} MB", file=plan.part.file)
-    return Reply(pictured(plan, code), picture.read_bytes())
+    return Reply(answers.pictured(plan, code), picture.read_bytes())
 
 
 async def posture_map(question: requests.MapQuestion, call: Call) -> Reply:
@@ -112,7 +110,7 @@ async def posture_map(question: requests.MapQuestion, call: Call) -> Reply:
     spec = await _spec(question.cutter, question, call) if question.library is None else None
     output, code = await call.map(question, spec)
     picture = (call.cwd / "map.png").read_bytes() if question.picture else None
-    cutter, postures = json.loads(output)["cutter"], postures_of(output)
+    cutter, postures = json.loads(output)["cutter"], answers.postures_of(output)
     free, undecided = percent(postures["free_share"]), percent(postures["undecided_share"])
     where = f"({', '.join(f'{x:.6g}' for x in postures['point'])}) on {postures['face']}"
     text = f"{cutter} at {where}: {free} of the postures searched are free, {undecided} undecided."
@@ -125,27 +123,29 @@ async def explain_sample(question: requests.ExplainQuestion, call: Call) -> Repl
     postures = sample = None
     if question.plan is not None:
         plan = await call.plan_in(question.plan)
-        cutter, face = cutter_of(plan, question.cutter), question.face
+        cutter, face = answers.cutter_of(plan, question.cutter), question.face
         if question.point is not None:
-            sample = await anyio.to_thread.run_sync(nearest_sample, question.plan, plan, cutter.id, question, call.permissions)
+            sample = await anyio.to_thread.run_sync(
+                answers.nearest_sample, question.plan, plan, cutter.id, question, call.permissions
+            )
             face = sample["face"]
     else:
         plan, name, face, postures = await _judged(question, call)
-        cutter = cutter_of(plan, name)
+        cutter = answers.cutter_of(plan, name)
     if face is None:
         raise CallError("which place? give a face or a point")
-    at = None if postures is None else postures_of(postures)
-    return Reply(explained(plan, cutter, face, point=question.point, postures=at, sample=sample))
+    at = None if postures is None else answers.postures_of(postures)
+    return Reply(answers.explained(plan, cutter, face, point=question.point, postures=at, sample=sample))
 
 
 async def list_tools_and_machines(question: requests.ShopQuestion, call: Call) -> Reply:
     """List the tools of a library, or the built-in ones, and the built-in machines."""
     unused: list[str] = []
     if question.library is None:
-        tools = await anyio.to_thread.run_sync(built_in_tools)
+        tools = await anyio.to_thread.run_sync(answers.built_in_tools)
     else:
-        tools, unused = tools_in(await call.listed("tools", call.permissions.file(question.library)))
-    machines = machines_in(await call.listed("machines")) if question.machines else []
+        tools, unused = answers.tools_in(await call.listed("tools", call.permissions.file(question.library)))
+    machines = answers.machines_in(await call.listed("machines")) if question.machines else []
     library = "" if question.library is None else Path(question.library).name
     what = library or "the built-in set, for a first look: nobody's tools"
     text = f"{len(tools)} tools of {what}; {len(machines)} built-in machines; `unlimited` and `tilt:DEG` are others."
@@ -155,7 +155,7 @@ async def list_tools_and_machines(question: requests.ShopQuestion, call: Call) -
 async def compare_plans(question: requests.DifferenceQuestion, call: Call) -> Reply:
     """Compare two plans that are there."""
     old, new = [await call.plan_in(file) for file in (question.old, question.new)]
-    return Reply(await anyio.to_thread.run_sync(difference, old, new))
+    return Reply(await anyio.to_thread.run_sync(answers.difference, old, new))
 
 
 async def _judged(question: requests.ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
@@ -200,11 +200,11 @@ async def _spec(name: str, question: requests.Conditions, call: Call) -> str:
 
             known = [(each.id, each.name) for each in builtin()]
             try:
-                return chosen(name, known)
+                return answers.chosen(name, known)
             except CallError as other:
                 raise CallError(f"{error.cause}; or the built-in set is meant: {other.cause}") from None
         return name
-    mine = chosen(name, await call.tools_of(question.library))
+    mine = answers.chosen(name, await call.tools_of(question.library))
     try:
         if Cutter.parse(mine).id == mine:
             return mine

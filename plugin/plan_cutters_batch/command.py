@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import CODES, FEASIBLE, run
+from plan_cutters.command.codes import CODES, FEASIBLE
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanningRequest, Reported, takes
 from plan_cutters.command.validation import File, Words
@@ -146,11 +146,6 @@ def command(request: BatchRequest) -> int:
         terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out))
         terminal.all_shown()
     return code
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, args)
 
 
 def _seen_by_workers(request: BatchRequest) -> None:

@@ -1,16 +1,249 @@
 """A line of the table of all parts: what a plan says of its part in a line, and what that means for many."""
 
+import math
 from collections import Counter
-from typing import Literal, get_args
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple, get_args
 
 from pydantic import BaseModel, ConfigDict
 
 from plan_cutters.cases import files as case
 from plan_cutters.cases.files import Case
-from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters_base.workers.child import TIMED_OUT
-from plan_cutters_batch.tools import PartTools, part_tools
+
+#: Needs of a part that its row names.
+_NEEDS = 3
+#: Seconds that each of the two searches may take; then the best set so far is reported, with the bound that is proved by then.
+_SECONDS = 10.0
+
+
+class FaceTools(BaseModel):
+    """The tools that reach a face whole, and those that reach some of it."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    whole: tuple[str, ...]
+    partly: tuple[str, ...] = ()
+
+
+class PartTools(BaseModel):
+    """The part of a plan from which the tools of many parts are chosen: sets that finish the part beyond doubt."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    #: How people call each tool that was judged, by its id: the same dimensions, the same id.
+    names: dict[str, str]
+    #: Whether the tools finish the part beyond doubt (exit code 0). All but `used`, `share` and `needs` is empty where not.
+    finished: bool = False
+    #: Ids of the tools each of which reaches every judged sample.
+    alone: tuple[str, ...] = ()
+    #: Sets that the plan states to finish the part: its process, its least set.
+    together: tuple[tuple[str, ...], ...] = ()
+    #: What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
+    #: setups, for the plan counts the samples of a face in the first one alone.
+    faces: tuple[FaceTools, ...] = ()
+    #: Tools of the steps of the plan, whatever it finishes.
+    used: tuple[str, ...] = ()
+    #: Of what is requested, that all tools finish together, 0 to 1.
+    share: float | None = None
+    #: What would finish more, the best first.
+    needs: tuple[str, ...] = ()
+
+    def finished_by(self, tools: Iterable[str]) -> bool:
+        """Whether the plan states that some tools finish the part together."""
+        there = set(tools)
+        if not self.finished:
+            return False
+        if there & set(self.alone) or any(there.issuperset(each) for each in self.together):
+            return True
+        return bool(self.faces) and all(there & set(face.whole) for face in self.faces)
+
+
+def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
+    """Read from a plan with an exit code which tools finish its part; `names`: how its tools are called in a line, by id."""
+    process = plan.process
+    used = {step.cutter: None for step in process.steps} if process else {}
+    if not used and (taken := plan.selected or plan.selected_over_setups):
+        used = {taken: None}
+    needs: list[str] = []
+    if process is not None and process.left:
+        # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
+        tries = [each.words for each in process.next if "--answers" not in each.argv]
+        needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
+    share = process.finished_share if process else None
+    made = PartTools(names=names, used=tuple(used), share=share, needs=tuple(needs))
+    if code != 0:
+        return made
+    # What may lie between its samples is a doubt: such a tool finishes nothing beyond doubt.
+    sure = [c for c in plan.cutters if c.seen or plan.effective.sampled_by != "default"]
+    ids = {c.id for c in sure}
+    sets = [tuple(used)] if used else []
+    if plan.least_set is not None and not plan.least_set.left and not plan.least_set.doubtful and plan.least_set.runs:
+        sets.append(tuple(dict.fromkeys(run.cutter for run in plan.least_set.runs)))
+    several = bool(plan.effective.other_setups) or any(len(c.setups) > 1 for c in plan.cutters)
+    return made.model_copy(
+        update={
+            "finished": True,
+            "alone": tuple(c.id for c in sure if c.feasible or (several and c.lost_in_all == 0)),
+            "together": tuple(dict.fromkeys(tuple(sorted(each)) for each in sets if ids.issuperset(each))),
+            "faces": () if several else _faces(plan.faces, sure),
+        }
+    )
+
+
+def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
+    """The ways in which the tools reach the faces that are to be machined."""
+    ways: dict[FaceTools, None] = {}
+    for face in faces:
+        counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
+        # Without a sample of the finished part's surface there is nothing to reach.
+        if not face.target or not any(each.reached + each.not_reached + each.unjudged for each in counts.values()):
+            continue
+        whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
+        partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
+        ways[FaceTools(whole=whole, partly=partly)] = None
+    return essential(tuple(ways))
+
+
+def essential(ways: Sequence[FaceTools]) -> tuple[FaceTools, ...]:
+    """Keep the ways that say more than others do, so that a part of many faces has a short row.
+
+    A way follows from another one if whatever tools do that face whole do this one, and those that do some of it as well.
+
+    >>> essential([FaceTools(whole=("D6",)), FaceTools(whole=("D6", "D8"))])
+    (FaceTools(whole=('D6',), partly=()),)
+    """
+    stays: list[FaceTools] = []
+    for way in sorted(dict.fromkeys(ways), key=lambda each: (len(each.whole), len(each.partly))):
+        whole, some = set(way.whole), {*way.whole, *way.partly}
+        if not any(whole.issuperset(one.whole) and some.issuperset(one.partly) for one in stays):
+            stays.append(way)
+    return tuple(stays)
+
+
+class Fewest(NamedTuple):
+    """The fewest tools that the plans state to finish all parts together."""
+
+    #: Ids, the one that finishes most parts alone first.
+    tools: tuple[str, ...]
+    #: No fewer finish all of the parts, however they would share faces: a proved lower bound.
+    at_least: int
+
+    @property
+    def proven(self) -> bool:
+        """Whether it is proved that no fewer do."""
+        return len(self.tools) <= self.at_least
+
+
+class _Row(NamedTuple):
+    """A condition: the columns, each times its factor, sum up to `least` or more."""
+
+    factors: dict[int, float]
+    least: float
+
+
+def fewest(parts: Sequence[PartTools]) -> Fewest:
+    """Find the fewest tools for all parts that are finished.
+
+    A set counts as finishing a part if the plan says so: a tool that does so alone, the tools of its process or of its least set,
+    or tools of which one reaches each face whole. Tools that share a face in some other way might do as well; the plans do not
+    state it, so the lower bound allows for it: whatever finishes a part has on each face a tool that reaches it whole, or two
+    that reach some of it. Parts that are not finished are left out.
+
+    Examples
+    --------
+    >>> a = PartTools(names={}, finished=True, alone=("D6", "D8"))
+    >>> b = PartTools(names={}, finished=True, alone=("D8",))
+    >>> fewest([a, b]), fewest([a, b]).proven
+    (Fewest(tools=('D8',), at_least=1), True)
+    >>> fewest([])
+    Fewest(tools=(), at_least=0)
+    """
+    stated = (part for part in parts if part.finished and (part.alone or part.together or part.faces))
+    different = list({(*map(frozenset, (part.names, part.alone, part.faces)), frozenset(map(frozenset, part.together))): part
+                      for part in stated}.values())  # fmt: skip
+    if not different:
+        return Fewest((), 0)
+    alone = Counter(name for part in parts for name in part.alone)
+    used = Counter(name for part in parts for name in part.used)
+    names = alone.keys() | {name for part in different for name in _names(part)}
+    tools = sorted(names, key=lambda name: (-alone[name], -used[name], name))
+    place = {name: k for k, name in enumerate(tools)}
+    rows, columns = _stated(different, place)
+    # Of sets of as many, the one of the tools that finish most parts alone.
+    cost = [1.0 + k / (1.0 + len(tools) ** 2) for k in range(len(tools))]
+    values, _ = _least(cost + [0.0] * (columns - len(tools)), rows)
+    chosen = None if values is None else {name for name, k in place.items() if values[k] > 0.5}
+    if chosen is None or not all(part.finished_by(chosen) for part in different):
+        chosen = _greedy(different)
+    bounding = [
+        _Row({place[name]: 2.0 if name in whole else 1.0 for name in sorted(whole | partly)}, 2.0)
+        for part in different
+        for whole, partly in ((set(part.alone), _names(part)), *((set(face.whole), set(face.partly)) for face in part.faces))
+    ]
+    _, bound = _least([1.0] * len(tools), bounding)
+    return Fewest(tuple(sorted(chosen, key=place.__getitem__)), max(1, math.ceil(bound - 1e-6)))
+
+
+def _names(part: PartTools) -> set[str]:
+    # Those that the plan states of no set as well: they might be in one.
+    return set().union(part.names, part.alone, *part.together, *((*face.whole, *face.partly) for face in part.faces))
+
+
+def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Row], int]:
+    """The conditions under which tools finish all parts as their plans state it, and the number of columns.
+
+    After the tools come columns for the sets of a part that are used whole.
+    """
+    rows, columns = dict[tuple[frozenset[tuple[int, float]], float], _Row](), len(place)
+
+    def add(row: _Row) -> None:
+        rows[frozenset(row.factors.items()), row.least] = row
+
+    for part in parts:
+        mine: set[int] = set()
+        for names in part.together:
+            if not set(names) & set(part.alone):
+                for name in names:
+                    add(_Row({place[name]: 1.0, columns: -1.0}, 0.0))
+                mine.add(columns)
+                columns += 1
+        mine |= {place[name] for name in part.alone}
+        for whole in {face.whole for face in part.faces} or {()}:
+            add(_Row(dict.fromkeys(mine | {place[name] for name in whole}, 1.0), 1.0))
+    return list(rows.values()), columns
+
+
+def _greedy(parts: Sequence[PartTools]) -> set[str]:
+    """A set that finishes all parts, not the fewest: for each part the smallest set that its plan states."""
+    chosen: set[str] = set()
+    for part in parts:
+        if not part.finished_by(chosen):
+            sets = [{name} for name in part.alone] + [set(each) for each in part.together]
+            chosen |= min(sets, key=len) if sets else {face.whole[0] for face in part.faces}
+    return chosen
+
+
+def _least(cost: Sequence[float], rows: Sequence[_Row]) -> tuple[Sequence[float] | None, float]:
+    """The values 0 or 1 of least cost under conditions, None where none were found in time; and a proved bound of that cost."""
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import coo_array
+
+    entries = [(i, k, factor) for i, row in enumerate(rows) for k, factor in row.factors.items()]
+    i, k, factors = zip(*entries, strict=True)
+    table = coo_array((factors, (i, k)), shape=(len(rows), len(cost))).tocsr()
+    solution = milp(
+        list(cost),
+        integrality=[1] * len(cost),
+        bounds=Bounds(0, 1),
+        options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
+        constraints=LinearConstraint(table, [row.least for row in rows], math.inf),
+    )
+    bound = solution.fun if solution.status == 0 else solution.mip_dual_bound
+    return solution.x, float(bound) if bound is not None and math.isfinite(bound) else 0.0
+
 
 #: Exit codes of a batch: as of a single plan (`docs/command.md`).
 USAGE, UNREADABLE = 2, 3

@@ -22,8 +22,7 @@ from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.figures import percent
 from plan_cutters.files.markup import embedded, finite, plain, policy, template
 from plan_cutters.plan_file.words.cutters import reason
-from plan_cutters_batch.row import OUTCOMES, PartRow, cause, code_of, fault, outcome
-from plan_cutters_batch.tools import fewest
+from plan_cutters_batch.row import OUTCOMES, PartRow, cause, code_of, fault, fewest, outcome
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.

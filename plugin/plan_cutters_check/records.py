@@ -14,7 +14,6 @@ from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, fram
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
-    REACHED,
     WALL,
     WORDS,
     Planned,
@@ -486,11 +485,7 @@ def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:
         **(dict(zip(("name", "holder"), question.names[name], strict=True)) if question.names else {}),
     }  # fmt: skip
     if len(question.setups) > 1:
-        # The verdicts of samples.npz are those over all setups: of the first one is known alone which samples it reaches.
-        here = int(samples[f"reached_in_{name}"][:, 0].sum())
-        most = {word: here if code in REACHED else len(samples["face"]) for word, code in WORDS.items()}
-        missed = int((reckoned.finished & np.isin(reckoned.verdict[name], NOT_REACHED)).sum())
-        return entry | {word: Loose(0, count) for word, count in most.items()} | {"lost_in_all": missed}
+        entry["lost_in_all"] = int((reckoned.finished & np.isin(reckoned.verdict[name], NOT_REACHED)).sum())
     verdict, reason, face = reckoned.verdict[name], samples[f"reason_{name}"], samples["face"]
     for field, code in (("by_reason", 0), ("undecided_by_reason", 3)):
         counts = np.bincount(reason[verdict == code], minlength=256)

@@ -1,15 +1,14 @@
 """Show which faces and cutters were lost or won from one plan to another."""
 
 import os
-import sys
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from plan_cutters.command.codes import ENDED, USAGE, run
+from plan_cutters.command.codes import ENDED, USAGE
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.terminal import error, hand_out, paper
@@ -241,8 +240,3 @@ def _show(difference: "PlanDifference", console: "Console") -> None:
             for row in rows:
                 table.add_row(Text(row[0], _COLOURS.get(row[0], "")), *(Text(clean(cell)) for cell in row[1:]))
             console.print(table)
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, sys.argv[1:] if args is None else args)

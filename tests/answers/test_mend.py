@@ -30,7 +30,7 @@ def asked(part, cutter, **options):
     (cutter,) = ready.cutters
     reach = judge(ready, cutter)
     found = mend(ready, cutter, reach, {cutter: reach})
-    return found, {each.moves[0].means: each for each in found.steps[::-1] if len(each.moves) == 1}, ready
+    return found, {each.entry.changes[0].thing: each for each in found.steps[::-1] if len(each.entry.changes) == 1}, ready
 
 
 def inclined(degrees):
@@ -52,7 +52,7 @@ def test_the_holder_is_lifted_over_the_wall_beside_the_contact(holder, length):
     cutter = Cutter.flat(radius=3, length=25, flutes=10.0, shank_radius=3.0, holder=holder)
     step = asked(part, cutter, faces="F1", **UPRIGHT)[1]["stick_out"]
     (made,) = step.cutters
-    assert (step.moves[0].now, step.moves[0].asked, step.after) == (25.0, length, 0.0)
+    assert (step.entry.changes[0].now, step.entry.changes[0].asked, step.entry.lost_after) == (25.0, length, 0.0)
     assert (made.flutes, made.length) == (10.0, length)
 
 
@@ -68,22 +68,23 @@ def test_the_largest_ball_between_two_walls_does_the_rest():
     step = asked(part, Cutter.ball(radius=6, length=60), faces="F1", **UPRIGHT)[1]["radius"]
     thin = step.cutters[-1]
     assert thin.radius == thin.corner_radius == max(0.5 * each.diameter for each in METRIC if 0.5 * each.diameter <= 4.5)
-    assert (thin.length, step.after) == (5.0 * 2.0 * thin.radius, 0.0)
+    assert (thin.length, step.entry.lost_after) == (5.0 * 2.0 * thin.radius, 0.0)
 
 
 def test_the_least_limit_is_the_next_step_above_the_angle_of_the_face():
     steps = asked(inclined(40.05), "R3L40", machine="tilt:30", **UPRIGHT)[1]
-    assert (steps["tilt_limit"].moves[0].now, steps["tilt_limit"].moves[0].asked, steps["tilt_limit"].after) == (30.0, 45.0, 0.0)
+    (limit,), left = steps["tilt_limit"].entry.changes, steps["tilt_limit"].entry.lost_after
+    assert (limit.now, limit.asked, left) == (30.0, 45.0, 0.0)
     # Another axis does it as well: of the directions tried each that serves is within 30 deg of the normal.
     normal = (math.sin(math.radians(40.05)), 0.0, math.cos(math.radians(40.05)))
-    assert np.dot(steps["second_setup"].moves[0].asked, normal) > math.cos(math.radians(30.0))
+    assert np.dot(steps["second_setup"].entry.changes[0].asked, normal) > math.cos(math.radians(30.0))
 
 
 def test_tilts_of_the_search_are_widened_as_far_as_the_cutter_touches():
     step = asked(inclined(40.05), "R3L40", machine="tilt:30", **UPRIGHT)[1]["tilt_range"]
-    assert step.moves[0].now == (0.0, 0.0)
-    assert (step.moves[0].asked[0], step.after) == (0.0, 0.0)
-    assert step.moves[0].asked[1] >= 10.1
+    assert step.entry.changes[0].now == (0.0, 0.0)
+    assert (step.entry.changes[0].asked[0], step.entry.lost_after) == (0.0, 0.0)
+    assert step.entry.changes[0].asked[1] >= 10.1
 
 
 def beside_a_post(away):
@@ -129,7 +130,7 @@ def test_open_faces_keep_their_side_when_the_setup_turns():
     rows = np.arange(len(ready.samples))
     turned = [axis for axis in _directions(ready, rows, rows[:0]) if not ready.scene.same_sides(axis)]
     assert turned
-    assert "setup" not in steps or steps["setup"].moves[0].asked not in turned
+    assert "setup" not in steps or steps["setup"].entry.changes[0].asked not in turned
 
 
 def test_a_thinner_cutter_of_the_table_is_judged_as_a_plan_judges_it():
@@ -138,10 +139,10 @@ def test_a_thinner_cutter_of_the_table_is_judged_as_a_plan_judges_it():
         part, Cutter.flat(radius=8, length=60), grid=13, tolerance=0.05, rotation_step=0.35, machine="tilt:35"
     )
     (cutter,) = ready.cutters
-    for each in (step for step in steps.values() if step.moves[0].means == "radius"):
+    for each in (step for step in steps.values() if step.entry.changes[0].thing == "radius"):
         assert each.cutters[1] in smaller(cutter, USUAL)
         both = np.intersect1d(*(Case(ready, one).judged() for one in each.cutters))
-        assert each.left == len(both)
+        assert each.entry.left == len(both)
 
 
 # --- why nothing is looked for --------------------------------------------------------------------------------------------
@@ -151,26 +152,26 @@ def test_a_thinner_cutter_of_the_table_is_judged_as_a_plan_judges_it():
 def test_nothing_is_asked_about_what_lies_inside_another_body():
     """It is no surface of the finished part: the rest is mended as if it were not there."""
     found, steps, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9)
-    assert (found.lost, found.buried) == (90, 90)
+    assert (found.entry.lost, found.entry.buried) == (90, 90)
     assert not steps
-    assert found.why == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
+    assert found.entry.why == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
     found, steps, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9, machine="tilt:60", setup=(1, 0, 0))
-    assert 0 < found.buried < found.lost
-    assert steps["tilt_limit"].after == 0.0
+    assert 0 < found.entry.buried < found.entry.lost
+    assert steps["tilt_limit"].entry.lost_after == 0.0
 
 
 def test_missing_obstacles_leave_it_open():
     found, steps, _ = asked(lidded(), Cutter.flat(radius=2, length=30), faces="1,6", grid=4, machine="tilt:90")
-    assert found.unsure
-    assert found.lost
+    assert found.entry.unsure
+    assert found.entry.lost
     found, steps, _ = asked(lidded(gap=500.0), "R2L30", faces="6", grid=4)
-    assert (found.lost, steps) == (0, {})
-    assert "missing" in found.why
+    assert (found.entry.lost, steps) == (0, {})
+    assert "missing" in found.entry.why
 
 
 def test_a_cutter_that_finishes_has_nothing_to_mend():
     found, steps, _ = asked(inclined(10.0), "R3L40")
-    assert (found.lost, found.buried, steps, found.why) == (0, 0, {}, "")
+    assert (found.entry.lost, found.entry.buried, steps, found.entry.why) == (0, 0, {}, "")
 
 
 def test_where_no_step_helps_the_area_is_left():
@@ -179,7 +180,7 @@ def test_where_no_step_helps_the_area_is_left():
     samples = plan(part, cutters="R3L40", faces="all", grid=2, area_budget=0).samples
     (bottom,) = {int(n) for n in samples.face[(samples.normal[:, 2] > 0.5) & (samples.point[:, 2] < 7)]}
     found, steps, _ = asked(part, Cutter.flat(radius=3, length=40), faces=[bottom])
-    assert found.lost == 15 or "too little for advice" in found.why
+    assert found.entry.lost == 15 or "too little for advice" in found.entry.why
     assert set(steps) <= {"area"}
 
 
@@ -190,16 +191,16 @@ def test_a_budget_that_is_spent_leaves_what_promises_most():
     (cutter,) = ready.cutters
     reach = judge(ready, cutter)
     every, none, some = (mend(ready, cutter, reach, {cutter: reach}, budget=each) for each in (None, Budget(0.0), Budget(1e12)))
-    changes = [step for step in every.steps if len(step.moves) == 1 and step.moves[0].means != "area"]
+    changes = [step for step in every.steps if len(step.entry.changes) == 1 and step.entry.changes[0].thing != "area"]
     assert len(changes) > 1
-    assert (every.uncompared, some.uncompared) == (0, 0)
-    assert [step.moves for step in some.steps] == [step.moves for step in every.steps]
+    assert (every.entry.uncompared, some.entry.uncompared) == (0, 0)
+    assert [step.entry.changes for step in some.steps] == [step.entry.changes for step in every.steps]
     (kept, area) = none.steps
-    assert area.moves[0].means == "area"
+    assert area.entry.changes[0].thing == "area"
     # Every sample was judged of what is told, and what was not compared is counted.
-    assert (kept.moves, kept.after) in [(step.moves, step.after) for step in changes]
-    assert none.uncompared >= len(changes) - 1
-    assert none.areas == every.areas
+    assert (kept.entry.changes, kept.entry.lost_after) in [(step.entry.changes, step.entry.lost_after) for step in changes]
+    assert none.entry.uncompared >= len(changes) - 1
+    assert none.entry.lost_areas == every.entry.lost_areas
 
 
 def test_it_tells_how_far_it_is_and_can_be_interrupted():

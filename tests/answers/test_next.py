@@ -16,7 +16,6 @@ from plan_cutters.answers.areas import Finished, patches
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.steps import NEEDS
 from plan_cutters.document.clock import Clock
-from plan_cutters.domain.answers import Patch
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.plan_file.words.answers import is_excluded, patch, step_text, together
 from tests.support import shapes
@@ -344,16 +343,16 @@ def test_samples_not_reached_are_areas_with_place_and_extent():
     found = patches(ready.samples, Finished.of(ready), np.flatnonzero(large | small))
     assert len(found) == 2
     for each, (x, y, r) in zip(found, ((8, 4, 5), (-10, -8, 2)), strict=True):
-        assert each.area == pytest.approx(math.pi * r**2, rel=0.05)
+        assert each.area_mm2 == pytest.approx(math.pi * r**2, rel=0.05)
         assert each.share == pytest.approx(math.pi * r**2 / 1600.0, rel=0.05)
-        assert each.place == pytest.approx((x, y, 0), abs=0.3)
-        assert each.across == pytest.approx(2 * r, abs=0.3)
-        assert each.faces == ("F1",)
+        assert each.point == pytest.approx((x, y, 0), abs=0.3)
+        assert each.across_mm == pytest.approx(2 * r, abs=0.3)
+        assert each.faces == ["F1"]
     assert patches(ready.samples, Finished.of(ready), np.zeros(0, np.int64)) == []
 
 
 def test_an_area_in_words():
-    assert patch(Patch(1234.5, 0.2, 9, ("F1", "F2"), (-7e-15, 3.0, -8.123456), 41.26)) == (
+    assert patch(1234.5, ["F1", "F2"], (-7e-15, 3.0, -8.123456), 41.26) == (
         "1,230 mm² of F1, F2, about (0, 3, -8.12), 41 mm across"
     )
 

@@ -1,14 +1,22 @@
 """How a part is stood and held by a proposal: what nobody would do is not proposed, and what has to be is named."""
 
+from functools import partial
+
 import cadquery as cq
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from plan_cutters import Options, plan
+from plan_cutters import Options, Scene, plan
+from plan_cutters.answers import setup_ranking
 from plan_cutters.answers.setup_ranking import Held, best_hold, ranked
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.stock import Stock
 from plan_cutters.pipeline import prepare
+from plan_cutters.setups.clamping import NothingToGripError, refuse_ungripped
+from plan_cutters_base import stage_cache
+from tests.support.cad_parts import box, compound, rod, write_step
 
 HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
 WORDS = ("table", "vise", "chuck")
@@ -111,3 +119,87 @@ def test_what_gripped_stock_first_grips_the_part_where_it_comes_later():
     assert len(ranking.held[first].grips) == 2
     ranking.settle((first, last))
     assert (ranking.held[first].stock is not None, ranking.held[last].stock) == (True, None)
+
+
+def test_a_round_part_is_made_of_a_bar_in_a_chuck_and_another_of_a_box_in_a_vise():
+    for shape, kind, word in ((rod(20.0, 30.0), "chuck", "cylinder:1,5"), (box(40.0, 30.0, 30.0), "vise", "box:1,1,5")):
+        ranking, chosen = proposed(shape, stock=Stock.of("usual"))
+        held = ranking.held[chosen[0]]
+        assert (held.kind, held.stock.stock.text) == (kind, word)
+
+
+def test_stock_that_a_person_names_is_not_exchanged():
+    ranking, chosen = proposed(rod(20.0, 30.0), stock=Stock.of("box:2,2,8"))
+    assert ranking.held[chosen[0]].stock.stock.text == "box:2,2,8"
+
+
+def test_no_bar_is_stood_on_its_end():
+    """160 mm on 30 mm: neither as stock, nor in a chuck, nor between the jaws of a vise on two flats."""
+    flats = cq.Workplane("YZ").circle(15).extrude(160).cut(cq.Workplane().box(400, 40, 10).translate((0, 0, 17)))
+    flats = flats.cut(cq.Workplane().box(400, 40, 10).translate((0, 0, -17))).val().wrapped
+    ranking, chosen = proposed(flats, stock=Stock.of("usual"))
+    assert abs(ranking.candidates.axis[chosen[0]][0]) < 0.5
+    for word, what in (("chuck", rod(15.0, 160.0)), ("vise", box(30.0, 30.0, 160.0))):
+        soft = prepare(what, Options(**HOW)).scene.hold(Fixture(word), (0.0, 0.0, 1.0)).soft
+        assert soft == "it stands 160 mm high on 30 mm"
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(3.0, 200.0), st.floats(3.0, 200.0), st.floats(3.0, 40.0), st.sampled_from(["vise", "chuck"]), st.integers(0, 2),
+    st.floats(-0.3, 0.3),
+)  # fmt: skip
+def test_what_is_refused_by_shapes_alone_is_refused_by_the_search_too(x, y, z, word, along, turn):
+    """Blocks that may be turned about an axis: where no faces are made for jaws, the search among triangles finds none either."""
+    part = cq.Workplane().box(x, y, z).rotate((0, 0, 0), (1, 0, 0), float(np.degrees(turn))).val().wrapped
+    scene, axis = Scene.of(part), tuple(np.eye(3)[along].tolist())
+    scene.surround()
+    refuse = partial(refuse_ungripped, Fixture(word), scene.part.faces, scene.orientation.sign, axis, 500.0)
+    if refuses(refuse):
+        assert refuses(partial(scene.hold, Fixture(word), axis))
+
+
+def refuses(job):
+    try:
+        job()
+    except NothingToGripError:
+        return True
+    return False
+
+
+def test_a_vise_without_opposite_planes_is_refused_before_anything_is_meshed(tmp_path, monkeypatch):
+    monkeypatch.setattr(Scene, "surround", lambda *args, **more: pytest.fail("it was meshed"))
+    for others in ((), ((0, 0, -1),)):
+        with pytest.raises(NothingToGripError, match="no two opposite plane faces stand along it"):
+            plan(rod(20.0, 30.0), other_setups=others, fixtures="vise", **HOW)
+    with pytest.raises(NothingToGripError, match="no outside cylinder along it"):
+        plan(box(20.0, 30.0, 10.0), fixtures="chuck", **HOW)
+    with pytest.raises(NothingToGripError, match="farther apart than the 355 mm to which the vise opens"):
+        plan(box(500.0, 400.0, 10.0), fixtures="vise", **HOW)
+
+
+def test_bodies_that_lie_against_each_other_are_one_clamping():
+    apart, near = (compound(box(20, 20, 10), box(20, 20, 10, at=(at, 0, 0))) for at in (30.0, 20.0))
+    codes = [plan(part, **HOW).plan.note_codes for part in (apart, near)]
+    assert ["bodies_apart" in each for each in codes] == [True, False]
+
+
+def test_setups_are_not_compared_again_for_the_next_question(tmp_path, monkeypatch):
+    """The same part, cutters and machine, and another feed: the proposal is read, and is the same."""
+    file = write_step(box(40.0, 30.0, 30.0), tmp_path / "block.step")
+    monkeypatch.setenv("PLAN_CUTTERS_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(stage_cache, "_WORTH", 0.0)
+    shares = []
+    how = {**HOW, "setup": "auto", "grid": 9}
+    first = plan(file, progress=lambda stage, *share: shares.append((stage, share)), **how)
+    stage_cache.settle()
+    # "Comparing setups" tells its share.
+    assert len({share for stage, share in shares if stage == "proposal"}) > 3
+    monkeypatch.setattr(setup_ranking, "ranked", lambda *_: pytest.fail("setups were compared again"))
+    again = plan(file, feed=900.0, operations="fastest", **how)
+    assert again.plan.setup_proposal == first.plan.setup_proposal
+    monkeypatch.undo()
+    monkeypatch.setenv("PLAN_CUTTERS_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(setup_ranking, "ranked", lambda *_: (_ for _ in ()).throw(RuntimeError("compared")))
+    with pytest.raises(RuntimeError, match="compared"):
+        plan(file, **{**how, "machine": "trunnion-bc"})

@@ -10,10 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import plan
-from plan_cutters_batch import tools as of_shop
-from plan_cutters_batch.row import PartRow, row_of
+from plan_cutters_batch import row as of_shop
+from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, fewest, row_of
 from plan_cutters_batch.summary import write_index
-from plan_cutters_batch.tools import FaceTools, PartTools, essential, fewest
 
 TOOLS = "ABCDE"
 

@@ -7,10 +7,9 @@ import pytest
 from plan_cutters.cases.files import junit
 from plan_cutters.report.to_json import dumps
 from plan_cutters_batch.row import PartRow, part_case
-from plan_cutters_ci.changed import RULES, Row, row_cases
+from plan_cutters_ci.changed import RULES, Changed, Row, row_cases
 from plan_cutters_ci.diff import compare_folders
 from plan_cutters_ci.plans import compare
-from plan_cutters_ci.repository import Changed
 from plan_cutters_ci.wording import comparison_cases, difference_cases
 from tests.support.forked import run
 from tests.support.junit import cases, outcomes

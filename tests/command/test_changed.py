@@ -13,8 +13,7 @@ import yaml
 
 from plan_cutters.cases.files import Case
 from plan_cutters.errors import PlanError
-from plan_cutters_ci.changed import RULES, PartRequest, Row, annotations, requested
-from plan_cutters_ci.repository import Changed, changed, content
+from plan_cutters_ci.changed import RULES, Changed, PartRequest, Row, annotations, changed, content, requested
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT, real_file

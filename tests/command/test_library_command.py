@@ -12,7 +12,7 @@ from tests.support.places import ROOT
 from tests.support.schemas import valid
 from tests.support.tool_files import HOLDER, ID, fusion, write_bit, write_json
 
-CALL = "from plan_cutters.command.tools import main; main()"
+CALL = "from plan_cutters.command.entry import tools; tools()"
 
 
 def run(*words):

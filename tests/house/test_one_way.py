@@ -12,7 +12,7 @@ CALLS = {"subprocess.Popen", "subprocess.run", "subprocess.call", "subprocess.ch
          "os.posix_spawn", "anyio.open_process", "os.killpg", "os.replace", "os.rename", "tempfile.mkstemp"}  # fmt: skip
 KNOWN = {
     "plugin/plan_cutters_base/workers/child.py": {"subprocess.Popen": 1, "os.killpg": 1},
-    "plugin/plan_cutters_ci/repository.py": {"subprocess.run": 1},  # git
+    "plugin/plan_cutters_ci/changed.py": {"subprocess.run": 1},  # git
     "plugin/plan_cutters_base/forks.py": {"os.fork": 2},
     "plugin/plan_cutters_base/workers/prompt.py": {"os.fork": 1},  # the copy behind a prompt
     "plugin/plan_cutters_base/whole.py": {"os.replace": 1},

@@ -20,9 +20,10 @@ from plan_cutters import Options, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.request import PlanRequest, planning_options
-from plan_cutters.option_table import OPTIONS
+from plan_cutters.option_table import ATTRIBUTES, OPTIONS
 from plan_cutters.options import ANGLES, PlanOptions, PointOptions, SceneOptions
 from plan_cutters.plan_file.effective import Effective
+from tests.support.option_stub import STUB, stub
 from tests.support.places import ROOT
 
 WORDS = {each.name for each in fields(Options)}
@@ -31,14 +32,11 @@ DEGREES = {f"{word}_deg" for word in ANGLES}
 
 
 def test_type_checkers_see_the_options():
-    assert set(get_type_hints(PlanOptions)) == WORDS | DEGREES
-    assert set(ANGLES) <= WORDS
+    assert set(PlanOptions.__annotations__) == WORDS | DEGREES
+    assert set(ANGLES) == {word for word, each in ATTRIBUTES.items() if each.is_angle}
+    assert STUB.read_text() == stub(), "run: python -m tests.support.option_stub"
     for function, words in ((plan, PlanOptions), (Scene.of, SceneOptions), (posture_map, PointOptions), (plan_many, PlanOptions)):
         assert Unpack[words] in get_type_hints(function).values()
-    # Whatever mypy is to check of each option is in this file.
-    said = ast.parse((ROOT / "tests/support/typed_calls.py").read_text())
-    kept = next(each for each in said.body if isinstance(each, ast.FunctionDef) and each.name == "kept")
-    assert {each.arg for each in ast.walk(kept) if isinstance(each, ast.keyword)} == WORDS
 
 
 def test_people_see_each_option_with_its_default():
@@ -48,7 +46,7 @@ def test_people_see_each_option_with_its_default():
     for name, each in inspect.signature(Options).parameters.items():
         assert shown[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert shown[name].default is each.default
-        assert shown[name].annotation == get_type_hints(PlanOptions)[name]
+        assert shown[name].annotation == PlanOptions.__annotations__[name].__forward_arg__
 
 
 @pytest.mark.parametrize("package", [plan_cutters, cad_io], ids=lambda each: each.__name__)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from plan_cutters.option_table import ATTRIBUTES
 from tests.support.places import PACKAGES, ROOT
 
 pytestmark = pytest.mark.slow("runs a type checker on the whole")
@@ -31,6 +32,14 @@ plan(bd.Box(1, 2, 3), setup=bd.Plane.XY)
 plan(bd.Box(1, 2, 3), setup=bd.Color)  # wrong
 plan(bd.Box(1, 2, 3), setup=cq.Workplane())  # wrong
 """
+#: What `Options` keeps of each option may be given again.
+AGAIN = f"""
+from plan_cutters import Options, plan
+
+
+def again(known: Options) -> None:
+    plan("part.step", {", ".join(f"{word}=known.{word}" for word in ATTRIBUTES)})
+"""
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +56,7 @@ def found(tmp_path_factory):
     (packages / "others.pth").write_text(sysconfig.get_path("purelib"))
     shutil.copy(CALLS, folder)
     (folder / "hosts.py").write_text(HOSTS)
+    (folder / "again.py").write_text(AGAIN)
     settings = {"venvPath": ".", "venv": "env", "pythonVersion": packages.parent.name.removeprefix("python"),
                 "typeCheckingMode": "strict", "enableTypeIgnoreComments": False, "include": ["*.py"],
                 "reportUnusedExpression": False}  # fmt: skip
@@ -54,8 +64,8 @@ def found(tmp_path_factory):
     done = subprocess.run([sys.executable, "-m", "pyright", "--outputjson"], cwd=folder, capture_output=True, text=True,
                           check=False, timeout=300)  # fmt: skip
     told = json.loads(done.stdout)
-    assert told["summary"]["filesAnalyzed"] == 2, done.stdout + done.stderr
-    lines: dict[str, dict[int, str]] = {CALLS.name: {}, "hosts.py": {}}
+    assert told["summary"]["filesAnalyzed"] == 3, done.stdout + done.stderr
+    lines: dict[str, dict[int, str]] = {CALLS.name: {}, "hosts.py": {}, "again.py": {}}
     for each in told["generalDiagnostics"]:
         # What the hosts leave untyped is none of our mistakes.
         if each["file"].endswith(CALLS.name) or not each.get("rule", "").startswith("reportUnknown"):
@@ -82,6 +92,10 @@ def test_pyright_finds_each_mistake_and_no_other_one(found):
     mine = found[CALLS.name]
     assert {line: mine[line] for line in mine.keys() - wrong} == {}
     assert wrong - mine.keys() == set()
+
+
+def test_what_is_kept_may_be_given_again(found):
+    assert found["again.py"] == {}
 
 
 def test_axes_and_planes_of_cad_hosts_are_directions_for_pyright(found):

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.command.machines import main
+from plan_cutters.command.entry import begin
 from plan_cutters.domain.machine import Axis, Machine, builtin_machines
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import machine_of, plain, read_machine, to_toml
@@ -468,7 +468,7 @@ def test_bad_machine_files_are_one_line(name, content, why, tmp_path, capsys):
     assert "\n" not in str(caught.value)
     assert str(caught.value).startswith(file if mark != "#" or added else "'#") or "#" in str(caught.value)
     with pytest.raises(SystemExit) as ended:
-        main([f"{path}{mark}{added}"])
+        begin("plan-cutters machines", [f"{path}{mark}{added}"])
     assert ended.value.code == 2
     told = capsys.readouterr()
     assert told.err.count("\n") == 1
@@ -557,7 +557,7 @@ def test_solutions_hold_the_axis_that_was_asked_for(name):
 
 def run(*words):
     with pytest.raises(SystemExit) as ended:
-        main([str(word) for word in words])
+        begin("plan-cutters machines", [str(word) for word in words])
     return ended.value.code
 
 

@@ -83,27 +83,6 @@ def degrees(part: Scene) -> None:
     Cutter.bull(diameter=12, corner_radius=1, length=80)
 
 
-def kept(part: Scene, known: Options) -> None:
-    """What `Options` keeps of each option may be given again."""
-    plan(
-        part, cutters=known.cutters, libraries=known.libraries, holder=known.holder, allowance=known.allowance,
-        holder_clearance=known.holder_clearance, machine=known.machine, setup=known.setup, other_setups=known.other_setups,
-        faces=known.faces, ignore=known.ignore, grid=known.grid, spacing=known.spacing, tilt=known.tilt,
-        rotation=known.rotation, rotation_step=known.rotation_step, tolerance=known.tolerance, jobs=known.jobs, flip=known.flip,
-        area_budget=known.area_budget, posture_maps=known.posture_maps, map_budget=known.map_budget, answers=known.answers,
-        length_over_radius=known.length_over_radius, unit=known.unit, fixtures=known.fixtures, placement=known.placement,
-        other_placements=known.other_placements, propose=known.propose, operations=known.operations, feed=known.feed,
-        scallop=known.scallop, stepover=known.stepover, index_step=known.index_step, axis_accuracy=known.axis_accuracy,
-        index_time=known.index_time,
-        change_time=known.change_time, setup_time=known.setup_time, removal_rate=known.removal_rate, stock=known.stock,
-        overlap=known.overlap, link_time=known.link_time,
-        border_cost=known.border_cost,
-        most_operations=known.most_operations, max_orientations=known.max_orientations, patterns=known.patterns,
-        sharp_edges=known.sharp_edges, drill_below=known.drill_below, effort=known.effort,
-        units=known.units, process=known.process,
-    )  # fmt: skip
-
-
 def wrong(part: Scene, result: Result) -> None:
     plan(part, tolerence=0.1)  # type: ignore[call-arg]
     plan(part, tolerance="fine")  # type: ignore[arg-type]

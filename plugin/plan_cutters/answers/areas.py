@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from cad_io.graphs import connected
-from plan_cutters.domain.answers import Patch, weights
+from plan_cutters.domain.answers import weights
+from plan_cutters.plan_file.answers import LostAreaEntry
+from plan_cutters.plan_file.words.answers import patch
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -55,7 +57,7 @@ class Finished(Record):
         return min(1.0, float(self.share[rows].sum()))
 
 
-def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Patch]:
+def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[LostAreaEntry]:
     """Connected areas of some samples (m,), the largest first.
 
     Neighbours within a face and across smooth joints are connected.
@@ -69,24 +71,21 @@ def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Pat
     group = connected(len(rows), np.column_stack([one[both], other[both]]))
     sequence = np.argsort(group, kind="stable")
     each = np.split(rows[sequence], np.flatnonzero(np.diff(group[sequence])) + 1)
-    return sorted((_patch(samples, finished, mine) for mine in each), key=lambda patch: (-patch.area, patch.place))
+    return sorted((_patch(samples, finished, mine) for mine in each), key=lambda each: (-each.area_mm2, each.point))
 
 
-def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> Patch:
+def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> LostAreaEntry:
     point, area = samples.point[rows], finished.area[rows]
     weight = weights(area)
     middle = weight @ point / weight.sum()
     x, y, z = point[int(((point - middle) ** 2).sum(axis=1).argmin())].tolist()
     numbers, inverse = np.unique(samples.face[rows], return_inverse=True)
     by_face = np.argsort(-np.bincount(inverse, weight), kind="stable")
-    return Patch(
-        float(area.sum()),
-        finished.of_rows(rows),
-        len(rows),
-        tuple(f"F{n}" for n in numbers[by_face].tolist()),
-        (x, y, z),
-        _across(point),
-    )
+    faces, whole, across = [f"F{n}" for n in numbers[by_face].tolist()], float(area.sum()), _across(point)
+    return LostAreaEntry(
+        area_mm2=whole, share=finished.of_rows(rows), samples=len(rows), faces=faces, point=(x, y, z), across_mm=across,
+        why=patch(whole, faces, (x, y, z), across),
+    )  # fmt: skip
 
 
 def _across(point: Floats) -> float:

@@ -15,13 +15,14 @@ from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.answers.state import OtherSetups
 from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.stick_out import least_stick_out
-from plan_cutters.domain.answers import Advice, LeastSet, RadiusMap, Shape
+from plan_cutters.domain.answers import LeastSet, RadiusMap, Shape
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import mm, reporting
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts, over_setups
 from plan_cutters.option_table import EFFORT
-from plan_cutters.outcome import Answers
+from plan_cutters.outcome import Advice, Answers
+from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.words.answers import samples
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.work import Budget, Progress, part_of
@@ -115,7 +116,7 @@ def mend(
     why = undecidable(ready, cutter, over) if len(unfinished) else _why_nothing(ready, within)
     if not why and len(unfinished) and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
-    found = Advice(cutter.id, len(unfinished) + within, within, why, share)
+    found = Advice(MendEntry(lost=len(unfinished) + within, buried=within, why=why, lost_share=share))
     if why or not len(unfinished):
         return found
     return steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)

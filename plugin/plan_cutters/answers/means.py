@@ -13,8 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from plan_cutters.answers.state import HALF, NEARLY, Candidate, Case, Rows, Scan, SetupOf, State, spread, under
-from plan_cutters.domain.answers import Move
+from plan_cutters.answers.state import HALF, NEARLY, Candidate, Case, Rows, Scan, SetupOf, State, move_of, spread, under
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import NOSES, Holder, chuck
 from plan_cutters.domain.machine import Machine
@@ -65,7 +64,7 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     state = replace(scan.state, ready=_closer(ready, tried))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        yield scan.found(Move("tolerance", now, tried, next_steps.tolerance(tried, now)), state, missed, nested=False)
+        yield scan.found(move_of("tolerance", now, tried, next_steps.tolerance(tried, now)), state, missed, nested=False)
 
 
 def tilt_range(scan: Scan) -> Iterator[Candidate]:
@@ -82,7 +81,7 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
     state = under(scan.state, postures=postures)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        move = Move("tilt_range", (low, high), tried, next_steps.tilt_range(tried, (low, high)))
+        move = move_of("tilt_range", (low, high), tried, next_steps.tilt_range(tried, (low, high)))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -109,7 +108,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
 
     for at, made, missed in scan.least(limit, most):
         tried = (first + at) * _TURN
-        move = Move("tilt_limit", now, tried, next_steps.tilt_limit(tried, now, machine.name))
+        move = move_of("tilt_limit", now, tried, next_steps.tilt_limit(tried, now, machine.name))
         yield scan.found(move, made, missed, nested=now is not None)
     yield from _setups(scan, gained, plain=plain)
 
@@ -135,7 +134,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     best = _plain(second, scan.estimate(gained))
     if best is not None:
         _, _, axis, made, missed = best
-        move = Move("second_setup", now, axis, next_steps.more_setup(axis, _angle(now, axis), len(made.setups)))
+        move = move_of("second_setup", now, axis, next_steps.more_setup(axis, _angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
     # A table that is given with `--fixture` would lie elsewhere.
     if plain or len(state.setups) > 1 or any(each.follows_setup for each in ready.options.fixtures):
@@ -151,7 +150,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
         if estimate < scan.finished.of_rows(scan.left):
-            move = Move("setup", now, axis, f"{next_steps.clamped(axis, _angle(now, axis))} instead")
+            move = move_of("setup", now, axis, f"{next_steps.clamped(axis, _angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
 
 
@@ -252,7 +251,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
             if at not in seen:
                 seen.add(at)
                 words = next_steps.stick_out(value(at), cutter)
-                yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
+                yield scan.found(move_of("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
 def highest(ready: Prepared, cutter: Cutter) -> float:
@@ -287,7 +286,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
     for at, state, missed in scan.least(make, len(slimmer) - 1):
         other = slimmer[at].holder
         if other is not None:
-            move = Move("holder", cutter.holder.id, other.id, next_steps.holder(other, cutter))
+            move = move_of("holder", cutter.holder.id, other.id, next_steps.holder(other, cutter))
             yield scan.found(move, state, missed, nested=False)
 
 
@@ -330,7 +329,7 @@ def other_cutters(scan: Scan) -> Iterator[Candidate]:
     nearly = next(each for each in tried if each[0] <= content)
     for _, state, missed in {id(each): each for each in (nearly, best)}.values():
         cutter = state.cutters[-1]
-        move = Move("cutter", None, cutter.id, next_steps.rest(cutter.id))
+        move = move_of("cutter", None, cutter.id, next_steps.rest(cutter.id))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -383,7 +382,7 @@ def radius(scan: Scan) -> Iterator[Candidate]:
         # The thickest that leaves hardly more: they come by size.
         state = next(state for estimate, state in tried if estimate <= content)
         made = state.cutters[-1]
-        move = Move("radius", cutter.radius, made.radius, f"{next_steps.tool(made)}, for the rest")
+        move = move_of("radius", cutter.radius, made.radius, f"{next_steps.tool(made)}, for the rest")
         yield scan.found(move, state, known.glance(state, scan.few), nested=True)
 
 
@@ -407,7 +406,7 @@ def corner(scan: Scan) -> Iterator[Candidate]:
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]
-        move = Move("corner_radius", now, made.corner_radius, f"{next_steps.tool(made)}, for the rest")
+        move = move_of("corner_radius", now, made.corner_radius, f"{next_steps.tool(made)}, for the rest")
         yield scan.found(move, state, scan.known.glance(state, scan.few), nested=True)
 
 

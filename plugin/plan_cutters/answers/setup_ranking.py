@@ -9,7 +9,8 @@ chuck as well. It promises; the plan of that setup decides.
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from copy import copy
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -25,13 +26,15 @@ from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.stock import Stock
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
+from plan_cutters.judging.judge import GroundDigests
 from plan_cutters.judging.limits import within_limits
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.scene.work import evenly
+from plan_cutters.scene.work import Progress, evenly
 from plan_cutters.setups.clamping import NothingToGripError
+from plan_cutters.setups.requested import MOST_PROPOSED
 
 #: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
 _GRIPPED_FOR = 0.9
@@ -161,6 +164,10 @@ def holdable(
     return held
 
 
+def _untold(done: int, total: int) -> None:
+    """Nobody waits for it."""
+
+
 @dataclass(slots=True)
 class Ranking:
     """The ranking keeps what is known of each direction; it grows as directions are searched.
@@ -191,6 +198,7 @@ class Ranking:
     stock: Stock | None = None  #: What the first setup grips; None: the part.
     stocked: dict[int, Held | None] = field(default_factory=dict)  #: By candidate whose stock is gripped: how it was searched.
     gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.
+    progress: Progress = _untold
 
     @classmethod
     def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None) -> "Ranking":
@@ -262,6 +270,7 @@ class Ranking:
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture in a direction, of the rows (r,); nowhere if nothing can hold the part."""
         if k not in self.held:
+            self.progress(len(self.held), _FIRST + _STOOD + (MOST_PROPOSED - 1) * _MORE)
             try:
                 self.held[k] = self._on_plane(k) if self.over_table else self._held_by(k, self.words[0], self.bound[:, k])
             except NothingToGripError as error:
@@ -302,17 +311,23 @@ class Ranking:
         self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
-        """Grip the stock in a direction, if what is named can, and what is below the part keeps tools off little of it."""
-        least = _GRIPPED_FOR * float(self.share(self.served(k)[:, None])[0])
-        for word in [each for each in self.words if each != TABLE]:
-            with suppress(NothingToGripError):
-                # Beside what stands below the part a tool may be lower than it.
-                bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
-                held = self._held_by(k, word, bound, self.stock)
-                if float(self.share(held.served[:, None])[0]) >= least:
-                    self.stocked[k], self.held[k] = self.held[k], held
-                    self.settled.add(k)
-                return
+        """Grip the stock in a direction, if plain jaws can, and what is below the part keeps tools off little of it."""
+        assert self.stock is not None, "without stock the part is gripped"
+        most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
+        for stock in self.stock.choices(round_=self.candidates.bearing[k].round):
+            for word in [each for each in self.words if each != TABLE]:
+                with suppress(NothingToGripError):
+                    # Beside what stands below the part a tool may be lower than it.
+                    bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                    held = self._held_by(k, word, bound, stock)
+                    share = float(self.share(held.served[:, None])[0])
+                    if not held.soft and share >= best_share + _TURNED_FOR:
+                        best, best_share = held, share
+            if best_share >= most - _TURNED_FOR:
+                break
+        if best is not None and best_share >= _GRIPPED_FOR * most:
+            self.stocked[k], self.held[k] = self.held[k], best
+            self.settled.add(k)
 
     def completed(self, chosen: tuple[int, ...], most: int) -> tuple[int, ...]:
         """Chosen directions, held as they are by now, and those that serve more of what these do not."""
@@ -368,6 +383,12 @@ class Ranking:
 
         held = held_by(self.ready, (x, y, z), word, among, stock)
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
+
+    def chosen_and_held(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
+        """As `choose`, held by what holds it best, with what this leaves for more setups."""
+        chosen = self.choose(most, without)
+        self.settle(chosen)
+        return self.completed(chosen, most)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
@@ -427,6 +448,10 @@ class Ranking:
         return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
 
 
+#: What is kept of a ranking for the next question.
+_STORED = tuple(each.name for each in fields(Ranking) if each.name not in ("ready", "progress"))
+
+
 def _bound(ready: Prepared, candidates: Candidates, rows: Rows, k: int, word: str) -> NDArray[np.bool_]:
     """Rows (r,) where the machine holds an axis at all in a direction, in what holds the part; not on what it stands on."""
     # A vise or chuck stands on a riser: beside it a tool may be lower than the part.
@@ -461,13 +486,43 @@ def _reached(
     return reached
 
 
-def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None) -> Ranking:
+def proposed(
+    ready: Prepared,
+    most: int,
+    words: tuple[str, ...] = (TABLE,),
+    stock: Stock | None = None,
+    progress: Progress = lambda *_: None,
+) -> tuple[Ranking, tuple[int, ...]]:
+    """Rank the setups of a part as `ranked` does, and choose some, held as they are; what was compared before is not again."""
+
+    def made() -> tuple[dict[str, Any], tuple[int, ...]]:
+        ranking = ranked(ready, most, words, stock, progress)
+        chosen = ranking.chosen_and_held(most)
+        # Written while the ranking goes on to be asked.
+        return {name: copy(getattr(ranking, name)) for name in _STORED}, chosen
+
+    cutters = tuple(replace(each, name="") for each in ready.cutters)
+    follows_from = (
+        GroundDigests().of(ready), ready.samples.area, ready.scene.targets, ready.scene.part.key, cutters, most, words, stock,
+    )  # fmt: skip
+    stored, chosen = ready.cache.cached("proposal", follows_from, made)
+    return Ranking(ready, **{name: copy(value) for name, value in stored.items()}), chosen
+
+
+def ranked(
+    ready: Prepared,
+    most: int,
+    words: tuple[str, ...] = (TABLE,),
+    stock: Stock | None = None,
+    progress: Progress = lambda *_: None,
+) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
     `ready`: in any setup, without fixtures. `most`: setups that may be proposed together. `words`: what may hold the part: as the
     attribute of `Ranking`, as `stock`. Raises OptionError: as for `Ranking.of`.
     """
     ranking = Ranking.of(ready, words, stock)
+    ranking.progress = progress
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
     ranking.search_stood()
     for number in range(1, most):

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.candidates import planes_below
-from plan_cutters.domain.answers import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.verdicts import (
@@ -31,6 +30,7 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts
+from plan_cutters.plan_file.answers import MoveEntry
 from plan_cutters.scene.conditions import Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.inside_material import inside_material
@@ -282,6 +282,14 @@ _FEW = 96
 NEARLY, HALF = 0.95, 0.5
 
 
+Value = float | tuple[float, ...] | str | None
+
+
+def move_of(thing: str, now: Value, tried: Value, why: str) -> MoveEntry:
+    """One change: of what (`domain.answers.MEANS`), from which value to which (mm, deg, a direction, an id), and in words."""
+    return MoveEntry(thing=thing, now=now, asked=tried, why=why)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
     """A step that may be worth judging.
@@ -290,7 +298,7 @@ class Candidate:
     reached now.
     """
 
-    moves: tuple[Move, ...]
+    moves: tuple[MoveEntry, ...]
     state: State
     estimate: float
     nested: bool
@@ -336,7 +344,7 @@ class Scan:
         # Equal areas are equal, whichever samples stand for them.
         return round(part * self.finished.of_rows(self.left), 12)
 
-    def found(self, move: Move, state: State, missed: Rows, *, nested: bool) -> Candidate:
+    def found(self, move: MoveEntry, state: State, missed: Rows, *, nested: bool) -> Candidate:
         """A candidate by what it misses of the few."""
         return Candidate((move,), state, self.estimate(missed), nested)
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
-from plan_cutters.answers.state import Candidate, Judgements, OtherSetups, Scan, State
+from plan_cutters.answers.state import Candidate, Judgements, OtherSetups, Scan, State, move_of
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.answers import MEANS, Advice, Means, Move, Patch, Step
+from plan_cutters.domain.answers import MEANS
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
@@ -22,6 +22,8 @@ from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
+from plan_cutters.outcome import Advice, Step
+from plan_cutters.plan_file.answers import LostAreaEntry, MoveEntry, StepEntry
 from plan_cutters.plan_file.words import answers as next_steps
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import select_faces
@@ -147,7 +149,7 @@ _ENOUGH = 0.5
 #: Shares that differ by less are alike: what asks least comes first.
 _ALIKE = 4
 #: From what is there to what is bought: the drawer, time to compute, setups, how a tool is held, another tool, another machine.
-NEEDS: Mapping[Means, int] = {
+NEEDS: Mapping[str, int] = {
     "tolerance": 0, "tilt_range": 0, "cutter": 0, "setup": 1, "second_setup": 1, "stick_out": 2, "holder": 2, "radius": 3,
     "corner_radius": 3, "tilt_limit": 5, "area": 5,
 }  # fmt: skip
@@ -155,6 +157,8 @@ NEEDS: Mapping[Means, int] = {
 _UNUSUAL, _LAST = 4, 6
 #: Areas that are told: of a cutter, of a step.
 _AREAS, _REMAINS = 20, 3
+#: What words of two changes may both end in.
+_REST = " for the rest"
 #: What of a step is not to be changed by another one.
 _APART = {
     "setup": {"second_setup", "tilt_limit"},
@@ -203,12 +207,12 @@ def steps(
     # What other given cutters reach is known.
     budget = budget or Budget(math.inf)
     listed, uncompared = candidates(scan, budget)
-    dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
-    chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
+    dear = [each for each in listed if each.moves[0].thing != "cutter"][:_SINGLES]
+    chosen = [each for each in listed if each in dear or each.moves[0].thing == "cutter"]
     made = list[Judged]()
     for each in chosen:
         # What given cutters do is known.
-        if made and not budget.left and each.moves[0].means != "cutter":
+        if made and not budget.left and each.moves[0].thing != "cutter":
             uncompared += 1
         else:
             # Judged are those that are not reached or, where the change may lose others, all.
@@ -220,15 +224,12 @@ def steps(
     base = (ready, cutter, state)
     result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
     result = in_order(result, ready.cutters)
-    return replace(
-        advice,
-        share=before,
-        steps=(*result, _excluded(base, finished, open_rows, areas)),
-        areas=tuple(areas[:_AREAS]),
-        more_areas=len(areas[_AREAS:]),
-        uncompared=uncompared,
-        unsure=ready.conditions.surroundings.doubtful,
-    )
+    result.append(_excluded(base, finished, open_rows, areas))
+    more = {
+        "lost_share": before, "steps": [each.entry for each in result], "lost_areas": areas[:_AREAS],
+        "more_lost_areas": len(areas[_AREAS:]), "uncompared": uncompared, "unsure": ready.conditions.surroundings.doubtful,
+    }  # fmt: skip
+    return Advice(advice.entry.model_copy(update=more), tuple(result))
 
 
 def worth(finished: Finished, gain: float) -> bool:
@@ -242,25 +243,29 @@ def in_order(steps: Sequence[Step], known: Sequence[Cutter]) -> list[Step]:
     First those that free at least half of what the best one frees: what is in the drawer, other setups, how a tool is held, a
     purchase, and what is unusual; within each, and of all others, those that leave least.
     """
-    enough = _ENOUGH * max((step.before - step.after for step in steps), default=0.0)
+    enough = _ENOUGH * max((_gain(step) for step in steps), default=0.0)
 
     def rank(step: Step) -> tuple[float, ...]:
-        needs = needed(step, known) if step.before - step.after >= enough else _LAST
-        return needs, round(step.after, _ALIKE), *effort(step.moves)
+        needs = needed(step, known) if _gain(step) >= enough else _LAST
+        return needs, round(step.entry.lost_after, _ALIKE), *effort(step.entry.changes)
 
     return sorted(steps, key=rank)
+
+
+def _gain(step: Step) -> float:
+    return step.entry.lost_before - step.entry.lost_after
 
 
 def needed(step: Step, known: Sequence[Cutter]) -> int:
     """How much a step needs, by its costliest change: a place in NEEDS; a tool held out farther than usual is a place, too."""
     usual = max([USUAL, *map(slenderness, known)]) * (1.0 + 1e-9)
     unusual = any(slenderness(each) > usual for each in step.cutters if each not in known)
-    return max(_UNUSUAL * unusual, *(NEEDS[move.means] for move in step.moves), 0)
+    return max(_UNUSUAL * unusual, *(NEEDS[move.thing] for move in step.entry.changes), 0)
 
 
-def effort(moves: Sequence[Move]) -> tuple[int, int]:
+def effort(moves: Sequence[MoveEntry]) -> tuple[int, int]:
     """How much a step asks of a planner: the number of changes, and their places in MEANS."""
-    return len(moves), sum(MEANS.index(move.means) for move in moves)
+    return len(moves), sum(MEANS.index(move.thing) for move in moves)
 
 
 def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
@@ -288,7 +293,7 @@ def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
 
     started: set[str] = set()
     for first, rows in best:
-        means = first.moves[0].means
+        means = first.moves[0].thing
         if means in started or len(started) == _BEST:
             continue
         started.add(means)
@@ -296,7 +301,7 @@ def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
         seconds = [
             replace(second, moves=(*first.moves, *second.moves))
             for second in candidates(after, budget)[0]
-            if second.moves[0].means not in {means, *_APART.get(means, ())}
+            if second.moves[0].thing not in {means, *_APART.get(means, ())}
         ]
         for both in seconds[:_PAIRS]:
             judge(both, rows)
@@ -308,8 +313,8 @@ def _pairs(scan: Scan, singles: list[Judged], budget: Budget) -> list[Judged]:
     return list(pairs.values())
 
 
-def _name(move: Move) -> Named:
-    return move.means, str(move.asked)
+def _name(move: MoveEntry) -> Named:
+    return move.thing, str(move.asked)
 
 
 def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, candidate: Candidate, rows: Rows) -> Step:
@@ -324,13 +329,18 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: R
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
     )
     freed = np.setdiff1d(open_rows, rows, assume_unique=True)
-    return Step(
-        candidate.moves, finished.of_rows(open_rows), finished.of_rows(rows), len(freed), len(rows), after.cutters, after.axes,
-        result, tuple(patches(ready.samples, finished, rows)[:_REMAINS]), freed,
+    words = [each.why for each in candidate.moves]
+    alike = len(words) > 1 and all(each.endswith(_REST) for each in words)
+    why = " and ".join(each.removesuffix(_REST) for each in words) + _REST if alike else ", and ".join(words)
+    entry = StepEntry(
+        changes=list(candidate.moves), lost_before=finished.of_rows(open_rows), lost_after=finished.of_rows(rows),
+        gained=len(freed), left=len(rows), cutters=[each.id for each in after.cutters], setups=list(after.axes), option=result,
+        why=why, remains=patches(ready.samples, finished, rows)[:_REMAINS],
     )  # fmt: skip
+    return Step(entry, after.cutters, freed)
 
 
-def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, areas: list[Patch]) -> Step:
+def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, areas: list[LostAreaEntry]) -> Step:
     """Nothing changed: what is not reached is left to other means."""
     ready, cutter, state = base
     face = ready.samples.face
@@ -340,5 +350,9 @@ def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_row
     whole = len(rest) and len(open_rows) == int((finished.wanted & np.isin(face, bad)).sum())
     result = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[open_rows].sum()), finished.of_rows(open_rows)
-    move = Move("area", None, round(area, 6), next_steps.excluded_areas(areas, area))
-    return Step((move,), share, 0.0, 0, len(open_rows), (cutter,), state.axes, result, tuple(areas[:_REMAINS]))
+    move = move_of("area", None, round(area, 6), next_steps.excluded_areas(areas, area))
+    entry = StepEntry(
+        changes=[move], lost_before=share, lost_after=0.0, gained=0, left=len(open_rows), cutters=[cutter.id],
+        setups=list(state.axes), option=result, why=move.why, remains=areas[:_REMAINS],
+    )  # fmt: skip
+    return Step(entry, (cutter,), np.zeros(0, np.int64))

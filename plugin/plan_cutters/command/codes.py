@@ -172,9 +172,8 @@ def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
         raise KeyboardInterrupt from None
 
 
-def run(command: click.Command, name: str, args: Sequence[str] | None) -> NoReturn:
-    """Run a command to its end with some words, by default those of the process."""
-    words = list(sys.argv[1:] if args is None else args)
+def run(command: click.Command, name: str, words: Sequence[str]) -> NoReturn:
+    """Run a command to its end with some words."""
     raise_interrupts()
     ended(name, words, lambda: invoked(command, name, words))
 

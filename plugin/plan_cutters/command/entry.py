@@ -127,7 +127,7 @@ def subcommand(name: str) -> str:
 
 
 def module_of(name: str) -> "Any":
-    """The module of a command by its name; it has the `command` of click and `main`."""
+    """The module of a command by its name; it has the `command` of click, and `main` where more is done than to run that."""
     word = subcommand(name)
     return import_module(f"plan_cutters.command.{OURS[word][0]}" if word in OURS else leaves()[word])
 
@@ -158,6 +158,9 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
             if not is_child() and "--wait" not in words and any(map(os.path.isfile, words)) and at_prompt():
                 copy_and_wait()
             begin_early(words)
-        module_of(name).main(words, name)
+        module = module_of(name)
+        if not hasattr(module, "main"):
+            import_module("plan_cutters.command.codes").run(module.command, name, words)
+        module.main(words, name)
     except KeyboardInterrupt:
         at_once()

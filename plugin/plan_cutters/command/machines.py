@@ -4,11 +4,11 @@ import json
 import math
 from collections.abc import Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from plan_cutters.command.codes import ENDED, USAGE, faults, run
+from plan_cutters.command.codes import ENDED, USAGE, faults
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
@@ -210,8 +210,3 @@ def _solutions(axis_facts: dict[str, Any], say: Any) -> None:
         angles = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in each["deg"].items())
         taken = " (taken: the smaller turns)" if each["taken"] and len(axis_facts["solutions"]) > 1 else ""
         say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, args)

@@ -5,11 +5,11 @@ import re
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from plan_cutters.command.codes import ENDED, USAGE, faults, run
+from plan_cutters.command.codes import ENDED, USAGE, faults
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
@@ -239,8 +239,3 @@ def _draw(libraries: "Sequence[Library]", folder: Path) -> None:
     for name, text in drawings.items():
         with whole(folder / f"{name}.svg", PlanError) as temporary:
             temporary.write_text(text, encoding="utf-8")
-
-
-def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
-    """Run the command."""
-    run(command, name, args)

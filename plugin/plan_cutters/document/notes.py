@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cad_io import Part
+from cad_io.graphs import connected
 from cad_io.part.edges import folded_faces
 from cad_io.part.part import CROSSES
 from cad_io.write.step import changed_by_step
@@ -22,6 +23,7 @@ from plan_cutters.scene.faces import clamped_faces, repeated_groups
 from plan_cutters.scene.preparation import BUDGET, Prepared, places
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups.workpiece import TOGETHER, material_bodies
 
 
 def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
@@ -33,6 +35,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_sides(ready),
         *_of_surfaces(scene),
         *_of_obstacles(scene.part, surroundings),
+        *_of_bodies(ready),
         *_of_fixtures(ready),
         *_of_choice(ready),
         *_of_setups(ready),
@@ -119,6 +122,26 @@ def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:
     bare = set(np.unique((surroundings.alone or surroundings).possible.triangles.face).tolist()) - closed
     if sheets := [f.id for f in part.faces if f.number in bare]:
         yield note("open_faces", *sheets) if closed else notes.all_faces_open()
+
+
+def _of_bodies(ready: Prepared) -> Iterator[Note]:
+    """Name bodies with faces to machine that surely do not touch, for their boxes do not: nobody clamps these together."""
+    surroundings, targets = ready.conditions.surroundings, set(ready.chosen.targets)
+    triangles = (surroundings.alone or surroundings).certain.triangles
+    bodies = [each for each in material_bodies(surroundings.bodies, ready.scene.orientation.sign) if each & targets]
+    corners = [triangles.vertex[np.isin(triangles.face, list(each))].reshape(-1, 3) for each in bodies]
+    boxes = [(each.min(axis=0) - TOGETHER, each.max(axis=0) + TOGETHER) for each in corners if len(each)]
+    touching = [
+        (i, k) for k, (low, high) in enumerate(boxes) for i in range(k) if ((low <= boxes[i][1]) & (boxes[i][0] <= high)).all()
+    ]
+    if len(boxes) == len(bodies) > 1:
+        group = connected(len(bodies), np.array(touching, np.int64).reshape(-1, 2))
+        if group.max() > 0:
+            apart = [
+                ranges(sorted(frozenset[int]().union(*(bodies[i] for i in np.flatnonzero(group == k)))))
+                for k in range(group.max() + 1)
+            ]
+            yield notes.bodies_apart(apart)
 
 
 def _of_fixtures(ready: Prepared) -> Iterator[Note]:

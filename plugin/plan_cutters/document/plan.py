@@ -24,7 +24,7 @@ from plan_cutters.document.build import (
 )
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
-from plan_cutters.domain.answers import Advice, LeastSet, Patch, RadiusMap
+from plan_cutters.domain.answers import LeastSet, RadiusMap
 from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.kinematics import positions
 from plan_cutters.domain.operations import INDEX_TIME
@@ -35,17 +35,7 @@ from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED, effective_tolerance
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.answers import (
-    Beyond,
-    LeastSetEntry,
-    LostAreaEntry,
-    MendEntry,
-    MoveEntry,
-    RadiusEntry,
-    RunEntry,
-    StepEntry,
-    StickOutEntry,
-)
+from plan_cutters.plan_file.answers import Beyond, LeastSetEntry, RadiusEntry, RunEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import (
@@ -69,7 +59,6 @@ from plan_cutters.plan_file.reasons import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words import headline as words
-from plan_cutters.plan_file.words.answers import patch
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
 
@@ -196,34 +185,10 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
     )
 
 
-def advice_entry(advice: Advice) -> MendEntry:
-    """Make the entry of what to do next with a cutter."""
-    rest, steps = " for the rest", []
-    for step in advice.steps:
-        words = [each.words for each in step.moves]
-        alike = len(words) > 1 and all(each.endswith(rest) for each in words)
-        why = " and ".join(each.removesuffix(rest) for each in words) + rest if alike else ", and ".join(words)
-        changes = [filled(MoveEntry, each, thing=each.means, why=each.words) for each in step.moves]
-        cutters, setups = [each.id for each in step.cutters], [vector(each) for each in step.setups]
-        remains = [_area_entry(each) for each in step.remains]
-        steps.append(
-            filled(StepEntry, step, changes=changes, lost_before=step.before, lost_after=step.after, cutters=cutters,
-                   setups=setups, why=why, remains=remains)
-        )  # fmt: skip
-    areas = [_area_entry(each) for each in advice.areas]
-    return filled(MendEntry, advice, lost_share=advice.share, steps=steps, lost_areas=areas, more_lost_areas=advice.more_areas)
-
-
 def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
     """The fewest runs."""
     runs = [filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs]
     return filled(LeastSetEntry, least, runs=runs, doubtful=doubtful)
-
-
-def _area_entry(area: Patch) -> LostAreaEntry:
-    return filled(
-        LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across, why=patch(area)
-    )
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -355,7 +320,7 @@ def completed(
                 filled(SourceEntry, each, file=file.file, notes=list(each.notes)) for file, each in sources.get(name, ())
             ],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
-            "mend": None if mend is None else advice_entry(mend),
+            "mend": None if mend is None else mend.entry,
             "area": area,
             "seen": entry.seen or (area is not None and area.feasible),
         }

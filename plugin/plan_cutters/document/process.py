@@ -13,7 +13,6 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.document.stands import setups_and_stock
-from plan_cutters.domain.answers import Step
 from plan_cutters.domain.figures import exact
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import Strategy
@@ -25,7 +24,7 @@ from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR_GOUGE, REASONS, SHARP_EDGE, Verdicts
 from plan_cutters.judging.limits import AXES, within_limits
 from plan_cutters.options import Options
-from plan_cutters.outcome import Answers, OperationPlan, Operations
+from plan_cutters.outcome import Answers, OperationPlan, Operations, Step
 from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
 from plan_cutters.plan_file.operations import (

@@ -1,6 +1,6 @@
 """The answers that may be requested after the plan: their words, and the records of what each says."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -35,18 +35,6 @@ def answers_of(value: Any) -> tuple[str, ...]:
     return tuple(word for word in ANSWERS if word in result or "all" in result)
 
 
-@dataclass(frozen=True, slots=True)
-class Patch:
-    """Connected samples of one kind."""
-
-    area: float  #: That they stand for, mm2.
-    share: float  #: Of the finished area, 0 to 1.
-    samples: int
-    faces: tuple[str, ...]  #: Ids, the one with the most of it first.
-    place: tuple[float, float, float]  #: The sample nearest to its middle, mm.
-    across: float  #: Its largest extent, mm, from sample to sample; 0 of a single one.
-
-
 def weights(area: Floats) -> Floats:
     """Take areas as weights: an area that is not known weighs nothing, and where none is known each weighs as much.
 
@@ -60,67 +48,10 @@ def weights(area: Floats) -> Floats:
 #: What a step may change, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted,
 #: how it is held, another tool, how the part is clamped, another machine, an area that is left to other means. What asks for
 #: least comes first among steps that leave as much.
-Means = Literal[
-    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
-    "tilt_limit", "area"
-]  # fmt: skip
-MEANS: tuple[Means, ...] = (
+MEANS = (
     "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
     "tilt_limit", "area"
 )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Move:
-    """One change of a step: of what, from which value to which (mm, deg, a direction, the id of a cutter), and in words."""
-
-    means: Means
-    now: float | tuple[float, ...] | str | None
-    asked: float | tuple[float, ...] | str | None
-    words: str
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """A step is a thing to do next; its gain was judged on every sample."""
-
-    moves: tuple[Move, ...]  #: One change, or two.
-    #: `before`, `after`: share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample
-    #: was judged.
-    before: float
-    after: float
-    #: `gained`, `left`: samples that it frees, and that are still not reached.
-    gained: int
-    left: int
-    cutters: tuple[Cutter, ...]  #: That do it together, the one that is mended, or what becomes of it, first.
-    setups: tuple[tuple[float, float, float], ...]  #: Setup axes in which they do.
-    #: The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
-    #: where no option says it.
-    option: str | None
-    remains: tuple[Patch, ...]  #: The largest areas that are still not reached.
-    #: (m,) int64: the samples that it frees.
-    freed: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Advice:
-    """Advice names what to do next with one cutter."""
-
-    cutter: str  #: Its id.
-    #: `lost`, `buried`: samples that are inaccessible or undecided now, and those of them that lie within another body of the
-    #: part: these are no surface of the finished part, and nothing is asked about them.
-    lost: int
-    buried: int
-    why: str  #: Why no steps were looked for; empty where they were.
-    share: float = 0.0  #: Of the finished area that is not reached now, in all setups of the plan.
-    #: The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
-    steps: tuple[Step, ...] = ()
-    areas: tuple[Patch, ...] = ()  #: Connected areas that are not reached now, the largest first, and how many more there are.
-    more_areas: int = 0
-    #: Changes that promised less than those judged and were not judged, and kinds of changes that were not looked at, since the
-    #: work for advice was spent.
-    uncompared: int = 0
-    unsure: bool = False  #: Faces are missing from what is in the way, so that no gain is sure.
 
 
 @dataclass(frozen=True, slots=True)

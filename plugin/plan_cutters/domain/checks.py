@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Set
 from difflib import get_close_matches
 from functools import wraps
 from numbers import Integral, Real
-from typing import Any, Literal, NamedTuple, TypeVar, get_type_hints
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -236,7 +236,8 @@ def spelled_out(words: type, made: type) -> Callable[[_Function], _Function]:
     """
 
     def shown(function: _Function) -> _Function:
-        plain, types = inspect.signature(function), get_type_hints(words)
+        plain = inspect.signature(function)
+        types = {name: getattr(kind, "__forward_arg__", kind) for name, kind in words.__annotations__.items()}
         own = {name: each for name, each in plain.parameters.items() if each.kind is not each.VAR_KEYWORD}
         known = inspect.signature(made).parameters
         for name in [*(each for each in known if each in types), *(each for each in types if each not in known)]:

@@ -1,16 +1,17 @@
 """Where a part stands in a machine: its directions along the machine's, its point at the machine's zero, and what holds it."""
 
 import math
-from collections.abc import Sequence
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items, numbers, shown
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.posture import Direction, Heading, unit
+from plan_cutters.domain.posture import Direction, Heading, HostAxis, HostPlane, unit
 from plan_cutters.errors import OptionError
 
 #: Directions whose angle has a smaller sine are parallel.
@@ -130,3 +131,9 @@ def frame_of(setup: Floats, x: Floats | None = None) -> Floats:
         across = np.cross(np.array([0.0, 1.0, 0.0]), z)
     across = across / np.linalg.norm(across)
     return np.array([across, np.cross(z, across), z])
+
+
+#: Axes of the part by name; `auto`: the setups that the plan proposes.
+SetupWord = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "X", "+X", "-X", "Y", "+Y", "-Y", "Z", "+Z", "-Z", "auto"]
+#: A text is a word: type checkers find those that are none. A setup file is a path.
+Setup = SetupWord | HostAxis | Iterable[float] | HostPlane | Placement | os.PathLike[str]

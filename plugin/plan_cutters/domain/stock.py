@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +15,10 @@ from plan_cutters.errors import OptionError
 #: Margins unless they are given: on each side, and below, mm; lengths beyond the second number are rather a mistake.
 _SIDES, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
 _FORM = "box[:X,Y,Z], cylinder[:R,Z] (margins in mm), FILE (STEP or a mesh) or part"
-PART, BOX, CYLINDER = "part", "box", "cylinder"
-_WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER})(?::(.*))?", re.IGNORECASE | re.DOTALL)
+PART, BOX, CYLINDER, USUAL = "part", "box", "cylinder", "usual"
+_WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER}|{USUAL})(?::(.*))?", re.IGNORECASE | re.DOTALL)
+#: Stock that is proposed reaches so far below the part where a tool does not come low enough beside less, mm.
+_DEEPER = 25.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,7 @@ class Stock:
     ('box:1,1,5', 8.0, False)
     """
 
-    kind: str  #: `box`, `cylinder`, `part`, or `file`.
+    kind: str  #: `box`, `cylinder`, `part`, `file`, or `usual`: it is proposed with the setups.
     margins: tuple[float, ...] = ()  #: Across the setup axis, and below the part, mm; none of a file.
     file: str = ""
 
@@ -42,7 +44,7 @@ class Stock:
                 raise OptionError(f"stock {text!r} is none: give {_FORM}")
             return cls("file", (), text)
         kind, numbers = word[1].lower(), word[2]
-        usual = {PART: (), BOX: (_SIDES, _SIDES, _BELOW), CYLINDER: (_SIDES, _BELOW)}[kind]
+        usual = {BOX: (_SIDES, _SIDES, _BELOW), CYLINDER: (_SIDES, _BELOW)}.get(kind, ())
         if numbers is None:
             return cls(kind, usual)
         try:
@@ -57,6 +59,13 @@ class Stock:
     def solid(self) -> bool:
         """Whether there is more than the part."""
         return self.kind != PART
+
+    def choices(self, *, round_: bool) -> tuple["Stock", ...]:
+        """A setup tries these, the first that serves: a bar for a part that is round there, else a box; then more below."""
+        if self.kind != USUAL:
+            return (self,)
+        first = [Stock.of(CYLINDER)] * round_ + [Stock.of(BOX)]
+        return (*first, *(replace(each, margins=(*each.margins[:-1], _DEEPER)) for each in first))
 
     @property
     def below(self) -> float:

@@ -300,6 +300,8 @@ class OperationsEntry(Frozen):
 UNJUDGED_CAUSE, NOT_PLANNED, SHORT_STEP = "unjudged", "not_planned", "short_step"
 #: Why a step of the planner's own leaves something: another orientation of its cutter would reach it.
 OTHER_ORIENTATION = "orientation"
+#: Neck, shank and holder keep so far from everything where any posture does, mm.
+MARGIN = 1.0
 
 
 class FitEntry(Frozen):

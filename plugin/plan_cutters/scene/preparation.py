@@ -15,7 +15,7 @@ from cad_io.part.holes import Hole
 from cad_io.part.patterns import Pattern
 from cad_io.sample import bends, sample
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.fixture import STOCK, Fixture
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.errors import FixtureError, OptionError, TooManySamplesError
@@ -25,6 +25,7 @@ from plan_cutters.scene.faces import Chosen, clamped_faces
 from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups.clamping import refuse_ungripped
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 Rows = NDArray[np.int64]
@@ -302,6 +303,21 @@ def places(options: Options) -> tuple[Placement | None, ...]:
 def fixtures_of(options: Options) -> list[Fixture]:
     """The fixtures of all setups."""
     return [*options.fixtures, *(each for place in places(options) if place is not None for each in place.fixtures)]
+
+
+def refuse_unholdable(scene: Scene, options: Options) -> None:
+    """Refuse what is to grip the part in a setup, if no faces are made for it: before the part is tessellated.
+
+    Raises NothingToGripError.
+    """
+    part = scene.part
+    reach = float(np.linalg.norm(part.middle) + np.linalg.norm(part.size))
+    for axis, place in zip((scene.setup, *options.other_setups), places(options), strict=True):
+        every = (*options.shared_fixtures, *(() if place is None else place.fixtures))
+        # Stock is gripped instead.
+        for fixture in () if any(each.kind == STOCK for each in every) else every:
+            if fixture.to_place:
+                refuse_ungripped(fixture, part.faces, scene.orientation.sign, axis, reach)
 
 
 def conditions_of(scene: Scene, options: Options) -> list[Conditions]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Unpack, get_type_hints
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from plan_cutters.domain.posture import plane_of, unit
 from plan_cutters.domain.stock import Stock
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
-from plan_cutters.option_table import MOST_TOLERANCE
+from plan_cutters.option_table import MOST_TOLERANCE, OF_A_SCENE
 from plan_cutters.options import Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
@@ -29,7 +29,7 @@ from plan_cutters.setups.workpiece import material_bodies
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
-_DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
+_DEFAULTS = {word: getattr(Options(), word) for word in OF_A_SCENE}
 
 
 @dataclass(slots=True)

@@ -11,8 +11,10 @@ from cad_io.arrays import Floats
 #: Of the footprint: the least share that the hull of what it stands on has, and how far inside that the centre of mass is, as a
 #: share of the side of a square as large.
 _LEAST, _MARGIN = 0.1, 0.05
-#: A part stands at most so many times as high as what it stands on is wide.
-_TALL = 3.0
+#: A part stands at most so many times as high as what it stands on, or what is gripped of it, is wide.
+TALL = 3.0
+#: A part is round that fills so much of a circle about it.
+_ROUND = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +26,7 @@ class Bearing:
     width: float  #: Of the first hull where it is narrowest, mm.
     inside: float  #: How far the centre of mass is inside the first hull, mm; negative outside.
     tall: float  #: How high the part is along the axis, mm.
+    round: bool = False  #: Whether the part fills a circle about it, seen so.
 
     @classmethod
     def of(cls, outline: Floats, stood_on: Floats, centre: Floats, tall: float) -> "Bearing":
@@ -35,11 +38,15 @@ class Bearing:
         """
         whole, below = _hull(outline), _hull(stood_on)
         footprint = 0.0 if whole is None else float(whole.volume)
+        middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
+        circle = math.pi * float(((outline - middle) ** 2).sum(axis=1).max())
+        round_ = footprint >= _ROUND * circle
         if below is None:
-            return cls(0.0, footprint, 0.0, -math.inf, tall)
+            return cls(0.0, footprint, 0.0, -math.inf, tall, round_)
         normal, off = below.equations[:, :2], below.equations[:, 2]
         height = stood_on[below.vertices] @ normal.T + off
-        return cls(float(below.volume), footprint, float(-height.min(axis=0).max()), float(-(normal @ centre + off).max()), tall)
+        narrowest, inside = float(-height.min(axis=0).max()), float(-(normal @ centre + off).max())
+        return cls(float(below.volume), footprint, narrowest, inside, tall, round_)
 
     @property
     def broad(self) -> bool:
@@ -49,7 +56,7 @@ class Bearing:
     @property
     def firm(self) -> bool:
         """Whether it stands by itself: broad, not too high, and its centre of mass well over what it stands on."""
-        return self.broad and self.inside >= _MARGIN * math.sqrt(self.footprint) and self.tall <= _TALL * self.width
+        return self.broad and self.inside >= _MARGIN * math.sqrt(self.footprint) and self.tall <= TALL * self.width
 
     @property
     def slender(self) -> float:

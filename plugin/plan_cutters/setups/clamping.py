@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cad_io.arrays import Floats
+from cad_io.arrays import FaceInfo, Floats
 from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
 from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.domain.stock import StockBody
 from plan_cutters.errors import FixtureError
-from plan_cutters.setups.places import chuck_places, vise_places
+from plan_cutters.setups.places import chuck_places, ungripped, vise_places
 from plan_cutters.setups.solids import box, cylinder
 from plan_cutters.setups.workpiece import Place, Refused, Workpiece, held_bodies, on_ledges
 
@@ -86,7 +86,19 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
             return _hold(requested, placed, part, place)
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched += 1
-    raise _nothing(fixture, requested, part, min(refused, key=lambda each: each.rank).why)
+    raise _nothing(fixture, requested, part.frame[2].tolist(), min(refused, key=lambda each: each.rank).why)
+
+
+def refuse_ungripped(fixture: Fixture, faces: Sequence[FaceInfo], sign: Floats, setup: Sequence[float], reach: float) -> None:
+    """Refuse a vise or chuck that no faces of a part are made for, before it has triangles.
+
+    `faces`: all of the part. `sign` (faces,): side of each that is out of the material. `setup`: unit axis.
+    `reach`: how far the part is from the origin at most, mm. Raises NothingToGripError. That nothing is raised promises nothing.
+    """
+    requested = fixture.grips
+    assert requested is not None, "only a vise or chuck is placed"
+    if why := ungripped(requested, faces, sign, np.asarray(setup, float), reach):
+        raise _nothing(fixture, requested, setup, why)
 
 
 def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides: int) -> Hold:
@@ -117,13 +129,13 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
     assert clamping is not None, "what was placed is in its place"
     what, apart = _called(clamping)
     words = f"{what}; it grips the stock, {apart}; the jaws reach {mm(requested.grip)} above where it rests"
-    return Hold(hold.fixture, (), (), 0.0, words)
+    return Hold(hold.fixture, (), (), 0.0, words, hold.soft)
 
 
-def _nothing(fixture: Fixture, requested: Requested, part: Workpiece, why: str) -> NothingToGripError:
+def _nothing(fixture: Fixture, requested: Requested, setup: Sequence[float], why: str) -> NothingToGripError:
     # Made here: an error that knows where it was raised, and is known there, would keep the part's triangles for long.
     error = NothingToGripError(
-        f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
+        f"{fixture}: nothing to grip with the setup axis {axis_words(setup)}: {why}; try another setup, "
         f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
     )
     error.why = why

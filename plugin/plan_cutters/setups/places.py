@@ -3,14 +3,15 @@
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from cad_io.arrays import Floats, rows_by_face
-from plan_cutters.domain.clamping import VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, rows_by_face
+from plan_cutters.domain.clamping import CHUCK, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
+from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
     PARALLEL,
     TOGETHER,
@@ -109,6 +110,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
+    tall = part.tall - above
     for turn in range(0, math.ceil(360 / chuck.jaws), _TURN):
         at = start + turn + 360.0 / chuck.jaws * np.arange(chuck.jaws)
         bins = [np.floor(np.arange(each - half, each + half, 1.0) % _BINS).astype(int) % _BINS for each in at]
@@ -121,9 +123,14 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
             area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
+            _too_tall(tall, chuck.diameter) if tall > TALL * chuck.diameter else "",
         )  # fmt: skip
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
+
+
+def _too_tall(tall: float, wide: float) -> str:
+    return f"it stands {mm(tall)} high on {mm(wide)}"
 
 
 def _degrees_of(vertex: Floats, centre: Floats) -> Floats:
@@ -135,6 +142,45 @@ def _degrees_of(vertex: Floats, centre: Floats) -> Floats:
     for low, high in zip(angle.min(axis=1), angle.max(axis=1), strict=True):
         taken[np.arange(math.floor(low + 0.5), max(math.floor(high + 0.5), math.floor(low + 0.5) + 1)) % _BINS] = 1.0
     return taken
+
+
+def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axis: Floats, reach: float) -> str:
+    """Why no faces of a part can be gripped along a setup axis (3,), by their shapes alone; empty where some may be.
+
+    `sign` (faces,): side of each face that is out of the material. `reach`: how far the part is from the origin at most, mm.
+    """
+    # Planes that count as parallel may still come together so far from where they are known.
+    upright, round_, slack = list[tuple[Floats, float, float]](), False, 4.0 * PARALLEL * reach
+    for face in faces:
+        known = face.carrier
+        if known is None and face.shape == "plane":
+            return ""
+        if known is None or known.direction is None:
+            round_ |= face.shape not in SIMPLE_KINDS
+            continue
+        direction, side = np.array(known.direction), known.side * float(sign[face.number - 1])
+        along = abs(float(direction @ axis))
+        if face.shape == "plane" and along <= 2.0 * PARALLEL:
+            upright.append((direction, float(direction @ known.point), side))
+        round_ |= face.shape == "cylinder" and along >= 1.0 - PARALLEL and side >= 0.0
+    if requested.kind == CHUCK:
+        return "" if round_ else "no outside cylinder along it"
+    widest, gaps = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2], list[float]()
+    for i, (one, first, side) in enumerate(upright):
+        for other, second, its in upright[:i]:
+            turn = float(one @ other)
+            if abs(turn) < 1.0 - 2.0 * PARALLEL**2:
+                continue
+            way = math.copysign(1.0, turn)
+            apart = first - way * second
+            # The outer side of each looks away from the other.
+            if side * apart >= -slack and its * way * apart <= slack:
+                gaps.append(abs(apart) - slack)
+    if not gaps:
+        return "no two opposite plane faces stand along it"
+    return (
+        f"its opposite plane faces are farther apart than the {mm(widest)} to which the vise opens" if min(gaps) > widest else ""
+    )
 
 
 #: Walls that are looked at, at most, the largest of them.
@@ -225,7 +271,7 @@ def _at(
         wide = f"{names} are {mm(right - left)} apart, and the vise opens to {mm(widest)}"
         return [], wide if right - left > widest else f"{names} begin too high above its lowest point for the jaws"
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
-    tall, bearing = float(part.vertex[..., 2].max()), part.bearing(0.0, above)
+    tall, bearing = part.tall, part.bearing(0.0, above)
     centre = part.enclosed[1]
     lug = (right - left) * (end - start) < _LUG * part.section
     places, why = list[Place](), apart
@@ -250,6 +296,8 @@ def _at(
             soft = f"they touch {mm(least / reach)} of its length"
         elif not bearing.broad:
             soft = "hardly any plane of the part rests in them"
+        elif tall - above > TALL * min(right - left, least / reach):
+            soft = _too_tall(tall - above, min(right - left, least / reach))
         place = Place(
             vise, x, origin, grips, least, hidden, above, size, float(np.linalg.norm((origin - part.middle)[:2])),
             float(np.abs((part.outline - origin) @ x).max()), soft,

@@ -52,6 +52,8 @@ def setups_requested(
     if is_auto(setup):
         setup, propose = (0.0, 0.0, 1.0), True
     axis, placed = _setup(setup, placement)
+    gripping = tuple(each for each in common if each.to_place)
+    common = tuple(each for each in common if each not in gripping or each in _to_place(gripping, placed))
     known_stock = [each for each in (*common, *(placed.fixtures if placed else ())) if each.kind == STOCK]
     if stock is not None and stock.solid and not propose and not known_stock:
         placed = _holding((axis, placed), (Fixture(f"{STOCK}:{stock.text}"),))
@@ -75,7 +77,7 @@ def setups_requested(
             "fixtures, or name the setup"
         )
     shared = without(common, () if placed is None else placed.fixtures)
-    if listed and (gripping := tuple(each for each in shared if each.to_place)):
+    if listed and gripping:
         # What grips the part is placed for each setup: it is that one's own.
         shared = without(shared, gripping)
         placed = _holding((axis, placed), gripping)
@@ -93,7 +95,13 @@ def _holding(setup: tuple[tuple[float, float, float], Placement | None], grippin
     axis, place = setup
     if place is None:
         return Placement(axis, fixtures=gripping)
-    return replace(place, fixtures=joined_fixtures(place.fixtures, gripping))
+    return replace(place, fixtures=joined_fixtures(place.fixtures, _to_place(gripping, place)))
+
+
+def _to_place(gripping: Sequence[Fixture], place: Placement | None) -> Sequence[Fixture]:
+    """Of vises and chucks without a place those of which a setup has none in its place: a setup file says where it is."""
+    there = set() if place is None else {each.kind for each in place.fixtures if not each.to_place}
+    return [each for each in gripping if each.kind not in there]
 
 
 def _own(

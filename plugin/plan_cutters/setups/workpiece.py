@@ -103,17 +103,22 @@ class Workpiece(Record):
         """Its volume, mm3, 0 where its faces enclose none, and its centre of mass (3,)."""
         return enclosed(self.vertex, self.normal)
 
+    @cached_property
+    def tall(self) -> float:
+        """Its height along the setup axis, mm."""
+        return float(self.vertex[..., 2].max())
+
     @property
     def section(self) -> float:
         """Its mean section across the setup axis, mm2; where it has no volume, what is seen of it from above."""
-        volume, tall = self.enclosed[0], float(self.vertex[..., 2].max())
-        return volume / tall if volume > 0.0 and tall > 0.0 else self.bearing(0.0).footprint
+        volume = self.enclosed[0]
+        return volume / self.tall if volume > 0.0 and self.tall > 0.0 else self.bearing(0.0).footprint
 
     def bearing(self, *heights: float) -> Bearing:
         """How it stands on its planar faces that look down at some heights."""
         level = np.logical_or.reduce([self.level(each) for each in heights])
         below = self.vertex[level].reshape(-1, 3)[:, :2]
-        return Bearing.of(self.outline[:, :2], below, self.enclosed[1][:2], float(self.vertex[..., 2].max()))
+        return Bearing.of(self.outline[:, :2], below, self.enclosed[1][:2], self.tall)
 
     @cached_property
     def lowest_rows(self) -> NDArray[np.int64]:
@@ -122,9 +127,14 @@ class Workpiece(Record):
 
     def level(self, height: float) -> NDArray[np.bool_]:
         """Its triangles (n,) that look down at a height, of planar faces."""
-        z = self.vertex[..., 2]
-        level = (np.abs(z - height) <= self.flat).all(axis=1) & (self.normal[:, 2] < 0.0)
-        return level & np.isin(self.face, list(self.planes))
+        level, rows = np.zeros(len(self.face), bool), self._below
+        level[rows] = (np.abs(self.vertex[rows, :, 2] - height) <= self.flat).all(axis=1)
+        return level
+
+    @cached_property
+    def _below(self) -> NDArray[np.int64]:
+        """Rows of the triangles of planar faces that look down."""
+        return np.flatnonzero((self.normal[:, 2] < 0.0) & np.isin(self.face, list(self.planes)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

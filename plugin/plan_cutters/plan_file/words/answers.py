@@ -4,7 +4,6 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.domain.answers import Patch
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.figures import angle, capital, down, listed, mm, percent, place, reported, some, up
@@ -12,7 +11,7 @@ from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.standard_tools import USUAL, slenderness
-from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, RunEntry, StepEntry, StickOutEntry
+from plan_cutters.plan_file.answers import LostAreaEntry, MendEntry, RadiusEntry, RunEntry, StepEntry, StickOutEntry
 from plan_cutters.plan_file.model import ANOTHER_SETUP, CutterEntry, Plan
 from plan_cutters.plan_file.operations import UNJUDGED_CAUSE, FitEntry, HelpEntry, RemainingEntry
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS, reason
@@ -90,22 +89,22 @@ def more_setup(axis: Sequence[float], degrees: float, number: int) -> str:
     return f"{clamped(axis, degrees)} as a {_ORDER.get(number, 'further')} setup"
 
 
-def patch(area: Patch) -> str:
-    """An area that is lost, with its place.
+def patch(area: float, faces: Sequence[str], place: Sequence[float], across: float) -> str:
+    """An area that is lost, mm2, with its place.
 
-    >>> patch(Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13))
+    >>> patch(57.2, ["F31"], (12.0, 3.0, -8.04), 4.13)
     '57.2 mm² of F31, about (12, 3, -8.04), 4.1 mm across'
     """
-    wide = f", {mm(float(f'{area.across:.2g}'))} across" if area.across else ""
-    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in area.place)
-    return f"{size(area.area)} of {listed(area.faces, _FACES)}, about ({where}){wide}"
+    wide = f", {mm(float(f'{across:.2g}'))} across" if across else ""
+    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in place)
+    return f"{size(area)} of {listed(faces, _FACES)}, about ({where}){wide}"
 
 
-def excluded_areas(areas: Sequence[Patch], area: float) -> str:
+def excluded_areas(areas: Sequence[LostAreaEntry], area: float) -> str:
     """Say which connected areas to leave to another process, and how much they are in all, mm2."""
     if len(areas) == 1:
-        return f"leave to another process: {patch(areas[0])}"
-    return f"leave to another process: {size(area)} in {len(areas):,} places, the largest {patch(areas[0])}"
+        return f"leave to another process: {areas[0].why}"
+    return f"leave to another process: {size(area)} in {len(areas):,} places, the largest {areas[0].why}"
 
 
 def samples(count: int) -> str:

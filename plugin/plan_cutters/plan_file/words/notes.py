@@ -37,7 +37,7 @@ NoteCode = Literal[
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
-    "repeated_body", "crosses_itself", "folds_back", "changed_by_step",
+    "repeated_body", "crosses_itself", "folds_back", "changed_by_step", "bodies_apart",
 ]  # fmt: skip
 
 
@@ -197,6 +197,15 @@ def repeated_faces(faces: str, stay: str, count_: int) -> Note:
     )
 
 
+def bodies_apart(faces: Sequence[str]) -> Note:
+    """`faces`: of each group of bodies that touch."""
+    return Note(
+        "bodies_apart",
+        f"The file has {len(faces)} bodies that do not touch: {listed(faces, 4)}. Each is clamped and machined by itself: plan "
+        f"one at a time, the first with --ignore {','.join(faces[1:])}.",
+    )
+
+
 def setup_proposed(setups: Sequence[str], why: str) -> Note:
     return Note("setup_proposed", f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {' and '.join(setups)}. {why}")
 
@@ -236,7 +245,8 @@ _WRONG = "is its unit wrong? --unit gives the right one."
 _SHEETS = "stand", "construction sheets do", "them"
 #: Notes that are doubts, in the order in which these are listed.
 _DOUBTFUL: tuple[tuple[NoteCode, ...], ...] = (
-    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back", "changed_by_step")
+    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back", "changed_by_step"),
+    ("bodies_apart",),
 )  # fmt: skip
 
 

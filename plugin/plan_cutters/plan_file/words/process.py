@@ -12,6 +12,7 @@ from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, 
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
+    MARGIN,
     NOT_PLANNED,
     OTHER_ORIENTATION,
     SHORT_STEP,
@@ -361,6 +362,8 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
+    if known and least < MARGIN and steps[step].mode == "fixed" and steps[step].own is None:
+        clearance = f"{clearance[:-1]}, where no orientation of the plan has {mm(MARGIN)}."
     return ProcessStory(
         rows=rows,
         stands=tuple(each.text for each in process.setups),
@@ -491,6 +494,13 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
     if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
+    sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
+    if sharp >= WORTH and plan.effective.sharp_edges == "asked":
+        # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
+        words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
+        yield NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        if left - sharp < WORTH:
+            return
     if advice is None:
         if "mend" not in plan.effective.answers:
             yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
