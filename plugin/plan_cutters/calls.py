@@ -1,6 +1,7 @@
 """The calls of a script: what each takes, without the CAD kernel and the compiler, which are loaded as it is called."""
 
 import os
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Unpack
 
 from plan_cutters.domain.checks import shown, spelled_out
@@ -11,13 +12,15 @@ from plan_cutters.errors import OptionError
 from plan_cutters.options import Options, PlanOptions, PointOptions
 
 if TYPE_CHECKING:
-    from plan_cutters.document.clock import Progress
     from plan_cutters.judging.posture_maps import PostureMap
     from plan_cutters.result import Result
 
+#: Told the stage, how much of it is done, of how much.
+Progress = Callable[[str, int, int], None]
+
 
 @spelled_out(PlanOptions, Options)
-def plan(part: Any, *, progress: "Progress | None" = None, cache: bool = True, **options: Unpack[PlanOptions]) -> "Result":
+def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **options: Unpack[PlanOptions]) -> "Result":
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -119,6 +122,7 @@ def posture_map(
     --------
     On the bottom line of a groove, across it and along it:
 
+    >>> import numpy as np
     >>> found = posture_map("samples/v_groove.step", point=(0, 0, 0), cutter="R8L90", rotations=[0.0, np.pi / 2], tolerance=0)
     >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
     [[[27.6, 61.4]], []]

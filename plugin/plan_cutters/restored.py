@@ -47,7 +47,7 @@ def part_of(plan: Plan, folder: Path, named: Path | None = None) -> Path:
     places = [named] if named is not None else [place / str(name) for place in (Path(), folder, folder.absolute().parent)]
     there = [place for place in places if place.is_file()]
     if not there:
-        looked = str(named) if named is not None else f"{name}, here or beside the plan"
+        looked = str(named) if named is not None else f"{name}, here or with the plan"
         raise PlanError(f"its part is gone ({looked}): give its file with --part")
     same = [place for place in there if plan.part.sha256 in (None, sha256(place))]
     if not same:
@@ -88,9 +88,9 @@ def _arrays(plan: Plan, folder: Path, form: str) -> dict[str, NDArray[Any]]:
 
 
 def _prepared(plan: Plan, arrays: Arrays, question: Question, prepared: Callable[..., Prepared]) -> Prepared:
-    ready = prepared(replace(question.options, jobs=cores()), excluded=question.aside)
+    ready = prepared(replace(question.options, jobs=cores()), excluded=question.excluded)
     ready = replace(ready, exempt=arrays.get("exempt"), inside_bodies=arrays["inside_bodies"])
-    placed = [each.source.sha256 if hasattr(each.source, "sha256") else None for each in ready.conditions.surroundings.fixtures]
+    placed = [None if each.source is None else each.source.sha256 for each in ready.conditions.surroundings.fixtures]
     before = [each.sha256 for each in plan.fixtures if 0 in each.setups]
     if placed != before:
         raise PlanError(f"a file of its fixtures was changed since: {_AGAIN}")
@@ -114,16 +114,16 @@ def _over_setups(plan: Plan, arrays: Arrays, ready: Prepared) -> OverSetups:
 
 
 def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:
-    axis, lean = (arrays[f"{word}_{name}"].astype(float) for word in ("axis", "lean"))
+    axis, tilted = (arrays[f"{word}_{name}"].astype(float) for word in ("axis", "lean"))
     samples, count = ready.samples, len(ready.options.postures.rotations)
     shift = arrays.get(f"shift_{name}", np.zeros_like(axis)).astype(float)
     across, along = np.linalg.norm(np.cross(samples.normal, axis), axis=1), (samples.normal * axis).sum(axis=1)
-    turn = rotations_of(samples.normal, samples.direction_max, lean)
+    turn = rotations_of(samples.normal, samples.direction_max, tilted)
     known = np.isfinite(turn)
     ends = ready.options.postures.rotations
     nearest = np.abs(np.angle(np.exp(1j * (np.where(known, turn, 0.0)[:, None] - ends)))).argmin(axis=1) if count else 0
     rotation = np.where(known, nearest, -1).astype(np.int32)
-    return Verdicts(arrays[f"verdict_{name}"], axis, lean, np.arctan2(across, along), rotation, shift, arrays[f"reason_{name}"])
+    return Verdicts(arrays[f"verdict_{name}"], axis, tilted, np.arctan2(across, along), rotation, shift, arrays[f"reason_{name}"])
 
 
 def _travels(plan: Plan, arrays: Arrays) -> dict[str, Travel]:
@@ -139,10 +139,10 @@ def _travels(plan: Plan, arrays: Arrays) -> dict[str, Travel]:
 def _radii(plan: Plan, arrays: Arrays) -> tuple[RadiusMap, ...]:
     made = []
     for each in plan.largest_radius:
-        axis, lean, radius, beyond = (arrays[f"radius_{word}{each.shape}"] for word in ("axis_", "lean_", "", "beyond_"))
+        axis, tilted, radius, beyond = (arrays[f"radius_{word}{each.shape}"] for word in ("axis_", "lean_", "", "beyond_"))
         reason, tilt, rotation = (np.full(len(radius), none) for none in (np.uint8(NO_REASON), np.nan, np.int32(-1)))
         made.append(RadiusMap(each.shape, each.length_over_radius, each.step, each.least_mm, each.most_mm, radius, beyond,
-                              reason, axis, lean, tilt, rotation))  # fmt: skip
+                              reason, axis, tilted, tilt, rotation))  # fmt: skip
     return tuple(made)
 
 
@@ -160,7 +160,7 @@ def _operations(plan: Plan, folder: Path, ready: Prepared) -> Operations | None:
 
 def _plan(entry: OperationPlanEntry, number: int, arrays: Arrays, ready: Prepared) -> OperationPlan:
     behind = f"_{entry.name.replace(' ', '_')}" if number else ""
-    label, strip, length, seconds, alone, lean, strategy, contact, link = (
+    label, strip, length, seconds, alone, tilted, strategy, contact, link = (
         arrays[f"{word}{behind}"]
         for word in ("operation", "strip_mm", "path_mm", "seconds", "exclusive", "lean", "strategy", "contact", "link_s")
     )
@@ -170,7 +170,7 @@ def _plan(entry: OperationPlanEntry, number: int, arrays: Arrays, ready: Prepare
     rows = np.flatnonzero(alone)
     serves[rows, label[rows]] = True
     none = np.full(n, -1, np.int32)
-    return OperationPlan(entry.name, operations, label, serves, strip, length, seconds, none, lean, strategy, contact, link,
+    return OperationPlan(entry.name, operations, label, serves, strip, length, seconds, none, tilted, strategy, contact, link,
                          float(np.nan), float(np.nan), float(np.nan), np.empty(0, np.int64))  # fmt: skip
 
 

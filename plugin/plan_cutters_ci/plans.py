@@ -194,16 +194,16 @@ def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[str, Radii]:
     again = {a.id: b.id for a, b, _ in pairs}
     theirs = {*again.values()}
     came = [(face, radius) for face in new.faces if face.id not in theirs and (radius := _radius(face))]
-    found: dict[str, Radii] = {}
+    radii: dict[str, Radii] = {}
     for face in old.faces:
         if face.id in again or not (radius := _radius(face)):
             continue
-        around = {again[name] for name in face.neighbours or () if name in again}
+        neighbours = {again[name] for name in face.neighbours or () if name in again}
         for other, its in came:
-            same = around & {*(other.neighbours or ())}
-            if other.shape == face.shape and 2 * len(same) > len(around) > 1 and not math.isclose(radius, its, rel_tol=1e-4):
-                found |= {f"-{face.id}": (radius, its), f"+{other.id}": (radius, its)}
-    return found
+            same = neighbours & {*(other.neighbours or ())}
+            if other.shape == face.shape and 2 * len(same) > len(neighbours) > 1 and not math.isclose(radius, its, rel_tol=1e-4):
+                radii |= {f"-{face.id}": (radius, its), f"+{other.id}": (radius, its)}
+    return radii
 
 
 def _radius(face: FaceEntry) -> float | None:

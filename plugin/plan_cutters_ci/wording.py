@@ -54,7 +54,7 @@ def headline(difference: PlanDifference) -> str:
 
 
 def _counts(each: FaceDifference | CutterDifference, word: str) -> bool:
-    return each.won if word == "won" else each.lost and lost_or_less(each) == word
+    return each.won if word == "won" else each.lost and fall(each) == word
 
 
 def mark_of(difference: PlanDifference) -> str:
@@ -125,11 +125,11 @@ def mark(each: FaceDifference | CutterDifference) -> str:
     if each.lost and each.won:
         return "lost and won"
     if each.lost or each.won:
-        return lost_or_less(each) if each.lost else "won"
+        return fall(each) if each.lost else "won"
     return "new" if each.was is None else "gone" if each.now is None else "changed"
 
 
-def lost_or_less(each: FaceDifference | CutterDifference) -> str:
+def fall(each: FaceDifference | CutterDifference) -> str:
     """`lost` of what was reached whole or finished, and of what is new or gone; `less` of what was not, and is less by now."""
     if each.was is None or each.now is None:
         return "lost"

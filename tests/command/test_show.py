@@ -1,16 +1,29 @@
 """`plan-cutters show`: page and models of a folder are those that the run itself writes, and what cannot be made has a line."""
 
+import itertools
+import os
 import shutil
+import signal
 
 import pytest
 
 from plan_cutters.answers import ask
 from plan_cutters.plan_file.load import load_plan
 from plan_cutters_base.workers import supervise
-from tests.command.test_plan_of_verdicts import PART, WORDS, interrupted_in_c
 from tests.support.commands import in_lines, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES
+
+PART = SAMPLES / "v_groove.step"
+WORDS = (PART, "--cutter", "R6L80", "--grid", "3", "--area-budget", "50", "--answers", "mend", "--operations", "fewest")
+
+
+def interrupted_in_c(*_, **__):
+    """Let an interrupt come while one call does not come back, as of the CAD kernel: the worker is killed."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    os.kill(os.getppid(), signal.SIGINT)
+    any(itertools.repeat(False))
+
 
 MODELS = ("annotated.glb", "annotated.step", "review.html")
 #: Everything that a page shows: two setups, a machine of rotary axes, a fixture, largest radii, operations.
@@ -67,7 +80,7 @@ def test_where_nothing_is_missing_the_part_is_not_asked_for(whole, tmp_path):
 
 def gone(out):
     (out.parent / PART.name).unlink()
-    return "its part is gone (v_groove.step, here or beside the plan): give its file with --part"
+    return "its part is gone (v_groove.step, here or with the plan): give its file with --part"
 
 
 def changed(out):

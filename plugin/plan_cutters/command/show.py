@@ -43,7 +43,7 @@ class ShowRequest:
     cls=Command,
     examples=(
         (f"{_SELF} blade-plan", "After a run that was interrupted or ran out of time:"),
-        (f"{_SELF} blade-plan --part parts/blade.step --formats html", "The page alone; the part lies elsewhere:"),
+        (f"{_SELF} blade-plan --part parts/blade.step --formats html", "The page alone, with a part in another folder:"),
     ),
     codes=(
         ("0", "page and models are there"),

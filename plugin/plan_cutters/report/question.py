@@ -16,7 +16,7 @@ class Question:
     """All that a plan was made with besides its part: the part is prepared again with it."""
 
     options: Options
-    aside: Mapping[int, str]  #: Faces that the CAD kernel could not work on, by number: why.
+    excluded: Mapping[int, str]  #: Faces that the CAD kernel could not work on, by number: why.
 
 
 def question_of(result: Judged) -> NDArray[np.uint8]:
