@@ -57,7 +57,7 @@ class ShowRequest:
 @options("formats", "verbose", "quiet", "debug")
 @takes(ShowRequest)
 def command(request: ShowRequest) -> int:
-    """Show the plan in a folder: print its summary, and make what it lacks of page and models.
+    """Show the plan in a folder: print its summary, and make page and models that it lacks.
 
     They are made of plan.json and samples.npz there, and of the file of the part. Nothing is judged again.
     """
