@@ -79,7 +79,7 @@ def make_job(group, word: str = MODELS[0]):
     document, result = group.Document, objects.result_of(group)
     holder = next((each for each in group.Group if getattr(each, "PlanModel", "") == word), None)
     if holder is None or word not in result.paths:
-        raise model.Refused(tr("this plan shows no operations: plan with --operations fewest"))
+        raise model.Refused(tr("this plan shows no operations: choose some in “Operations” and plan again"))
     plan = result.plan["operations"]["plans"][MODELS.index(word)]
     macro = host.operations_macro()
     with objects.step(document, tr("Job of a plan")):

@@ -8,9 +8,9 @@ import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
 import type { Eyes } from "./eyes.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import { Machine } from "./machine.ts";
-import type { Cutter, Meta, Operation, OperationPlan, Spot, Vec } from "./meta.ts";
+import type { Cutter, Meta, Operation, OperationPlan, Spot, Step, Vec } from "./meta.ts";
 import type { Outline } from "./outline.ts";
-import { planOf, postureOf, takenBy } from "./operations.ts";
+import { firstMode, planOf, postureOf, PROCESS, stepOf, takenBy } from "./operations.ts";
 import type { PartView } from "./part.ts";
 import type { Picker } from "./pick.ts";
 import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
@@ -32,7 +32,7 @@ export class App {
   cutter: Cutter;
   /** Stands in the setup that serves the sample shown. */
   readonly machine: Machine;
-  mode = "verdict";
+  mode: string;
   sample: Sample | null = null;
   spot: Spot | null = null;
   posture: Posture | null = null;
@@ -65,6 +65,7 @@ export class App {
     readonly say: (text: string) => void,
   ) {
     this.cutter = this.cutterOf(meta.shown);
+    this.mode = firstMode(meta);
     this.machine = new Machine(meta);
   }
 
@@ -140,10 +141,15 @@ export class App {
 
   private standOut: ((row: number) => boolean) | null = null;
 
-  /** Let the regions of an operation stand out, whatever is shown; null: none. */
-  lightOperation(plan: OperationPlan | null, number: number): void {
-    const taken = plan && takenBy(plan, this.arrays);
-    this.standOut = taken && ((row) => taken(row) === number);
+  /** The step of the process that finishes a sample, where the process is shown. */
+  stepAt(row: number): Step | null {
+    const { process } = this.meta;
+    return this.mode === PROCESS && process ? (process.steps[stepOf(this.arrays)(row) - 1] ?? null) : null;
+  }
+
+  /** Let some samples stand out, whatever is shown; null: none. */
+  lift(mine: ((row: number) => boolean) | null): void {
+    this.standOut = mine;
     if (this.look) this.part.paint(this.look, this.standOut);
     this.stage.request();
   }
@@ -161,7 +167,9 @@ export class App {
     this.spot = row === null ? null : (spot ?? this.spotOf(row));
     this.posture = null;
     this.met = null;
-    this.stand(this.operation?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
+    const step = row === null ? null : this.stepAt(row);
+    const planned = this.operation ?? (step?.cutter === this.cutter.id ? step : null);
+    this.stand(planned?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
     this.emit("sample");
     this.emit("operation");
     if (spot) this.emit("spot");
@@ -169,7 +177,7 @@ export class App {
   }
 
   /** Let the part stand in a setup, among the fixtures there. */
-  private stand(setup: number): void {
+  stand(setup: number): void {
     this.machine.stand(setup);
     if (this.drawn.setup === setup) return;
     this.drawn.setup = setup;
@@ -193,6 +201,14 @@ export class App {
     const here = (this.samples.setup(this.cutter.id, sample.row) ?? 0) === operation.setup;
     if (found?.shift && here && norm(cross(place(this.cutter, sample, found).axis, axis)) < NEAR) return found;
     return postureOf(this.plan, this.arrays, axis, sample);
+  }
+
+  /** Tip and axis of a cutter as it stands in the plan at a sample; null where none is known. */
+  standing(cutter: Cutter, row: number): Placed | null {
+    const sample = this.samples.at(row);
+    const axis = this.operationAt(row)?.axis;
+    const posture = axis && this.plan ? postureOf(this.plan, this.arrays, axis, sample) : this.samples.posture(cutter.id, row);
+    return posture && place(cutter, sample, posture);
   }
 
   /** The posture of the operation shown, the one found, or the witness's. */

@@ -1,9 +1,9 @@
 // What the surface is coloured by: a colour and a pattern for each sample, and the legend that says so.
 
 import type { Arrays } from "./decode.ts";
-import type { Meta, OperationPlan, Pattern, Scalar } from "./meta.ts";
+import type { Meta, OperationPlan, Pattern, Process, Scalar } from "./meta.ts";
 import { NO_REASON, UNJUDGED } from "./meta.ts";
-import { modeOf, planOf, plansOf, takenBy, titleOf } from "./operations.ts";
+import { modeOf, planOf, plansOf, PROCESS, stepOf, takenBy, titleOf } from "./operations.ts";
 import type { Samples } from "./samples.ts";
 
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
@@ -62,8 +62,9 @@ const CLASSES: [string, string, Pattern][] = [
 
 export function modesOf(meta: Meta): Mode[] {
   return [
+    ...(meta.process ? [{ key: PROCESS, label: "Step" }] : []),
     { key: "verdict", label: "Verdict" },
-    ...plansOf(meta).map((plan) => ({ key: modeOf(plan), label: titleOf(plan) })),
+    ...plansOf(meta).filter((plan) => modeOf(meta, plan) !== PROCESS).map((plan) => ({ key: modeOf(meta, plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
@@ -77,6 +78,7 @@ export function lookOf(meta: Meta, arrays: Arrays, samples: Samples, mode: strin
   if (mode === "reason") return reasonLook(meta, samples, cutter);
   if (mode === "setup") return setupLook(meta, samples, cutter);
   if (mode === "class") return classLook(meta, samples);
+  if (mode === PROCESS && meta.process) return processLook(meta, arrays, samples, meta.process, cutter);
   const plan = planOf(meta, mode);
   return plan ? operationLook(meta, arrays, samples, plan, cutter) : verdictLook(meta, samples, cutter);
 }
@@ -96,6 +98,27 @@ const verdictEntries = (meta: Meta): Entry[] =>
 
 function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
   return painted(meta, "Verdict", verdictEntries(meta), samples, (i) => VERDICTS.indexOf(samples.verdict(cutter, i)));
+}
+
+/** What stays of the process: pale and hatched, so that it is no colour of a step. */
+export const STAYS: Omit<Entry, "share"> = { colour: "#c4c9ce", pattern: "hatch", label: "stays" };
+
+/** Holes that wait for a drill: no colour of a step, too. */
+const DRILLED: Entry = { colour: "#b9a3d6", pattern: "dots", label: "for drills" };
+
+/** Which step finishes each sample, with the shares of the plan; the rest is hatched, but for what no cutter has to reach. */
+function processLook(meta: Meta, arrays: Arrays, samples: Samples, process: Process, cutter: string): Look {
+  const { steps } = process;
+  const number = stepOf(arrays);
+  const others = ["unjudged", "drilled", "inside_bodies"];
+  const entries: Entry[] = [...steps.map(({ colour, pattern, label }) => ({ colour, pattern, label })), STAYS, ...others.map((word) => (word === "drilled" ? DRILLED : plain(meta, word)))];
+  const look = painted(meta, "Process, by step", entries, samples, (i) => {
+    const k = number(i);
+    const other = k ? -1 : others.indexOf(samples.verdict(cutter, i));
+    return k ? k - 1 : steps.length + 1 + other;
+  });
+  const share = (label: string): number | undefined => (label === STAYS.label ? process.left_share : steps.find((each) => each.label === label)?.share);
+  return { ...look, entries: look.entries.map((each) => ({ ...each, share: share(each.label) ?? each.share ?? 0 })) };
 }
 
 /** Which operation takes each sample; what none takes keeps the colours of its verdicts. */

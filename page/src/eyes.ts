@@ -112,7 +112,7 @@ export class Eyes {
       if (into) for (const owner of owners) into.add(owner);
       const { box, said } = this.boxes.get(key)!;
       box.checked = !this.hidden.has(key);
-      said.textContent = this.faded.has(key) && box.checked ? "faded: it would hide what is not reached" : "";
+      said.textContent = this.faded.has(key) && box.checked ? "seen through" : "";
     }
     this.changed();
   }

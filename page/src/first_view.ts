@@ -1,10 +1,11 @@
-// The first view shows what is lost: from the side from which most of the faces that are not reached are seen, and of these most
-// of the area. What holds the part does not decide: where it hides what is lost, it is faded.
+// The first view is from the spindle's side, with the part as large as it can be seen there; what holds it is seen through. Other
+// views show what stays: from the sides from which most of its faces are seen, and of these most of the area.
 
 import type { App } from "./app.ts";
 import type { View } from "./camera.ts";
 import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
+import { PROCESS, stepOf } from "./operations.ts";
 import { dot } from "./vectors.ts";
 
 /** Samples that are looked at, about, and of each face at least: enough to tell one side from another. */
@@ -15,10 +16,12 @@ const WORTH = 1.3;
 const FACING = 0.17;
 /** A fixture is faded where it hides more than this share of what is seen of what is lost, or all of a face. */
 const MUCH = 0.1;
-/** Who has no keys finds the other sides in the list of views. */
-const COARSE = matchMedia("(pointer: coarse)");
 /** Directions that are looked along, the usual one aside. */
 const MOST = 10;
+
+/** Verdicts of what a cutter loses, and of what can stay of a process: another cutter may reach it, and no step take it. */
+const LOST = new Set(["inaccessible", "undecided"]);
+const STAYS = new Set([...LOST, "accessible", "interference_free"]);
 
 interface Looked {
   face: Owner;
@@ -37,11 +40,54 @@ interface Seen extends View {
   covered: Map<Owner, Set<Owner>>;
 }
 
-/** The sides that show what the cutter shown loses, the best one first, and so many that no lost face is left that one can see. */
+/** Heights over the plane across the spindle from which the part is looked at first, degrees; another turn must show so much more. */
+const [RISES, MORE] = [[34, 48, 60], 1.08];
+/** Vertices that are looked at, about. */
+const VERTICES = 3000;
+
+/** Look at the part from the spindle's side, from where it fills most of the picture; all that holds it is seen through. */
+export function firstView(app: App): void {
+  const { drawn, eyes, stage: { table } } = app;
+  eyes?.fade(new Set(app.meta.fixtures.map((_, i) => -1 - i)));
+  const all = drawn.shownVertices;
+  const step = 3 * Math.max(1, Math.floor(all.length / 3 / VERTICES));
+  const points = Array.from({ length: Math.ceil(all.length / step) }, (_, i) => [...all.subarray(i * step, i * step + 3)] as Vec);
+  const { turn } = table.aim;
+  let best = { turn, rise: RISES[0], fills: 0 };
+  for (let k = 0; k < 12 && points.length > 2; k++) {
+    for (const rise of RISES) {
+      const aim = table.fitted(turn + 30 * k, rise);
+      const { right, up } = table.frame(aim);
+      const fills = hullArea(points.map((point) => [dot(point, right), dot(point, up)])) / (4 * aim.half ** 2 * table.aspect);
+      if (fills > MORE * best.fills) best = { turn: turn + 30 * k, rise, fills };
+    }
+  }
+  table.show(best.turn, best.rise);
+}
+
+/** The area of the convex hull of points in a plane, by Andrew's chain. */
+function hullArea(points: [number, number][]): number {
+  points.sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (way: [number, number][]): number => {
+    const chain: [number, number][] = [];
+    for (const p of way) {
+      while (chain.length > 1) {
+        const [a, b] = chain.slice(-2);
+        if ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > 0) break;
+        chain.pop();
+      }
+      chain.push(p);
+    }
+    return chain.slice(1).reduce((sum, p, k) => sum + (chain[k][0] * p[1] - p[0] * chain[k][1]) / 2, 0);
+  };
+  return half(points) + half(points.reverse());
+}
+
+/** The sides that show what stays, the best one first, and so many that no lost face is left that one can see. */
 export class LostViews {
   readonly views: Seen[] = [];
   readonly lost: Set<Owner>;
-  private at = 0;
+  at = -1;
 
   constructor(private readonly app: App) {
     const looked = lostSamples(app);
@@ -83,18 +129,10 @@ export class LostViews {
     }
   }
 
-  /** Look from the best side at once. */
-  first(): void {
-    const [best] = this.views;
-    if (!best) return;
-    this.app.stage.table.show(best.turn, best.rise);
-    this.said(best);
-  }
-
-  /** Fly to the next side. */
+  /** Fly to the next side; which of them. */
   next(): void {
     const { app, views } = this;
-    if (!views.length) return app.say("All is reached");
+    if (!views.length) return app.say("Nothing stays that can be seen");
     this.at = (this.at + 1) % views.length;
     const view = views[this.at];
     app.stage.table.fit(view.turn, view.rise);
@@ -105,11 +143,9 @@ export class LostViews {
     const { app, lost, views } = this;
     const names = app.eyes?.fade(hiding(view)) ?? [];
     const told = names.length ? ` Faded, for it hides some: ${names.join(", ")}.` : "";
-    const elsewhere = [...lost].filter((face) => !view.faces.has(face));
-    const other = [...new Set(views.flatMap(({ faces }) => [...faces]))].filter((face) => elsewhere.includes(face));
-    const many = other.length > 4 ? `${other.length} faces` : other.map((face) => app.drawn.called(face)).join(", ");
-    if (other.length) app.say(`On other sides more is not reached: ${many} (${COARSE.matches ? "View" : "l"} shows them).${told}`);
-    else if (told) app.say(told.trim());
+    const here = [...lost].filter((face) => view.faces.has(face));
+    const many = here.length > 4 ? `${here.length} faces` : here.map((face) => app.drawn.called(face)).join(", ");
+    app.say(`What stays, side ${this.at + 1} of ${views.length}: ${many}.${told}`);
   }
 }
 
@@ -120,13 +156,14 @@ function hiding({ area, behind, covered }: Seen): Set<Owner> {
   return found;
 }
 
-/** Samples of what is lost: some of each face. */
-function lostSamples({ meta, samples, cutter }: App): Looked[] {
+/** Samples of what no step finishes, or the cutter shown loses: some of each face. */
+function lostSamples({ arrays, meta, mode, samples, cutter }: App): Looked[] {
+  const step = mode === PROCESS ? stepOf(arrays) : null;
   const rows = new Map<number, number[]>();
   let count = 0;
   for (let row = 0; row < samples.count; row++) {
     const verdict = samples.verdict(cutter.id, row);
-    if (verdict !== "inaccessible" && verdict !== "undecided") continue;
+    if (step ? step(row) > 0 || !STAYS.has(verdict) : !LOST.has(verdict)) continue;
     const face = samples.face.values[row];
     const mine = rows.get(face);
     if (mine) mine.push(row);

@@ -5,22 +5,22 @@ import type { App } from "./app.ts";
 import { VIEWS } from "./camera.ts";
 import type { Clip } from "./clip.ts";
 import { button, el } from "./dom.ts";
-import type { Meta } from "./meta.ts";
 import type { SpotList } from "./lists.ts";
 import type { Measure } from "./measure.ts";
-import { nextPlan, plansOf } from "./operations.ts";
+import { nextSubject } from "./operations.ts";
 import type { Selection } from "./selection.ts";
 import { closeNow, showSpot } from "./view.ts";
 
 const HELP: [string, string][] = [
   ["Click, Enter", "show the posture map of the sample there (Enter: in the middle of the picture)"],
-  ["Ctrl and click, s", "select the face there (s: of the pointer or the sample), to copy it for --faces"],
+  ["Ctrl and click, s", "select the face there (s: of the pointer or the sample), to copy it as a choice of faces"],
   ["Drag, arrows", "turn the part (in the posture map: move the tool)"],
   ["Shift and drag, Ctrl and arrows", "shift the picture"],
   ["Wheel, + and -", "zoom"],
+  ["o", "show the process, the cutter alone, or another plan of operations"],
   ["f", "fit the part into the picture"],
   ["w", "the picture in the whole window, and back"],
-  ["l", "look at what is not reached, at its next side"],
+  ["l", "look at what stays, at its next side"],
   ["b", "hide or show fixtures and check faces"],
   ["1 to 7", "front, back, left, right, top, bottom, corner"],
   ["Shift and arrows, j and k", "step to a neighbouring sample"],
@@ -37,10 +37,8 @@ const HELP: [string, string][] = [
   ["?", "this help"],
 ];
 
-const OPERATIONS: [string, string] = ["o", "show verdicts, or the operations of a plan"];
-
-export function helpDialog(meta: Meta): HTMLDialogElement {
-  const rows = [...HELP.slice(0, 13), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(13)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
+export function helpDialog(): HTMLDialogElement {
+  const rows = HELP.map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
   const dialog = el("dialog", { id: "help", "aria-labelledby": "help-title" });
   dialog.append(
     el("h2", { id: "help-title" }, "Mouse and keys"),
@@ -94,7 +92,7 @@ export function listenKeys(app: App, parts: Parts): void {
       c: () => parts.clip.next(),
       m: () => parts.measure.toggle(),
       s: () => parts.selection.toggle(app.hot ?? app.faceShown()),
-      o: () => (plansOf(app.meta).length ? nextPlan(app) : undefined),
+      o: () => nextSubject(app),
       z: () => lookClosely(app),
       t: parts.tool,
       g: parts.glass,

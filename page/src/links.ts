@@ -5,6 +5,7 @@ import type { Aim } from "./camera.ts";
 import { modesOf } from "./colours.ts";
 import { copyButton } from "./copy.ts";
 import type { Vec } from "./meta.ts";
+import { firstMode } from "./operations.ts";
 import { alike, type Posture } from "./samples.ts";
 import { distance, mixed, turned } from "./vectors.ts";
 import { flyTo, showFace } from "./view.ts";
@@ -52,7 +53,7 @@ export class Links {
     const words: [string, string][] = [["cutter", cutter.id]];
     if (sample) words.push(["face", meta.faces[this.app.faceShown()!]?.id ?? ""], ["sample", String(sample.row)]);
     if (sample && posture && !same(posture, this.app.startPosture(sample.row))) words.push(["posture", [posture.tilt, posture.rotation].map((angle) => Number(angle.toFixed(ANGLE))).join()]);
-    if (mode !== "verdict") words.push(["colours", mode]);
+    if (mode !== firstMode(meta)) words.push(["colours", mode]);
     words.push(["view", [Number(turn.toFixed(ANGLE)), Number(rise.toFixed(ANGLE)), ...[half, ...target].map(short)].join()]);
     return `#${words.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&")}`;
   }

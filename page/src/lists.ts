@@ -3,6 +3,8 @@
 import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
+import { NARROW } from "./legend.ts";
+import { PROCESS } from "./operations.ts";
 import { filterTools, holds, moreOf, press, sortable } from "./tables.ts";
 import { showFace, showSpot } from "./view.ts";
 
@@ -10,6 +12,21 @@ import { showFace, showSpot } from "./view.ts";
 const SHORT = 24;
 /** From so many rows on a table has a box that filters them. */
 const MANY = 6;
+/** From so many on cutters that finish like the one shown are folded; so many faces are shown, and on a phone. */
+const [FEW, FACES, NARROWLY] = [4, 20, 6];
+
+/** Rows of a table that are folded on the screen until a button shows them; whoever filters sees those that fit. */
+function fold(table: HTMLTableElement, rows: HTMLElement[], label: string): void {
+  for (const row of rows) row.classList.add("rest");
+  table.classList.add("folded");
+  const more = button(label, () => unfold(), { class: "unfold" });
+  const unfold = (): void => {
+    table.classList.remove("folded");
+    more.remove();
+  };
+  table.after(more);
+  table.parentElement!.addEventListener("input", unfold, { once: true });
+}
 
 /** One line a cutter, the one that is shown on top; more of it on opening. */
 export function enhanceCutters(app: App): void {
@@ -25,7 +42,10 @@ export function enhanceCutters(app: App): void {
     if (more) more.hidden = !wanted;
     openers.get(row)?.setAttribute("aria-expanded", String(wanted));
   };
-  const choose = (row: HTMLElement): void => app.setCutter(row.dataset.cutter!);
+  const choose = (row: HTMLElement): void => {
+    app.setCutter(row.dataset.cutter!);
+    if (app.mode === PROCESS) app.setMode("verdict");
+  };
   for (const row of rows) {
     const name = row.querySelector<HTMLElement>("th, td") ?? row;
     const more = moreOf(row);
@@ -69,6 +89,9 @@ export function enhanceCutters(app: App): void {
   mark();
   if (table && rows.length > 1) sortable(table, is);
   if (!table || rows.length < MANY) return;
+  // A row that says no more than "this one finishes, too" says little.
+  const also = rows.filter((row) => row.dataset.cutter !== app.meta.shown && app.meta.cutters.find(({ id }) => id === row.dataset.cutter)?.feasible);
+  if (also.length >= FEW) fold(table, also, `${also.length} more also finish`);
   const feasible = new Set(app.meta.cutters.filter((each) => each.feasible).map(({ id }) => id));
   const box = el("input", { type: "checkbox" });
   const filtered = (wanted: string): number => {
@@ -122,7 +145,7 @@ export class SpotList {
     this.at = -1;
     for (const more of document.querySelectorAll<HTMLDetailsElement>("#spots details[data-cutter]")) {
       more.hidden = more.dataset.cutter !== this.app.cutter.id;
-      more.open = !more.hidden;
+      more.open = !more.hidden && !NARROW.matches;
     }
     this.none.hidden = this.mine.length > 0;
   }
@@ -148,6 +171,8 @@ export class SpotList {
   private show(item: HTMLElement): void {
     const spot = this.app.meta.spots[Number(item.dataset.spot)];
     if (!spot) return;
+    // A spot is of one cutter.
+    if (this.app.mode === PROCESS) this.app.setMode("verdict");
     this.app.select(spot.sample, spot);
     item.scrollIntoView({ block: "nearest" });
     this.app.note = "";
@@ -182,6 +207,8 @@ export class FaceTable {
     });
     this.tools();
     if (this.table) sortable(this.table);
+    const beyond = [...this.rows.values()].slice(NARROW.matches ? NARROWLY : FACES);
+    if (this.table && beyond.length) fold(this.table, beyond, `All ${this.rows.size} faces`);
   }
 
   private tools(): void {

@@ -10,7 +10,7 @@ import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import { Borders } from "./edges.ts";
 import { Eyes } from "./eyes.ts";
-import { LostViews } from "./first_view.ts";
+import { firstView, LostViews } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
 import { Inset } from "./inset.ts";
 import { legend } from "./legend.ts";
@@ -19,7 +19,7 @@ import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
 import { Notes } from "./notes.ts";
-import { OperationTables, operationSwitch } from "./operations.ts";
+import { firstMode, OperationTables, subjectSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
 import { Outline } from "./outline.ts";
 import { PartView } from "./part.ts";
@@ -27,6 +27,7 @@ import { Picker } from "./pick.ts";
 import { listen } from "./pointer.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
+import { copyTyped, ProcessTable } from "./process.ts";
 import { Samples } from "./samples.ts";
 import { Scale } from "./scale.ts";
 import { partMaterial } from "./shading.ts";
@@ -102,22 +103,29 @@ async function start(): Promise<void> {
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
   const clip = (app.clip = new Clip(app));
-  const help = helpDialog(meta);
+  const help = helpDialog();
   const stills = new Stills(app);
   const selection = new Selection(app);
   const notes = new Notes(app, pristine);
   const links = new Links(app);
   panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
   document.querySelector("#summary .first")?.append(
-    el("div", { class: "tools", id: "page-tools" }, whyButton(), schemeSwitch(() => panel.draw()), notes.saveButton),
+    el("div", { class: "tools", id: "page-tools" }, ...notes.buttons()),
   );
   const alone = new Alone(say);
   const sides = new Map<string, LostViews>();
-  /** Sides that show what the cutter shown loses. */
+  /** Sides that show what stays of the process, or what the cutter shown loses. */
   const lost = (): LostViews => {
-    const found = sides.get(app.cutter.id) ?? new LostViews(app);
-    sides.set(app.cutter.id, found);
+    const subject = app.mode === firstMode(meta) ? app.mode : app.cutter.id;
+    const found = sides.get(subject) ?? new LostViews(app);
+    sides.set(subject, found);
     return found;
+  };
+  const stays = button("What stays", () => nextLost(), { id: "stays", title: "Look at what stays, side by side (l)" });
+  const nextLost = (): void => {
+    const found = lost();
+    found.next();
+    stays.textContent = found.views.length ? `What stays, ${found.at + 1} of ${found.views.length}` : "Nothing stays";
   };
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", class: "of-tool", title: "See through the tool (g)" });
   const setGlass = (): void => {
@@ -133,15 +141,18 @@ async function start(): Promise<void> {
   const toolbar = el(
     "div",
     { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
-    operationSwitch(app),
+    subjectSwitch(app),
+    stays,
+    button("Fit", () => stage.table.fit(), { title: "Fit the part into the picture (f)" }),
+    el("label", {}, "View ", views(app)),
     el("label", {}, "Colour by ", colouring(app)),
-    el("label", {}, "View ", views(app, () => lost().next())),
     el("span", { class: "group" }, shown, glass, measure.root),
     app.eyes.root,
     alone.button,
     links.button,
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
+    schemeSwitch(() => panel.draw()),
   );
   frame.append(marks.root as unknown as Node, scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
   viewer.append(legend(app), selection.root);
@@ -149,7 +160,7 @@ async function start(): Promise<void> {
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.begin(() => lost().first());
+  stage.begin(() => firstView(app));
   performance.mark("drawn");
 
   listen(app, measure, selection, (text) => {
@@ -160,7 +171,9 @@ async function start(): Promise<void> {
   new FaceTable(app);
   selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: () => lost().next(), link: () => links.button.click(), glass: setGlass, tool: setTool });
+  if (meta.process) new ProcessTable(app, meta.process);
+  copyTyped(say);
+  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: nextLost, link: () => links.button.click(), glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
   links.follow();
@@ -176,28 +189,11 @@ async function start(): Promise<void> {
   Object.assign(window, { review: app });
 }
 
-/** The reasons are folded, so that the picture comes first; the button that opens them says what is to be heeded. */
-function whyButton(): HTMLButtonElement | string {
-  const why = document.querySelector<HTMLDetailsElement>("#why");
-  if (!why) return "";
-  const heed = why.querySelectorAll(":scope > p > strong").length;
-  const made = button(heed ? `\u26a0 Why (${heed} to heed)` : "Why", () => show(!why.open), {
-    id: "show-why", "aria-controls": "why", title: "Why, for what part and machine, and what to heed",
-  });
-  const show = (open: boolean): void => {
-    why.open = open;
-    made.setAttribute("aria-expanded", String(open));
-  };
-  why.addEventListener("toggle", () => made.setAttribute("aria-expanded", String(why.open)));
-  show(false);
-  return made;
-}
-
 function colouring(app: App): HTMLSelectElement {
   const select = el("select", { id: "colouring" });
   const fill = (): void => {
     const modes = modesOf(app.meta);
-    if (!modes.some((each) => each.key === app.mode)) app.mode = "verdict";
+    if (!modes.some((each) => each.key === app.mode)) app.mode = firstMode(app.meta);
     select.replaceChildren(...modes.map(({ key, label }) => el("option", { value: key, selected: key === app.mode }, label)));
   };
   select.addEventListener("change", () => app.setMode(select.value));
@@ -209,17 +205,13 @@ function colouring(app: App): HTMLSelectElement {
   return select;
 }
 
-function views(app: App, lost: () => void): HTMLSelectElement {
-  const options = [["", "choose"], ["f", "fit"], ["l", "what is not reached"]].map(([value, name]) => el("option", { value }, name));
-  const select = el("select", { id: "views" }, ...options);
+function views(app: App): HTMLSelectElement {
+  const select = el("select", { id: "views" }, el("option", { value: "" }, "choose"));
   for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
   select.addEventListener("change", () => {
-    const { table } = app.stage;
-    const { value } = select;
+    const [, turn, rise] = VIEWS[select.value] ?? [];
     select.value = "";
-    if (value === "l") return lost();
-    const [, turn, rise] = VIEWS[value] ?? [];
-    table.fit(turn, rise);
+    app.stage.table.fit(turn, rise);
   });
   return select;
 }

@@ -89,35 +89,14 @@ export class Drawn {
     return this.seen(owner) && !this.fading.has(owner);
   }
 
-  /** Vertices of the part and of the fixtures that are there, three numbers each: what a picture is to show. Of a fixture no
-   * more than what is about as near to the part as the part is large. */
+  /** Vertices of the part, three numbers each: what a picture is to show, whatever holds it. */
   get shownVertices(): Float32Array {
-    let found = this.shown.get(this.setup);
-    if (!found) {
+    if (!this.shown) {
       let end = 0;
       for (let i = 0; i < 3 * this.ofFaces; i++) end = Math.max(end, this.triangle[i] + 1);
-      found = this.position.slice();
-      const part = found.subarray(0, 3 * end);
-      const room = this.partRadius;
-      const [low, high]: number[][] = [[], []];
-      for (let k = 0; k < 3; k++) {
-        [low[k], high[k]] = [Infinity, -Infinity];
-        for (let i = k; i < part.length; i += 3) {
-          low[k] = Math.min(low[k], part[i]);
-          high[k] = Math.max(high[k], part[i]);
-        }
-      }
-      let kept = part.length;
-      for (let i = end; i < this.owner.length && end; i++) {
-        if (!this.there(this.owner[i])) continue;
-        for (let k = 0; k < 3; k++) {
-          found[kept++] = Math.min(high[k] + room, Math.max(low[k] - room, this.position[3 * i + k]));
-        }
-      }
-      found = found.slice(0, kept);
-      this.shown.set(this.setup, found);
+      this.shown = this.position.subarray(0, 3 * end);
     }
-    return found;
+    return this.shown;
   }
 
   /** Corners of the part's own triangles. */
@@ -126,8 +105,7 @@ export class Drawn {
     for (let i = 0; i < position.length && this.owner[i / 3] >= 0; i += 3) yield [position[i], position[i + 1], position[i + 2]];
   }
 
-  /** By setup. */
-  private readonly shown = new Map<number, Float32Array>();
+  private shown: Float32Array | null = null;
 
   /** Half the diagonal of the part's box, mm. */
   get partRadius(): number {

@@ -90,7 +90,7 @@ export interface Operation {
   pattern: Pattern;
   text: string;
   /** Where its tool is shown. */
-  sample: number;
+  sample: number | null;
   /** Words of a control for its orientation: the tilted plane and the turn onto it, or the rotary axes. */
   words: string[];
 }
@@ -101,6 +101,29 @@ export interface OperationPlan {
   array: string;
   lean: string;
   operations: Operation[];
+}
+
+/** A step of the process: one cutter in one setup; `axis` is null where each sample has a posture of its own. */
+export interface Step {
+  label: string;
+  cutter: string;
+  setup: number;
+  axis: Vec | null;
+  colour: string;
+  pattern: Pattern;
+  share: number;
+  text: string;
+  /** Where its tool is shown. */
+  sample: number | null;
+}
+
+export interface Process {
+  /** The plan of operations that it is; empty: none. */
+  plan: string;
+  left_share: number;
+  /** How the part stands in each setup, and what holds it. */
+  setups: string[];
+  steps: Step[];
 }
 
 export interface ArrayEntry {
@@ -151,6 +174,7 @@ export interface Meta {
   spots: Spot[];
   scalars: Scalar[];
   operations: null | { plans: OperationPlan[] };
+  process: Process | null;
   arrays: Record<string, ArrayEntry>;
 }
 

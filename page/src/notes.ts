@@ -24,7 +24,7 @@ export class Notes {
   private readonly box = el("textarea", { id: "note", rows: 2, "aria-describedby": "note-place" });
   private readonly place = el("span", { id: "note-place", class: "hint" });
   private readonly name = el("input", { id: "reviewer", type: "text", autocomplete: "name", placeholder: "Your name" });
-  private readonly made = el("p", { id: "made-decision" });
+  private readonly made = el("span", { id: "made-decision" });
   private readonly withdraw = button("Withdraw", () => this.decide(null), { id: "withdraw" });
 
   /** `pristine` is the page as it was loaded, before anything in it came alive. */
@@ -37,16 +37,7 @@ export class Notes {
       el("h2", {}, "Review"),
       el("p", { class: "hint" }, "Notes and the decision are kept in the copy that ", el("strong", {}, "Save copy"), " writes, and nowhere else."),
       this.stored ? null : el("p", { class: "wrong" }, "The notes in this file cannot be read, and a copy of it would not have them."),
-      this.made,
-      el(
-        "p",
-        { class: "tools", id: "decide" },
-        el("label", { for: "reviewer" }, "Reviewer"),
-        this.name,
-        button("Approve", () => this.decide("approved"), { id: "approve" }),
-        button("Reject", () => this.decide("rejected"), { id: "reject" }),
-        this.withdraw,
-      ),
+      el("p", {}, this.made, " ", this.withdraw),
       this.list,
       el("label", { for: "note" }, "New note"),
       this.box,
@@ -60,6 +51,9 @@ export class Notes {
       this.begun = this.box.value.trim() ? (this.begun ?? this.current()) : null;
       this.where();
     });
+    this.name.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && this.wanted) this.decide(this.wanted);
+    });
     app.on("sample", () => this.where());
     this.where();
     this.show();
@@ -67,6 +61,19 @@ export class Notes {
       if (!this.saved || this.box.value.trim()) event.preventDefault();
     });
   }
+
+  /** What stands at the top of the page: the decision, a note, the copy; and whose they are, which is asked for where it is needed. */
+  readonly buttons = (): HTMLElement[] => [
+    this.asked,
+    button("Approve", () => this.decide("approved"), { id: "approve" }),
+    button("Reject", () => this.decide("rejected"), { id: "reject" }),
+    button("Note", () => this.moveHere(), { id: "to-note", title: "Write a note on the sample shown, or on the whole" }),
+    this.saveButton,
+  ];
+
+  private readonly asked = el("span", { id: "asked", hidden: true }, el("label", { for: "reviewer" }, "Your name"), this.name);
+  /** What is decided once the name is there. */
+  private wanted: Decision["state"] | null = null;
 
   readonly saveButton = button("Save copy", () => this.save(), { id: "save-copy", title: "Save this page with the notes and the decision in it" });
   readonly here = button("Note here", () => this.moveHere(), { id: "note-here", title: "Write a note on this sample" });
@@ -79,7 +86,9 @@ export class Notes {
   /** Who asks for it writes on the sample that is shown now. */
   private moveHere(): void {
     if (this.begun) this.begun = this.current();
+    this.asked.hidden = false;
     this.where();
+    this.box.scrollIntoView({ block: "center" });
     this.box.focus();
   }
 
@@ -99,10 +108,13 @@ export class Notes {
   private decide(state: Decision["state"] | null): void {
     const stamp = this.stamp();
     if (state && !stamp.name) {
-      this.app.say("Write your name first: a decision needs one");
+      this.app.say("Write your name first: a decision needs one. Enter takes it.");
+      this.wanted = state;
+      this.asked.hidden = false;
       this.name.focus();
       return;
     }
+    this.wanted = null;
     this.review.decision = state && { state, ...stamp };
     const open = this.review.notes.filter(({ done }) => !done).length;
     const still = state === "approved" && open ? ` ${open === 1 ? "1 note is" : `${open} notes are`} still open.` : "";

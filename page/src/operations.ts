@@ -3,16 +3,23 @@
 import type { App } from "./app.ts";
 import type { Arrays } from "./decode.ts";
 import { button, el } from "./dom.ts";
-import type { Meta, Operation, OperationPlan, Vec } from "./meta.ts";
+import type { View } from "./camera.ts";
+import type { Meta, Operation, OperationPlan, Pattern, Vec } from "./meta.ts";
 import { swatch } from "./patterns.ts";
 import { type Posture, type Sample, shareOf } from "./samples.ts";
-import { press } from "./tables.ts";
+import { moreOf, press } from "./tables.ts";
 import { cross, DEG, dot, minus, turned } from "./vectors.ts";
 
 const MODE = "operation:";
 
+/** The colouring by the steps of the process, which may be a plan of operations. */
+export const PROCESS = "process";
+
+/** What the picture shows first. */
+export const firstMode = ({ process }: Meta): string => (process ? PROCESS : "verdict");
+
 /** The colouring of a plan. */
-export const modeOf = (plan: OperationPlan): string => MODE + plan.key;
+export const modeOf = (meta: Meta, plan: OperationPlan): string => (plan.key === meta.process?.plan ? PROCESS : MODE + plan.key);
 
 export const titleOf = ({ name }: OperationPlan): string => `${name.charAt(0).toUpperCase()}${name.slice(1)} operations`;
 
@@ -20,7 +27,16 @@ export const plansOf = (meta: Meta): OperationPlan[] => meta.operations?.plans ?
 
 /** The plan that a colouring shows; null for other colourings. */
 export const planOf = (meta: Meta, mode: string): OperationPlan | null =>
-  plansOf(meta).find((plan) => modeOf(plan) === mode) ?? null;
+  plansOf(meta).find((plan) => modeOf(meta, plan) === mode) ?? null;
+
+/** The plans of operations beside the process. */
+const othersOf = (meta: Meta): OperationPlan[] => plansOf(meta).filter((plan) => modeOf(meta, plan) !== PROCESS);
+
+/** The number of the step that finishes a sample, 0 for none. */
+export function stepOf(arrays: Arrays): (row: number) => number {
+  const { values } = arrays.get("step");
+  return (row) => values[row];
+}
 
 /** The place in a plan of the operation that takes a sample, -1 for none. */
 export function takenBy(plan: OperationPlan, arrays: Arrays): (row: number) => number {
@@ -41,36 +57,44 @@ export function postureOf(plan: OperationPlan, arrays: Arrays, axis: Vec, sample
   return { tilt, rotation, ...shareOf(arrays, `operation_share.${plan.key}`, sample.row) };
 }
 
-/** What the surface shows: verdicts, or the operations of a plan. */
-export function operationSwitch(app: App): HTMLElement | null {
-  const plans = plansOf(app.meta);
-  if (!plans.length) return null;
-  const choices: [string, string][] = [["verdict", "Verdicts"]];
-  for (const plan of plans) choices.push([modeOf(plan), plans.length > 1 ? titleOf(plan) : "Operations"]);
-  const buttons = choices.map(([mode, label]) => button(label, () => app.setMode(mode), { title: "Verdicts or operations (o)" }));
-  const mark = (): void => choices.forEach(([mode], i) => buttons[i].setAttribute("aria-pressed", String(app.mode === mode)));
-  app.on("look", mark);
-  mark();
-  return el("span", { class: "group", id: "show", role: "group", "aria-label": "Show" }, ...buttons);
+/** What the surface shows, by mode: the process, the cutter shown alone, other plans. */
+function subjects(app: App): [string, string][] {
+  const { meta } = app;
+  const found: [string, string][] = meta.process ? [[PROCESS, "The process"]] : [];
+  found.push(["verdict", `${app.cutter.name || app.cutter.id} alone`]);
+  return [...found, ...othersOf(meta).map((plan): [string, string] => [modeOf(meta, plan), titleOf(plan)])];
 }
 
-/** Show the next of verdicts and plans. */
-export function nextPlan(app: App): void {
-  const modes = ["verdict", ...plansOf(app.meta).map(modeOf)];
-  app.setMode(modes[(modes.indexOf(app.mode) + 1) % modes.length]);
-  const plan = app.plan;
-  app.say(plan ? titleOf(plan) : "Verdicts");
+/** The line that says what is shown, with a button for each thing that can be. */
+export function subjectSwitch(app: App): HTMLElement {
+  const group = el("span", { class: "group", id: "show", role: "group", "aria-label": "Shown" });
+  const fill = (): void => {
+    const buttons = subjects(app).map(([mode, label]) =>
+      button(label, () => app.setMode(mode), { title: "What the picture shows (o)", "aria-pressed": String(app.mode === mode), "data-mode": mode }),
+    );
+    const at = document.activeElement?.closest<HTMLElement>("#show button")?.dataset.mode;
+    group.replaceChildren(el("span", {}, "Shown:"), ...buttons);
+    if (at) buttons.find((each) => each.dataset.mode === at)?.focus();
+  };
+  app.on("look", fill);
+  return group;
 }
 
-/** The tables of operations and of steps: an entry lights its regions up, and shows its tool along its axis. */
+/** Show the next of these. */
+export function nextSubject(app: App): void {
+  const all = subjects(app);
+  const [mode, label] = all[(all.findIndex(([each]) => each === app.mode) + 1) % all.length];
+  app.setMode(mode);
+  app.say(label);
+}
+
+/** The tables of operations: an entry lights its regions up, and shows its tool along its axis. */
 export class OperationTables {
   private readonly rows: { found: Operation; made: HTMLElement; both: HTMLElement[] }[] = [];
 
   constructor(private readonly app: App) {
     for (const plan of plansOf(app.meta)) {
-      const of = `[data-plan="${plan.key}"]`;
-      const entries = `#operations table${of} tr[data-operation], #process tr${of}[data-operation]`;
-      for (const row of document.querySelectorAll<HTMLElement>(entries)) {
+      for (const row of document.querySelectorAll<HTMLElement>(`#operations table[data-plan="${plan.key}"] tr[data-operation]`)) {
         const number = Number(row.dataset.operation);
         const found = plan.operations[number];
         if (found) this.enliven(row, plan, found, number);
@@ -81,23 +105,9 @@ export class OperationTables {
   }
 
   private enliven(row: HTMLElement, plan: OperationPlan, found: Operation, number: number): void {
-    const { app } = this;
-    const more = row.nextElementSibling as HTMLElement | null;
-    const both = more?.classList.contains("more") ? [row, more] : [row];
-    const made = press(row.querySelector<HTMLElement>("th") ?? row, () => this.show(plan, found));
+    const taken = takenBy(plan, this.app.arrays);
+    const { made, both } = enliven(this.app, row, found, (at) => taken(at) === number, () => this.show(plan, found));
     this.rows.push({ found, made, both });
-    made.prepend(swatch(found.colour, found.pattern), " ");
-    const light = (): void => app.lightOperation(plan, number);
-    const dark = (): void => app.lightOperation(null, -1);
-    for (const each of both) {
-      each.addEventListener("pointerenter", light);
-      each.addEventListener("pointerleave", dark);
-      each.addEventListener("click", (event) => {
-        if (!(event.target as Element).closest("button")) this.show(plan, found);
-      });
-    }
-    made.addEventListener("focus", light);
-    made.addEventListener("blur", dark);
   }
 
   private mark(): void {
@@ -111,26 +121,49 @@ export class OperationTables {
   /** The part turned so that the operation's axis points at the viewer, with its tool amid its region. */
   private show(plan: OperationPlan, found: Operation): void {
     const { app } = this;
-    if (app.mode !== modeOf(plan)) app.setMode(modeOf(plan));
+    if (found.sample === null) return app.say(found.text);
+    if (app.mode !== modeOf(app.meta, plan)) app.setMode(modeOf(app.meta, plan));
     if (app.cutter.id !== found.cutter) app.setCutter(found.cutter);
     app.select(found.sample);
-    this.face();
+    const placed = app.placed();
+    if (placed) lookAt(app, app.stage.table.facing(placed.axis));
     // In a narrow window the picture stands above the tables.
     document.getElementById("frame")?.scrollIntoView({ block: "nearest" });
     app.say(found.text);
   }
+}
 
-  /** Look along the axis of the tool shown, from its holder, at all of the part and of the tool. */
-  private face(): void {
-    const placed = this.app.placed();
-    if (!placed) return;
-    const { table } = this.app.stage;
-    const { turn, rise } = table.facing(placed.axis);
-    const aim = table.fitted(turn, rise);
-    const { up, right } = table.frame(aim);
-    const away = minus(placed.tip, aim.target);
-    const radius = Math.max(...this.app.cutter.outline.flatMap(({ points }) => points.map(([r]) => r)));
-    const [across, along] = [right, up].map((way) => 1.06 * (Math.abs(dot(away, way)) + radius));
-    table.fly({ ...aim, half: Math.max(aim.half, along, across / table.aspect) });
+/** Make a row of a step or an operation, and the one below that says more, lift its regions out, and show it at a click. */
+export function enliven(
+  app: App, row: HTMLElement, look: { colour: string; pattern: Pattern }, mine: (row: number) => boolean, show: () => void,
+): { made: HTMLElement; both: HTMLElement[] } {
+  const more = moreOf(row);
+  const both = more ? [row, more] : [row];
+  const made = press(row.querySelector<HTMLElement>("th") ?? row, show);
+  made.prepend(swatch(look.colour, look.pattern), " ");
+  const light = (): void => app.lift(mine);
+  const dark = (): void => app.lift(null);
+  for (const each of both) {
+    each.addEventListener("pointerenter", light);
+    each.addEventListener("pointerleave", dark);
+    each.addEventListener("click", (event) => {
+      if (!(event.target as Element).closest("button")) show();
+    });
   }
+  made.addEventListener("focus", light);
+  made.addEventListener("blur", dark);
+  return { made, both };
+}
+
+/** Look from there at all of the part and of the tool shown. */
+export function lookAt(app: App, view: View): void {
+  const { table } = app.stage;
+  const aim = table.fitted(view.turn, view.rise);
+  const placed = app.placed();
+  if (!placed) return table.fly(aim);
+  const { up, right } = table.frame(aim);
+  const away = minus(placed.tip, aim.target);
+  const radius = Math.max(...app.cutter.outline.flatMap(({ points }) => points.map(([r]) => r)));
+  const [across, along] = [right, up].map((way) => 1.06 * (Math.abs(dot(away, way)) + radius));
+  table.fly({ ...aim, half: Math.max(aim.half, along, across / table.aspect) });
 }

@@ -1,4 +1,4 @@
-// Faces that are picked to be named: they are tinted in the picture, and are copied as the text of --faces.
+// Faces that are picked to be named: they are tinted in the picture, and are copied as text.
 
 import { DoubleSide, Group, Mesh } from "./three";
 import type { App } from "./app.ts";
@@ -19,14 +19,14 @@ export class Selection {
     this.root.append(
       el("span", {}, "Selected: "),
       this.words,
-      copyButton("Copy for --faces", () => this.text, app.say, "Copy for --faces: the selected faces as text"),
+      copyButton("Copy faces", () => this.text, app.say, "Copy faces: the selected ones as text, as a choice of faces is written"),
       button("Clear", () => this.clear()),
     );
     app.stage.add(this.tints);
     this.show();
   }
 
-  /** Such as `F1,3-5`, as --faces takes it. */
+  /** Such as `F1,3-5`, as a choice of faces is written. */
   get text(): string {
     return ranges([...this.picked].map((owner) => this.app.meta.faces[owner].number));
   }
@@ -77,7 +77,7 @@ export class Selection {
   }
 }
 
-/** Numbers of faces as text for --faces. */
+/** Numbers of faces as text. */
 export function ranges(numbers: number[]): string {
   const runs: number[][] = [];
   for (const number of [...numbers].sort((a, b) => a - b)) {

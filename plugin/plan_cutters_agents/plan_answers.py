@@ -21,7 +21,7 @@ from plan_cutters.plan_file.reasons import INTERVALS, REASONS, reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.cutters import face_text, helping, in_the_way, main_reason, posture_text, sample_text
-from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.names import as_fields, named
 from plan_cutters.plan_file.words.text import shown, text_of
 from plan_cutters_agents.access import CallError, Permissions
 from plan_cutters_agents.requests import ExplainQuestion
@@ -145,7 +145,7 @@ def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     if (process := plan.process) is not None:
         more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
                 "left": [_remaining(each) for each in process.left]}  # fmt: skip
-    notes = [{"code": code, "text": text} for code, text in every]
+    notes = [{"code": code, "text": as_fields(text)} for code, text in every]
     return PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
 
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from plan_cutters.cases import files as case
 from plan_cutters.cases.files import Case
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters_base.workers.child import TIMED_OUT
 
@@ -279,9 +280,9 @@ class PartRow(BaseModel):
     verdict: str = ""
     #: The cutter selected, or the one that leaves the least area.
     cutter: str | None = None
-    #: Of the area to machine that this cutter reaches, 0 to 1.
+    #: Of the area to machine that the process finishes, as the headline has it, 0 to 1; of an older plan what the cutter reaches.
     share: float | None = None
-    #: The reason, a code of the plan's, by which it loses most.
+    #: The cause, a code of the plan's, for which most of it stays.
     reason: str | None = None
     #: How many were judged.
     cutters: int | None = None
@@ -318,8 +319,9 @@ def row_of(
 
     names = short_names(plan)
     cutter = headline_cutter(plan) if plan.cutters else None
-    reason = None
-    if cutter:
+    causes = [each.cause for each in plan.process.left if each.cause in REASONS] if plan.process else []
+    reason = causes[0] if causes else None
+    if cutter and not reason:
         # The code by which most of the area is not reached; by samples where these stand for no area.
         reason = main_reason(cutter.area_share) or None
         if not reason and cutter.not_reached:
@@ -333,7 +335,7 @@ def row_of(
         name=name, file=file, key=key, status=status, code=code,
         verdict=headline(plan, names).title if cutter else "No cutter was judged",
         cutter=names[cutter.id] if cutter else None,
-        share=reached_share(cutter, cutter.area_share) if cutter else None,
+        share=plan.process.finished_share if plan.process else reached_share(cutter, cutter.area_share) if cutter else None,
         reason=reason,
         cutters=len(plan.cutters), samples=plan.samples.judged,
         faces=sum(face.target and face.samples > 0 for face in plan.faces),

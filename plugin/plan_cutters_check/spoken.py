@@ -13,11 +13,15 @@ from plan_cutters_check.reckoned import Reckoned
 
 _HEAD = re.compile(
     r"finish(?:es)? (?:(?P<share>[<>]?[\d.]+) % of|any of|all) (?P<area>[\d,.]+) (?P<unit>mm|in)²"
-    r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?\.$"
+    r"(?:, (?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?: and (?P<again>less than 1 s|[\d.]+ (?:s|min|h)) to clamp it again)?"
+    r"(?:; (?P<stays>[<>]?[\d.]+) % stay(?:: |, mostly )[^;]+|; F[^;]* not judged)?\.$"
 )
 _STEP = re.compile(
     r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<share>[<>]?[\d.]+) %"
     r"(?: +(?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?:  (?P<faces>F[\dF +]*))?$"
+)
+_DRILLING = re.compile(
+    r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<holes>\d+) holes?(?: +(?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?$"
 )
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 #: How far a written number may be from the true one, in units of its last digit.
@@ -44,6 +48,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
     head = _HEAD.search(text["headline"])
     if head is not None:
         size = 25.4**2 if head["unit"] == "in" else 1.0
+        stays = any(each["cause"] != "unjudged" for each in process["left"])
         seconds = process["seconds"]
         on_machine = None if seconds is None else seconds - (process["setup_seconds"] or 0.0)
         pairs = [
@@ -51,6 +56,7 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
             ("area", _span(head["area"]), process["asked_mm2"] / size),
             ("time", _time(head["took"]), on_machine),
             ("time to clamp", _time(head["again"]), process["setup_seconds"] or None),
+            ("rest", _share(head["stays"]) if head["stays"] else None, 1.0 - process["finished_share"] if stays else None),
         ]
         yield from (f"the headline has another {what} than the process" for what, span, value in pairs if not _in(span, value))
     elif not text["headline"].startswith("Take ") or any(each["cause"] != "unjudged" for each in process["left"]):
@@ -70,10 +76,27 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
             yield from (
                 f"line {k} of the table has {what} than the process" for what in _step(row, process["steps"][k - 1], document)
             )
+    yield from _drilled(text["lines"], process)
     for cutter in document["cutters"]:
         for word, share in text["shares"].get(cutter["id"], {}).items():
             if not _in(_share(share.removesuffix(" %")), cutter["area_share"][word]):
                 yield f"the share {share} of {cutter['id']}, {word}, is another one"
+
+
+def _drilled(lines: list[str], process: Mapping[str, Any]) -> Iterator[str]:
+    """List what rows of steps that drill say otherwise: their numbers follow those of mills."""
+    first, drilling = len(process["steps"]) + 1, process.get("drilling", [])
+    for row in (match for line in lines if (match := _DRILLING.match(line))):
+        k = int(row["number"])
+        if not first <= k < first + len(drilling):
+            yield f"there is no step {k} that drills"
+            continue
+        step = drilling[k - first]
+        size = re.search(r"\bD([\d.]+)", row["what"])
+        alike = step["kind"] in row["what"] and int(row["holes"]) == len(step["holes"])
+        time = None if step["seconds"] is None else step["seconds"] + step["link_seconds"]
+        if not alike or size is None or not _in(_time(row["took"]), time):
+            yield f"line {k} of the table has another tool, number of holes or time than the process"
 
 
 def _step(row: re.Match[str], step: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:

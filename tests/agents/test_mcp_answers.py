@@ -214,7 +214,7 @@ def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something
     ):
         data["cutters"][1] |= {**counts, "area_share": share}
         data["cutters"] = data["cutters"][1:]
-        assert f": {told} of the area" in planned(Plan.model_validate(data), 1, {}).told
+        assert f"finish {told} of the area" in planned(Plan.model_validate(data), 1, {}).told
         data = made_plan(cutters=2)
 
 

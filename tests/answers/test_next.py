@@ -380,3 +380,17 @@ def test_what_is_to_be_typed_is_typed_out():
     assert lines
     assert all("--cutter R" in line.partition("[")[2] for line in lines)
     assert all("HR15L200" not in step_text(step) for step in steps_of(result))
+
+
+def test_sharp_inside_edges_are_offered_to_be_left_and_nothing_is_bought_for_them():
+    """A step of two planes without a fillet between them: what is left is the strip that no ball comes to."""
+    ledge = cut(box(40, 30, 20), box(40, 15, 10, at=(0, 15, 10)))
+    how = {"cutters": "R3L40rc3", "faces": "all", "grid": 21, "area_budget": 0, "answers": "mend", "machine": "trunnion-ac"}
+    process = plan(ledge, fixtures="table", **how).plan.process
+    sharp = [each.share for each in process.left if each.cause == "sharp_edge"]
+    assert sharp
+    first = process.next[0]
+    assert (first.argv, first.left_share) == (["--sharp-edges", "left"], None)
+    after = plan(ledge, fixtures="table", sharp_edges="left", **how).plan.process
+    assert not any(each.argv[:1] == ["--sharp-edges"] for each in after.next)
+    assert 1.0 - after.finished_share < 1.0 - process.finished_share

@@ -12,6 +12,7 @@ from plan_cutters.document.clock import Clock
 from plan_cutters.errors import TooManySamplesError
 from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
+from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.preparation import MOST
 from plan_cutters_base.workers.child import TIMED_OUT
@@ -130,7 +131,7 @@ def test_a_density_that_asks_too_much_of_a_part_is_marked_in_a_batch_and_refused
     note = f"C{row.coarser[1:]}."
     assert dict(zip(document["note_codes"], document["notes"], strict=True))["coarser_than_requested"] == note
     assert document["process"]["doubts"][0] == note
-    assert in_lines(" ".join(document["text"]["lines"])).startswith(note)
+    assert in_lines(" ".join(document["text"]["lines"])).startswith(as_fields(note))
     page, _ = page_of([row])
     assert row.coarser in page
     kept = work.work(task_of(out, options)).row

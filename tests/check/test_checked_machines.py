@@ -63,3 +63,13 @@ def test_what_a_machine_holds_is_what_its_axis_turns_to(machine, turn, z, degree
         assert held(axes, setup, axis).tolist() == machine.allows(axis, np.eye(3)).tolist()
     if allowed(axes, setup, angle).all():
         assert held(axes, setup, own).all()
+
+
+def test_counts_of_verdicts_over_all_setups_are_exact(written):
+    """A sample more that is accessible, and one fewer that is not: the sums agree, the samples do not."""
+    document, arrays = written.copies()
+    document["cutters"][0]["accessible"] += 1
+    document["cutters"][0]["inaccessible"] -= 1
+    answer = check(written.asked(document, arrays), seconds=1e6)
+    assert not answer.holds
+    assert any("cutters[0].accessible" in line for line in answer.lines)

@@ -195,7 +195,8 @@ def test_numbers_that_are_forged_together_with_all_words_are_found(one, forge):
 
 @pytest.mark.parametrize(
     ("was", "now"),
-    [(r"[\d.]+ % of", "99 % of"), (r"of [\d,]+ mm²", "of 123,000 mm²"), (r"[\d.]+ (min|s)\.$", "0.2 min."),
+    [(r"[\d.]+ % of", "99 % of"), (r"of [\d,]+ mm²", "of 123,000 mm²"), (r", [\d.]+ (min|s)(?=[.;])", ", 0.2 min"),
+     (r"(; .*)?\.$", "; 77 % stay: rear gouge."),
      (r"^.*$", "All is fine."), (r"^.*$", "Take flat end D8 x 30.")],
 )  # fmt: skip
 def test_a_headline_is_read_without_the_words_of_the_program(one, was, now):

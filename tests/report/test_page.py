@@ -256,9 +256,9 @@ def test_the_posture_found_stands_as_in_the_plan(page, planned):
 
 
 def test_a_section_has_a_cap(page, planned):
+    page.keyboard.press("4")
     page.keyboard.press("c")
     assert "across X" in page.inner_text("#status")
-    page.keyboard.press("4")
     image = picture(page)
     height, width, _ = image.shape
     # From the right one looks at the cap alone: brown, not the grey of the check face behind it.
@@ -344,7 +344,7 @@ def test_it_prints(page):
     assert 2 <= len(reader.pages) <= 12
     # Fonts draw some letters as one.
     text = unicodedata.normalize("NFKC", " ".join(each.extract_text() for each in reader.pages))
-    for words in ("flat end D12 x 60", "Cutters", "Faces", "F6", "Notes", "About this plan"):
+    for words in ("flat end D12 x 60", "Cutters", "Faces", "F6", "Notes", "Options, files and versions"):
         assert words in text, words
     drawn = page.evaluate(
         """() => [...document.querySelectorAll("#stills canvas")].map(canvas => { const { data } =
@@ -393,7 +393,7 @@ def test_without_scripts_it_says_everything_too(browser, path):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(path.as_uri())
-    for word in ("finish 100 % of 2,520 mm²", "flat end D12 x 60", "flat end D20 x 12", "Worst spots", "F6"):
+    for word in ("finish all 2,520 mm²", "flat end D12 x 60", "flat end D20 x 12", "Worst spots", "F6"):
         assert word in page.inner_text("body")
     context.close()
 

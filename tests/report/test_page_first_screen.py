@@ -14,7 +14,7 @@ from tests.support.review_page import Page
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
-pytestmark = pytest.mark.slow("opens a browser", but=("test_the_first_screen_has_verdict_picture_and_the_cutter_shown[phone]",))
+pytestmark = pytest.mark.slow("opens a browser", but=("test_the_first_screen_has_verdict_picture_process_and_decision[phone]",))
 #: The last one alone is too short for its holder.
 CUTTERS = [
     "D2L20", "D3L25", "D4L30", "D5L35", "D6L40", "D8L50", "D10L60", "D12L80", "D16L90", "D4L30rc2", "D6L40rc3", "D8L50rc4",
@@ -51,12 +51,13 @@ def within(page, selector):
 
 
 @pytest.mark.parametrize("screen", SCREENS)
-def test_the_first_screen_has_verdict_picture_and_the_cutter_shown(at, planned, screen):
+def test_the_first_screen_has_verdict_picture_process_and_decision(at, planned, screen):
     page = at(screen)
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
-        for selector in ("#verdict", "h1", "#picture", "#cutters tr[data-cutter] th"):
+        cutters = () if screen == "phone" else ("#cutters tr[data-cutter] th",)
+        for selector in ("#verdict", "h1", "#approve", "#reject", "#to-note", "#picture", "#process tr[data-step] th", *cutters):
             assert within(page, selector), selector
         ground = page.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
         assert (min(map(int, re.findall(r"\d+", ground)[:3])) > 128) == (scheme == "light")
@@ -92,7 +93,8 @@ def test_feasible_is_said_only_of_what_is(planned, change, wanted):
 
 def test_the_cutter_shown_comes_to_the_top_and_says_more(at, planned):
     page = at()
-    other = names(page)[-1]
+    shown = page.locator("#cutters tr[data-cutter]:visible")
+    other = shown.nth(shown.count() - 1).get_attribute("data-cutter")
     button = page.locator(f'#cutters tr[data-cutter="{other}"] th button.text')
     button.focus()
     page.keyboard.press("Enter")
@@ -143,8 +145,18 @@ def lost(page):
     )
 
 
-def test_the_first_view_shows_what_is_lost(at, tmp_path):
-    """The jaw stands between the eye's usual place and what it makes inaccessible."""
+def part_of_the_frame(page):
+    """Share of the picture that shows the part, by what lies under places on a grid, seen through what is faded."""
+    return page.evaluate(
+        """() => { let [hit, all] = [0, 0];
+             for (let y = -0.975; y < 1; y += 0.05) for (let x = -0.975; x < 1; x += 0.05) {
+               all++; if ((review.picker.at(x, y)?.owner ?? -1) >= 0) hit++; }
+             return hit / all; }"""
+    )
+
+
+def test_the_first_view_is_from_the_spindle_and_full_of_the_part(at, tmp_path):
+    """Whatever holds it is seen through: a jaw stands between the eye's usual place and the part."""
     found = plan(
         ROOT / "samples" / "pocket_top.step", cutters=["D12L80rc6"], holder="D60L60", grid=11, area_budget=0,
         fixtures=["box:15,60,40@62,-10,-10"],
@@ -152,9 +164,26 @@ def test_the_first_view_shows_what_is_lost(at, tmp_path):
     write_html(found, None, tmp_path / "review.html")
     page = at(where=tmp_path / "review.html")
     assert page.inner_text("#verdict") == "◐ Feasible in part"
+    assert part_of_the_frame(page) >= 0.4
+    back = page.evaluate("review.stage.table.frame().back")
+    assert np.dot(back, found.plan.effective.setup) > 0.5
+    assert page.evaluate("review.meta.fixtures.every((_, i) => review.drawn.fading.has(-1 - i))")
+    page.click("#stays")
+    assert re.fullmatch(r"What stays, 1 of \d+", page.inner_text("#stays"))
     assert lost(page) > 0.9
-    page.keyboard.press("7")
-    assert lost(page) < 0.5
+    # A side of the cube is a view along its axis.
+    page.click("#scale [data-side='+Z']")
+    assert page.evaluate("review.stage.table.frame().back") == pytest.approx([0, 0, 1], abs=1e-6)
+
+
+def test_cutters_that_finish_too_and_many_faces_are_folded(at, planned):
+    page = at()
+    feasible = sum(bool(each.feasible) for each in planned.plan.cutters)
+    more = page.get_by_role("button", name=f"{feasible - 1} more also finish")
+    assert page.locator("#cutters tr[data-cutter]:visible").count() == len(CUTTERS) - feasible + 1
+    more.click()
+    assert page.locator("#cutters tr[data-cutter]:visible").count() == len(CUTTERS)
+    assert more.count() == 0
 
 
 def test_numbers_are_written_as_people_write_them(planned, path):
@@ -170,7 +199,7 @@ def test_selected_faces_are_copied_as_the_option_takes_them(at, planned):
     page = at(permissions=["clipboard-read", "clipboard-write"])
     for number in (5, 1, 3, 4):
         page.locator(f"#faces tr[data-face='{number}'] input").check()
-    page.get_by_role("button", name="Copy for --faces").click()
+    page.get_by_role("button", name="Copy faces").click()
     page.locator("#status", has_text="Copied").wait_for()
     text = page.evaluate("navigator.clipboard.readText()")
     assert text == "F1,3-5"
@@ -192,6 +221,8 @@ def test_a_tapped_spot_is_seen_on_a_phone(at, planned):
     page = at("phone")
     failing = next(c.id for c in planned.plan.cutters if c.witnesses)
     page.locator(f'#cutters tr[data-cutter="{failing}"] th button.text').tap()
+    # On a phone the lists are folded.
+    page.locator("#spots details:visible summary").tap()
     spot = page.locator("#spots [data-spot]:visible button").first
     spot.scroll_into_view_if_needed()
     spot.tap()
@@ -260,6 +291,9 @@ def test_a_thousand_faces_are_listed_filtered_and_selected(at, thousand, screen)
         page.emulate_media(color_scheme=scheme)
         assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
     assert page.locator("#faces tbody tr").count() == 1000
+    # A page of a thousand faces is no longer than one of twenty.
+    assert page.locator("#faces tbody tr:visible").count() == (6 if screen == "phone" else 20)
+    assert page.evaluate("document.documentElement.scrollHeight") < 5000
     page.fill("#faces input[type=search]", "f99")
     found = page.locator("#faces tbody tr:visible")
     assert found.count() == page.evaluate("review.meta.faces.filter(face => /^F99/.test(face.id)).length")

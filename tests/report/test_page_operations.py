@@ -10,10 +10,12 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.domain.figures import area
 from plan_cutters.plan_file.reasons import operation_colour
-from plan_cutters.plan_file.words.process import in_short, of_the_whole
+from plan_cutters.plan_file.words.names import as_fields
+from plan_cutters.plan_file.words.operations import in_short, of_the_whole, operation_names, stepped
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of
 from plan_cutters.report.page import tables, write
+from plan_cutters.report.page.steps import colour
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page, picture
@@ -54,26 +56,39 @@ def test_operations_are_told_as_they_are_in_the_plan(planned, read):
     for found, entry, told in each_plan(planned, read):
         assert told["name"] == entry.name
         for k, (one, wanted) in enumerate(zip(told["operations"], entry.operations, strict=True)):
-            assert (one["label"], one["cutter"], one["setup"]) == (wanted.id, wanted.cutter, wanted.setup)
+            called = stepped(planned.plan, entry, wanted.id)
+            assert (one["label"], one["cutter"], one["setup"]) == (called, wanted.cutter, wanted.setup)
             assert one["axis"] == (None if wanted.axis is None else list(wanted.axis))
-            assert (one["colour"], one["pattern"]) == (operation_colour(k), "plain")
-            assert one["text"].startswith(f"{wanted.id}: ")
+            place = k if called == wanted.id else int(called.split()[1]) - 1
+            assert (one["colour"], one["pattern"]) == (operation_colour(place), "plain")
+            assert one["text"].startswith(f"{called}: ")
             # Its tool is shown where it is proved to serve.
             assert found.label[one["sample"]] == k
             assert found.serves[one["sample"], k]
 
 
-def test_each_step_says_what_is_gone_without_it_and_which_operation_it_is(planned, read):
-    rows = [(a, text) for tag, a, text in read.elements if tag == "tr" and "data-plan" in a]
-    process, (name, fastest) = planned.plan.process, (planned.plan.operations.plans[1].name, planned.plan.operations.plans[1])
-    assert (process.plan, name) == ("fastest", "fastest")
-    assert len(rows) == len(process.steps)
-    for k, ((attributes, text), step) in enumerate(zip(rows, process.steps, strict=True), 1):
+def test_each_step_has_one_number_everywhere(planned, read):
+    """In the table, the picture and the list of operations, with what is gone without it."""
+    rows = [(a, text) for tag, a, text in read.elements if tag == "tr" and "data-step" in a]
+    more = [text for tag, a, text in read.elements if tag == "tr" and a.get("id", "").startswith("step-")]
+    process, fastest = planned.plan.process, planned.plan.operations.plans[1]
+    assert (process.plan, fastest.name) == ("fastest", "fastest")
+    assert len(rows) == len(more) == len(process.steps) == len(read.meta["process"]["steps"])
+    by_step = {step: name for name, step in operation_names(planned.plan).items()}
+    number = read.array("step")
+    for k, ((attributes, text), said, step, told) in enumerate(
+        zip(rows, more, process.steps, read.meta["process"]["steps"], strict=True), 1
+    ):
+        assert attributes["data-step"] == str(k)
         assert text.startswith(str(k))
-        assert area(step.alone_mm2) in text
-        one = fastest.operations[int(attributes["data-operation"])]
-        assert (attributes["data-plan"], one.id, one.cutter, one.setup) == ("fastest", step.operation, step.cutter, step.setup)
-        assert (one.area_mm2, one.exclusive_mm2) == pytest.approx((step.area_mm2, step.alone_mm2))
+        assert area(step.alone_mm2) in said
+        assert by_step[str(k)] == step.operation
+        rank = [each.id for each in fastest.operations].index(step.operation)
+        assert ((number == k) == (planned.answers.operations.plans[1].label == rank)).all()
+        assert (told["label"], told["cutter"], told["share"]) == (f"step {k}", step.cutter, step.share)
+        assert number[told["sample"]] == k
+        listed = read.meta["operations"]["plans"][1]["operations"][rank]
+        assert (listed["label"], listed["colour"], listed["pattern"]) == (told["label"], told["colour"], told["pattern"])
 
 
 def test_the_text_of_the_plan_says_each_thing_once(planned):
@@ -85,11 +100,16 @@ def test_the_text_of_the_plan_says_each_thing_once(planned):
 def test_each_operation_is_listed(planned, read):
     rows = [text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a and "data-plan" not in a]
     more = [text for tag, a, text in read.elements if tag == "td" and a.get("colspan") == "4"]
-    wanted = [one for _, entry, _ in each_plan(planned, read) for one in entry.operations]
+    number = {name: int(step) for name, step in operation_names(planned.plan).items()}
+    wanted = []
+    for _, entry, _ in each_plan(planned, read):
+        mine = [(stepped(planned.plan, entry, one.id), one) for one in entry.operations]
+        is_process = entry.name == planned.plan.process.plan
+        wanted += sorted(mine, key=lambda each: number[each[1].id]) if is_process else mine
     assert len(rows) == len(wanted)
-    for one, row in zip(wanted, rows, strict=True):
+    for (called, one), row in zip(wanted, rows, strict=True):
         cells = row.split("\n")[0]
-        assert cells.startswith(one.id)
+        assert cells.startswith(called)
         assert all(f"{name} {angle:g}" in cells for name, angle in one.angles_deg.items())
         assert re.search(r"\d (s|min)", cells)
         assert one.faces[0].face in " ".join(more)
@@ -102,13 +122,13 @@ def test_sentences_are_those_of_the_story(planned, read):
     told = of_the_whole(story.operations)
     assert any("fixed orientation" in line.text for line in told)
     paragraphs = " ".join(read.of("p"))
-    assert all(paragraphs.count(line.text) == 1 for line in told)
+    assert all(paragraphs.count(as_fields(line.text)) == 1 for line in told)
     # What matters most stands above all else.
-    assert all(paragraphs.index(text) < paragraphs.index(told[-1].text) for text in story.in_short)
+    assert all(paragraphs.index(as_fields(text)) < paragraphs.index(as_fields(told[-1].text)) for text in story.in_short)
     # What is left out is told by the list.
     for line in story.operations:
         if line not in told:
-            assert re.match(r"  (op\d+|and) ", line.text.replace(":", " ")), line
+            assert re.match(r"  (op\d+|step [\d.]+|and|So) ", line.text.replace(":", " ")), line
 
 
 def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(planned):
@@ -128,12 +148,12 @@ def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(pla
     assert told(left + 1).startswith("Simultaneous motion finishes ")
 
 
-def test_looks_differ(planned):
-    """Of so many operations as the colours go round four times."""
-    one = planned.plan.operations.plans[0].operations[0]
-    told = [tables._operation(planned.plan, one, k, 0) for k in range(32)]
+def test_looks_differ():
+    """Of so many steps as the colours go round four times, each is told from what stays."""
+    told = [colour(k) for k in range(1, 33)]
     assert len({(each["colour"], each["pattern"]) for each in told}) == 32
-    assert [each["pattern"] for each in told[:16]] == ["plain"] * 8 + ["hatch"] * 8
+    assert [each["pattern"] for each in told[:16]] == ["plain"] * 8 + ["cross"] * 8
+    assert "hatch" not in {each["pattern"] for each in told}
 
 
 def rgb(text):
@@ -214,7 +234,7 @@ def shown_rows(page, planned, label, k):
 def seen_operations(page, planned, read):
     """The first plan of which two operations are seen as the page opens, shown, and these: which, and some of their samples."""
     for found, _, told in each_plan(planned, read):
-        page.keyboard.press("o")
+        page.evaluate("mode => review.setMode(mode)", mode_of(told))
         rows = [(k, shown_rows(page, planned, found.label, k)) for k in range(len(told["operations"]))]
         both = [(k, some) for k, some in rows if some]
         if len(both) > 1:
@@ -224,9 +244,9 @@ def seen_operations(page, planned, read):
 
 def test_the_surface_is_coloured_by_operation(page, planned, read):
     before = page.locator("#legend").inner_text()
-    for (found, _, told), title in zip(each_plan(planned, read), ("Fewest", "Fastest"), strict=True):
-        page.get_by_role("button", name=f"{title} operations").click()
-        assert page.evaluate("document.querySelector('#colouring').value") == f"operation:{told['key']}"
+    for (found, _, told), title in zip(each_plan(planned, read), ("Fewest operations", "The process"), strict=True):
+        page.get_by_role("button", name=title).click()
+        assert page.evaluate("document.querySelector('#colouring').value") == mode_of(told)
         seen_colours = 0
         for k, one in enumerate(told["operations"]):
             rows = shown_rows(page, planned, found.label, k)
@@ -235,11 +255,17 @@ def test_the_surface_is_coloured_by_operation(page, planned, read):
                 seen_colours += 1
             assert one["label"] in page.inner_text("#legend")
         assert seen_colours >= 3
-    page.get_by_role("button", name="Verdicts").click()
     assert page.locator("#legend").inner_text() == before
+    assert "Process, by step" in before
+
+
+def mode_of(told):
+    """What colours the picture by a plan: the fastest one is the process."""
+    return "process" if told["key"] == "fastest" else f"operation:{told['key']}"
 
 
 def entry(page, key, k):
+    page.evaluate("document.querySelector('#operations details').open = true")
     return page.locator(f'#operations table[data-plan="{key}"] tr[data-operation="{k}"] button')
 
 
@@ -278,24 +304,37 @@ def test_hovering_or_focusing_an_entry_lights_its_regions(page, planned, read):
     assert not any(changed())
 
 
-def test_a_step_of_the_process_is_its_operation(page, planned, read):
-    """Its row puts the tool there and lights up with the entry in the list of operations."""
-    step = page.locator("#process tr[data-operation]").first
-    key, k = step.get_attribute("data-plan"), int(step.get_attribute("data-operation"))
-    told = next(each for each in read.meta["operations"]["plans"] if each["key"] == key)["operations"][k]
+def test_a_step_shows_its_setup_and_its_tool_and_plays(page, planned, read):
+    told = read.meta["process"]["steps"][0]
+    step = page.locator("#process tr[data-step='1']")
     step.locator("button").click()
-    assert page.evaluate("review.sample.row") == told["sample"]
+    assert page.evaluate("[review.sample.row, review.mode]") == [told["sample"], "process"]
     assert page.inner_text("#status") == told["text"]
-    assert [each.get_attribute("aria-pressed") for each in (step.locator("button"), entry(page, key, k))] == ["true", "true"]
+    assert step.locator("button").get_attribute("aria-pressed") == "true"
+    assert planned.plan.process.setups[0].text in told["text"]
+    place = "review.tool.group.matrix.elements.slice(12, 15).join()"
+    before = page.evaluate(place)
+    page.get_by_role("button", name="Play").click()
+    page.locator("#status", has_text="step 1: place 3 of").wait_for()
+    assert page.evaluate(place) != before
+    # A press in the picture ends it, and the tool is back where it was.
+    page.mouse.click(*place_of(page, told["sample"]), button="right")
+    assert page.evaluate(place) == before
+
+
+def test_a_setup_shows_how_the_part_stands(page, planned):
+    page.locator("#process tr[data-setup='0'] button").click()
+    assert page.inner_text("#status") == planned.plan.process.setups[0].text
+    assert page.evaluate("review.sample") is None
 
 
 def test_the_keyboard_switches_and_the_help_says_so(page, read):
-    keys = [f"operation:{each['key']}" for each in read.meta["operations"]["plans"]]
-    for wanted in [*keys, "verdict"]:
+    assert page.evaluate("review.mode") == "process"
+    for wanted in ("verdict", "operation:fewest", "process"):
         page.keyboard.press("o")
         assert page.evaluate("review.mode") == wanted
     page.keyboard.press("?")
-    assert "operations" in page.inner_text("#help")
+    assert "the process" in page.inner_text("#help")
 
 
 def told_plans(read):
@@ -322,7 +361,7 @@ def test_the_list_is_printed(page):
     from pypdf import PdfReader
 
     text = " ".join(each.extract_text() for each in PdfReader(io.BytesIO(page.pdf(format="A4"))).pages)
-    for words in ("Operations", "op1", "op2"):
+    for words in ("Operations", "op1", "step 1"):
         assert words in text, words
 
 

@@ -301,6 +301,7 @@ def test_paper_has_all_that_a_reviewer_signs(at, planned):
     from pypdf import PdfReader
 
     page = at()
+    page.click("#reject")
     page.fill("#reviewer", "A reviewer")
     page.fill("#note", "of the whole")
     page.click("#add-note")
@@ -354,6 +355,9 @@ def test_eyes_hide_what_is_still_in_the_way(at, planned):
     page.keyboard.press("n")
     state = page.evaluate("review.state.state")
     assert state != "free"
+    # What holds the part is seen through at first: hidden and shown again, it is solid.
+    page.keyboard.press("b")
+    page.keyboard.press("b")
     jaw = drawn_jaw(page)
     assert jaw > 500
     page.keyboard.press("b")

@@ -18,8 +18,6 @@ pytest.importorskip("playwright.sync_api", reason="playwright is not installed: 
 
 pytestmark = pytest.mark.slow("opens a browser")
 CUTTER, GRID = "R10L12HR22L30", 21
-#: Corners of the jaw, mm.
-JAW = [[x, y, z] for x in (62.0, 77.0) for y in (-10.0, 50.0) for z in (-10.0, 30.0)]
 #: The line around what is in the way, as it is drawn.
 OUTLINE = np.array([176, 0, 94])
 
@@ -40,14 +38,21 @@ def seen_at(page, points):
     return np.array(found), np.array(page.evaluate("[review.stage.canvas.clientWidth, review.stage.canvas.clientHeight]"))
 
 
+def part_is_within(page):
+    """Whether all of the part's drawn vertices are in the picture."""
+    points = np.array(page.evaluate("Array.from(review.drawn.shownVertices)")).reshape(-1, 3)
+    at, size = seen_at(page, points)
+    return bool(((at > 0) & (at < size)).all())
+
+
 def outlined(page):
     """How many pixels of the picture have the colour of the outline."""
     return int((np.abs(picture(page) - OUTLINE).max(axis=2) < 12).sum())
 
 
-def test_fixtures_are_in_the_first_view(page):
-    at, size = seen_at(page, JAW)
-    assert ((at > 0) & (at < size)).all()
+def test_the_part_is_in_the_first_view(page):
+    """However large what holds it is."""
+    assert part_is_within(page)
     assert page.locator("#inset").is_hidden()
 
 
@@ -122,8 +127,7 @@ def test_a_close_look_and_back(page):
     page.keyboard.press("z")
     page.locator("#inset").click()
     page.wait_for_selector("#inset", state="hidden")
-    at, size = seen_at(page, JAW)
-    assert ((at > 0) & (at < size)).all()
+    assert part_is_within(page)
 
 
 def test_the_bar_and_the_axes_are_true(page):
@@ -137,13 +141,19 @@ def test_the_bar_and_the_axes_are_true(page):
         assert unit == "mm"
         assert end - start == pytest.approx(float(length) * (two - one)[0], rel=1e-3)
         drawn = page.evaluate(
-            """() => Object.fromEntries(["x", "y", "z"].map(axis => { const line = document.querySelector(`#scale .${axis} line`);
-                 return [axis, ["x1", "y1", "x2", "y2"].map(name => Number(line.getAttribute(name)))]; }))"""
+            """() => Object.fromEntries([...document.querySelectorAll("#scale [data-side]")].map(side => {
+                 const points = side.querySelector("polygon").getAttribute("points").split(" ");
+                 return [side.dataset.side, points.map(each => each.split(",").map(Number))]; }))"""
         )
-        for k, axis in enumerate("xyz"):
-            (origin, tip), _ = seen_at(page, [np.zeros(3), np.eye(3)[k]])
+        back = page.evaluate("review.stage.table.frame().back")
+        # The sides that face the eye, and each where it lies along its axis, of half the cube's size from its middle.
+        faces = {f"{sign}{'XYZ'[k]}": (k, float(f"{sign}1")) for k in range(3) for sign in "+-"}
+        assert {*drawn} == {name for name, (k, sign) in faces.items() if sign * back[k] > 1e-3}
+        for name, points in drawn.items():
+            k, sign = faces[name]
+            (origin, tip), _ = seen_at(page, [np.zeros(3), sign * np.eye(3)[k]])
             wanted = (tip - origin) / (two - one)[0]
-            assert np.subtract(drawn[axis][2:], drawn[axis][:2]) / 24 == pytest.approx(wanted, abs=1e-3)
+            assert (np.mean(points, axis=0) - [154, 46]) / 25 == pytest.approx(wanted, abs=1e-3)
 
 
 def test_borders_of_verdicts_are_rounded_and_samples_keep_their_colour(page, planned):
@@ -152,6 +162,7 @@ def test_borders_of_verdicts_are_rounded_and_samples_keep_their_colour(page, pla
     point = planned.samples.point.reshape(GRID, GRID, 3)
     legend = {0: "inaccessible", 1: "accessible", 2: "interference_free"}
     page.keyboard.press("5")
+    page.evaluate("review.setMode('verdict')")
     page.evaluate("review.showTool(false)")
     image = picture(page)
 

@@ -55,8 +55,8 @@ def test_every_row_of_a_table_is_as_wide_as_its_head(text):
 
 
 @pytest.mark.slow("plans whole parts")
-def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
-    head = text[text.index("<header") : text.index("</header>")]
+def test_the_reasons_name_the_holder_and_how_short_it_may_be(planned, text):
+    head = text[text.index('<details id="why"') : text.index('<section id="cutters"')]
     entry = next(c for c in planned.plan.cutters if c.id == planned.shown)
     assert entry.holder == "ER32 chuck"
     assert f"{entry.length:g} mm out of its holder ER32 chuck" in head

@@ -131,3 +131,18 @@ def test_the_word_of_a_fixture_is_read_again():
     for text in ("stock:box:1,2,5", "stock:cylinder:1,5", "stock:blank.step"):
         assert Fixture.parse(text).text == text
     assert Options(fixtures="stock:box:1,2,5").stock == "box:1,2,5"
+
+
+def test_a_vise_that_a_setup_file_has_in_its_place_is_not_placed_once_more(tmp_path):
+    """As advice on proposed setups is typed: the command that was asked, with the files of the setups behind it."""
+    file = tmp_path / "setup-1.toml"
+    file.write_text('unit = "mm"\naxis = [0, 0, 1]\nfixtures = ["vise:46x25x65:3:30@20,15,0,0,0,-90"]\n', encoding="utf-8")
+    alone, typed = (Options(setup=str(file), fixtures=words) for words in ((), ("vise",)))
+    assert typed.fixtures == alone.fixtures
+    # Another setup, of which nobody says where the vise is, has one that is placed.
+    both = Options(setup=str(file), other_setups=((0, 0, -1),), fixtures="vise")
+    assert [each.to_place for each in both.placement.fixtures] == [False]
+    assert [each.to_place for each in both.other_placements[0].fixtures] == [True]
+    # A chuck beside the vise stays one too many.
+    with pytest.raises(PlanError, match="one vise or chuck is placed on a part"):
+        plan(box(40, 30, 20), setup=str(file), fixtures="chuck", **HOW)

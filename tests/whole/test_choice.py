@@ -72,7 +72,7 @@ def test_an_engraving_bit_wins_only_where_nothing_else_finishes_as_much():
     assert found.selected == BIT.id
     assert [step.cutter for step in found.process.steps] == [STUBBY.id, BIT.id]
     assert found.process.finished
-    assert found.text.headline.startswith("part, 84 x 84 x 14 mm: 2 steps finish 100 % of ")
+    assert found.text.headline.startswith("2 steps in 1 setup finish all ")
     assert "Engraving bit D12 does alone, but its kind comes after that of step 1." in joined(found)
     alone = taken(patch(), [BIT, Cutter.form([(0, 0), (0.15, 0), (5, 40)], length=60)], tilt_deg=(0, 30))
     assert alone.selected == BIT.id

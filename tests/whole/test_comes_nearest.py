@@ -45,10 +45,11 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
     story = story_of(document)
     assert {uneven.shown, document.shown, story.shown, nearest(document.cutters).id} == {wide.id}
     # Together they finish it, which is what comes first.
-    assert story.headline.title.endswith("100 % of 10,200 mm²")
+    assert story.headline.title.endswith("finish all 10,200 mm²")
     assert document.selection.why == (f"no cutter reaches every sample; {wide.id} comes nearest and leaves 1 % of the area")
     row = row_of(document, name="part", file="part.step", code=1)
-    assert (row.cutter, row.share) == (story.names[wide.id], pytest.approx(1.0 - wide.area_share.not_reached))
+    # A row has one share, that of its sentence.
+    assert (row.cutter, row.share) == (story.names[wide.id], document.process.finished_share)
     # An agent reads the file alone, and so it does where an older one does not say which cutter is shown.
     for read in (document.model_dump(mode="json"), document.model_dump(mode="json", exclude={"shown"})):
         read["part"]["file"] = "part.step"

@@ -580,7 +580,7 @@
    <translation type="unfinished" />
   </message>
   <message>
-   <source>this plan shows no operations: plan with --operations fewest</source>
+   <source>this plan shows no operations: choose some in “Operations” and plan again</source>
    <translation type="unfinished" />
   </message>
   <message>

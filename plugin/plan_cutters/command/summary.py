@@ -14,7 +14,7 @@ from plan_cutters.command.terminal import show, wrapped
 from plan_cutters.domain.figures import reporting, unit
 from plan_cutters.plan_file.model import leaves
 from plan_cutters.plan_file.words.cutters import FEASIBLE, details, scene, unjudged_share, worst_face_text
-from plan_cutters.plan_file.words.text import Story, story_of, text_of
+from plan_cutters.plan_file.words.text import MOST, Story, process_lines, story_of
 from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
@@ -138,8 +138,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
     """Tell the process; with `verbose` all that is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline
-    text = text_of(plan)
-    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, text.lines))
+    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, process_lines(plan, story, MOST, typed=True)))
     if not verbose:
         return
     tells(

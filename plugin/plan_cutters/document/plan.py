@@ -23,7 +23,14 @@ from plan_cutters.document.build import (
     void_faces,
 )
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.process import OverSetups, linear_entries, placement_entry, process_entry, travel_entry
+from plan_cutters.document.process import (
+    OverSetups,
+    in_colours_of_steps,
+    linear_entries,
+    placement_entry,
+    process_entry,
+    travel_entry,
+)
 from plan_cutters.domain.answers import LeastSet, RadiusMap
 from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.kinematics import positions
@@ -216,8 +223,9 @@ def plan_of(
     absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     absent |= set() if ready.for_drills.any() else {"drilled"}
     shown = selected or nearest(entries).id
+    process = process_entry(ready, entries, answers, over, shown, fitting)
     return Plan(
-        process=process_entry(ready, entries, answers, over, shown, fitting),
+        process=process,
         part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),
         versions=versions(),
@@ -265,7 +273,7 @@ def plan_of(
         patterns=list(patterns),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
-        operations=None if answers.operations is None else answers.operations.entry,
+        operations=None if answers.operations is None else in_colours_of_steps(answers.operations.entry, process),
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
         notes=[each.text for each in remarks],

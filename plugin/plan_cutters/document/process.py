@@ -37,6 +37,7 @@ from plan_cutters.plan_file.operations import (
     NearestEntry,
     OperationEntry,
     OperationPlanEntry,
+    OperationsEntry,
     OwnStepEntry,
     PointsEntry,
     ProcessEntry,
@@ -44,8 +45,10 @@ from plan_cutters.plan_file.operations import (
     RemainingEntry,
 )
 from plan_cutters.plan_file.part_info import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
+from plan_cutters.plan_file.reasons import operation_colour
 from plan_cutters.plan_file.words.answers import typed_size
 from plan_cutters.plan_file.words.names import kind
+from plan_cutters.plan_file.words.operations import numbered
 from plan_cutters.scene.preparation import Prepared
 
 #: A setup axis, and what each cutter reaches there by its id.
@@ -377,6 +380,21 @@ def process_entry(
         seconds=seconds, **times,
         finished_share=exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left), exempt=exempt,
     )  # fmt: skip
+
+
+def in_colours_of_steps(operations: OperationsEntry, process: ProcessEntry) -> OperationsEntry:
+    """Plans with the operations of the process in the colours of their steps: pages, models and CAD have one legend."""
+    step = {name: int(number.partition(".")[0]) for name, number in numbered(operations, process).items()}
+    plans = [
+        each
+        if each.name != process.plan
+        else each.model_copy(update={"operations": [
+            one.model_copy(update={"colour": operation_colour(step[one.id] - 1)}) if one.id in step else one
+            for one in each.operations
+        ]})
+        for each in operations.plans
+    ]  # fmt: skip
+    return operations.model_copy(update={"plans": plans})
 
 
 def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str, Any]:

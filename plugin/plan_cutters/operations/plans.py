@@ -116,8 +116,8 @@ def plan_with(
     serves, pace = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
     # Where no step of the plan has room about its tool, one without is taken before another orientation is.
-    missed = rows[~serves[rows].any(axis=1)] if task.probes.margin is not None else rows[:0]
-    serves[missed] = task.probes.tight(missed, columns)
+    if task.probes.margin is not None and len(missed := rows[~serves[rows].any(axis=1)]):
+        serves[missed] = task.probes.tight(missed, columns)
     pace[rows] = _paces(task, columns, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, pace[rows], serves[rows], area[rows], task.cutters, task.paths)

@@ -76,7 +76,7 @@ class Probes:
         self.barred, self.everywhere = barred or {}, everywhere
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
-        self._roomy = [[Context.of(roomy(cutter), setup) for setup in setups] if cutter.stages else own
+        self._roomy = [[Context.of(roomy(cutter), setup) for setup in setups] if cutter.stages and margin is not None else own
                        for cutter, own in zip(cutters, self.contexts, strict=True)]  # fmt: skip
         self._kept: dict[str, NDArray[np.bool_]] = {}
         self._kept_rows: Rows = np.zeros(0, np.int64)

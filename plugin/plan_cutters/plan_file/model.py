@@ -12,7 +12,7 @@ from pydantic import Field
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
-from plan_cutters.plan_file.holes import DrillingEntry, HoleEntry
+from plan_cutters.plan_file.holes import HoleEntry
 from plan_cutters.plan_file.operations import OperationsEntry, ProcessEntry, SplitEntry
 from plan_cutters.plan_file.part_info import (
     CarrierEntry,
@@ -319,9 +319,11 @@ class VerdictText(Frozen):
 class TextEntry(Frozen):
     """The plan in words, made once: every reader shows these."""
 
-    headline: str = Field(description="which cutter to take for what, or that none does")
+    headline: str = Field(description="how much is finished in how many steps, what stays and why; or which cutter to take")
     tone: Tone
-    lines: list[str] = Field(description="why, what is not judged, what is left: at most 25 lines of at most 80 columns")
+    lines: list[str] = Field(
+        description="why, what is not judged or left: at most 25 lines of at most 80 columns; options as fields of their names"
+    )
     cutters: dict[str, str] = Field(description="id of a cutter -> how much it reaches, or does not reach and why")
     verdicts: dict[str, VerdictText] = Field(description="id of a cutter -> whether it is feasible")
     shares: dict[str, dict[str, str]] = Field(
@@ -396,11 +398,6 @@ class Plan(Frozen):
     holes: list[HoleEntry] = Field(
         default=[],
         description="holes for drills: those narrower than `effective.drill_below_mm`, with a target face among theirs",
-    )
-    drilling: list[DrillingEntry] = Field(
-        default=[],
-        exclude_if=lambda steps: not steps,
-        description="steps that drill `holes`, with tools of the libraries; not written where there are none",
     )
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")

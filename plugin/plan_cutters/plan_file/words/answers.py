@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
-from plan_cutters.domain.figures import angle, capital, down, listed, mm, percent, place, reported, some, up
+from plan_cutters.domain.figures import ROUNDING, angle, capital, down, listed, mm, percent, place, reported, some, up
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
@@ -200,7 +200,7 @@ _ALIKE = 0.05
 def needs(plan: Plan, entry: RemainingEntry) -> str:
     """Say what would help against a cause, in a clause; empty where nothing is known."""
     if entry.cause == "sharp_edge" and plan.sharp_edges:
-        return f"the model has no fillet there, and the cutter leaves one of R{reported(plan.sharp_edges[0].radius_mm):.4g}"
+        return f"the model has no fillet there, and the cutter leaves one of {_fillets(plan, entry)}"
     if entry.cause == UNJUDGED_CAUSE:
         faces = set(entry.faces)
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
@@ -223,6 +223,22 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
         first, share = hint or "no change that was tried helps", 0.0
     points = _points(entry, share)
     return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
+
+
+def _fillets(plan: Plan, entry: RemainingEntry) -> str:
+    """The radii that the steps leave at the sharp edges of some faces: of each edge that of the finest cutter that comes there.
+
+    An edge in the plan has the radius of the cutter shown, which is that of its corner or of its flutes.
+    """
+    shown, faces, radii = shown_cutter(plan), set(entry.faces), set[float]()
+    by_id = {each.id: each for each in plan.cutters}
+    for edge in [each for each in plan.sharp_edges if faces & {*each.faces}] or plan.sharp_edges[:1]:
+        by_corner = abs(edge.radius_mm - shown.allowance_mm - shown.corner_radius) < ROUNDING
+        used = [by_id[step.cutter] for step in plan.process.steps if {*step.faces} & {*edge.faces}] if plan.process else []
+        left = [each.allowance_mm + ((by_corner and each.corner_radius) or each.radius) for each in used]
+        radii.add(reported(min(left, default=edge.radius_mm)))
+    least, most = f"R{min(radii):.4g}", f"R{max(radii):.4g}"
+    return least if least == most else f"{least} to {most}"
 
 
 def _best(entry: RemainingEntry, advice: MendEntry) -> HelpEntry | None:

@@ -10,8 +10,9 @@ from plan_cutters.domain.figures import capital, count, duration, joined, listed
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import is_free_form, rank, ranks
 from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
-from plan_cutters.plan_file.operations import ProcessEntry
+from plan_cutters.plan_file.operations import NOT_PLANNED, SHORT_STEP, UNJUDGED_CAUSE, ProcessEntry
 from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
+from plan_cutters.plan_file.reasons import reason
 from plan_cutters.plan_file.shares import part_of, reached_share
 from plan_cutters.plan_file.words.names import described
 
@@ -378,14 +379,21 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
-def _comes_last(plan: Plan) -> str:
-    """The cutter that does alone, where the process has cutters of more wanted kinds before it; else empty."""
-    entry = next((each for each in plan.cutters if each.id == plan.selected), None)
-    steps = plan.process.steps if plan.process else []
-    # Operations are chosen by their time: there only what comes last in any case gives way.
-    if entry is None or (entry.group != "last" and any(step.mode != "any" for step in steps)):
+def _by_others(plan: Plan) -> str:
+    """The cutter that does alone, or over all setups, where the process has other cutters; else empty."""
+    does = plan.selected or plan.selected_over_setups
+    return does if does and plan.process and {step.cutter for step in plan.process.steps} - {does} else ""
+
+
+def _alone_too(plan: Plan, cutter: str, called: str) -> str:
+    """A sentence on the cutter that does alone, and why the process has others."""
+    if not cutter:
         return ""
-    return entry.id if {step.cutter for step in steps} - {entry.id} else ""
+    entry = next(each for each in plan.cutters if each.id == cutter)
+    # Operations are chosen by their time or number: there only what comes last in any case gives way by its kind.
+    timed = any(step.mode != "any" for step in plan.process.steps) if plan.process else False
+    why = "" if timed and entry.group != "last" else ", but its kind comes after that of step 1"
+    return f" {capital(called)} does alone{why or ', too'}."
 
 
 def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
@@ -458,9 +466,9 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process and process.finished_share >= 1.0 else ""
         return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
 
-    late = _comes_last(plan)
+    others = _by_others(plan)
     if process is None or process.finished:
-        if plan.selected and not late:
+        if plan.selected and not others:
             # Of several setups one may do by itself.
             alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
             if alone not in (None, plan.effective.setup):
@@ -468,40 +476,67 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
                 return take(plan.selected, why, where=f", in setup {axis_words(alone or ())}")
             if setups == 1 or alone:
                 return take(plan.selected, first_of(plan, entries[plan.selected], every(plan)))
-        if plan.selected_over_setups:
+        if plan.selected_over_setups and not others:
             why = f"Together they reach {every(plan)}; no setup does alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
     best = nearest(plan.cutters)
     finished = process.finished if process else not best.not_reached
     share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
     title = _title(plan, share, finished=finished)
-    about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {requested(plan)}."
+    machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
+    about = f"{sized(plan, plan.part.file or 'part')}{machine}."
+    if plan.scope is not None and plan.scope.not_judged:
+        about += f" Judged: {requested(plan)}."
     if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
         (only,) = used
-        about = " ".join(filter(None, (about, f"{capital(names[only])}: {described(entries[only], names[only])}.")))
+        about += f" {capital(names[only])}: {described(entries[only], names[only])}."
     if finished:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
-        single = f" {capital(names[late])} does alone, but its kind comes after that of step 1." if late else ""
+        single = _alone_too(plan, others, names.get(others, ""))
         return Headline(title, True, about, f"{why}.{single}{could_not(plan)}")
     undecided = not any(c.blocked for c in plan.cutters)
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
 
 
 def _title(plan: Plan, share: float, *, finished: bool) -> str:
-    """The part, on which machine; in how many steps and setups how much is finished, and in what time."""
-    machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
-    process, setups = plan.process, 1 + len(plan.effective.other_setups)
+    """In how many steps and setups how much is finished, and in what time; how much stays, and mostly why."""
+    process = plan.process
     whole = process.asked_mm2 if process else math.nan
     of = mm2(whole) if math.isfinite(whole) else "the area to machine"
-    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0)
-    steps = len(process.steps) if process else 0
-    where = f" in {setups} setups" if setups > 1 else ""
-    what = f"{much} of" if process is None else "no step finishes any of"
-    if steps:
-        what = f"{count(steps, 'step')}{where} finish{'es' * (steps == 1)} {much} of"
-    return f"{sized(plan, plan.part.file or 'part')}{machine}: {what} {of}{'' if process is None else _took(process)}"
+    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0 and not (process and process.left))
+    if process is None:
+        return f"The cutters finish {much} of {of}"
+    if not process.steps:
+        return f"No step finishes any of {of}{_stays(process)}"
+    setups = count(len({step.setup for step in process.steps}), "setup")
+    steps = count(len(process.steps), "step")
+    finish = f"finish{'es' * (len(process.steps) == 1)} {'all' if much == '100 %' else f'{much} of'} {of}"
+    return f"{steps} in {setups} {finish}{_took(process)}{_stays(process)}"
+
+
+#: From this share of what is left on a cause is most of it.
+_MOSTLY = 0.5
+#: Causes that are no reasons of verdicts, as they stand in the headline.
+_STAY_FOR = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "hardly a step"}
+
+
+def _stays(process: ProcessEntry) -> str:
+    """How much stays, and mostly why, as the end of a sentence; empty where nothing does."""
+    if not process.left:
+        return ""
+    if process.finished:
+        return f"; {listed([face for each in process.left for face in each.faces], _FACES)} not judged"
+    share, worst = 1.0 - process.finished_share, process.left[0]
+    known = sum(each.share for each in process.left)
+    how, cause = ", mostly" if worst.share >= _MOSTLY * known else ":", _STAY_FOR.get(worst.cause) or reason(worst.cause)
+    if len(process.left) == 1:
+        how = ":"
+    elif worst.share < _MOSTLY * known:
+        cause = f"{cause} ({percent(worst.share, some=True, whole=False)}) and other causes"
+    much = percent(share, some=any(each.samples for each in process.left), whole=share >= 1.0)
+    return f"; {much} stay{how} {cause}"
 
 
 def _took(process: ProcessEntry) -> str:

@@ -1,6 +1,6 @@
-"""Put operations and the process into words: steps in a table of 80 columns, what is left by cause, what to do next."""
+"""Put the process into words: steps in a table of 80 columns, what is left by cause, what to do next."""
 
-import math
+import re
 import shlex
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
-from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, mm, percent, place, size, some
+from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     MARGIN,
@@ -18,9 +19,6 @@ from plan_cutters.plan_file.operations import (
     SHORT_STEP,
     UNJUDGED_CAUSE,
     NextEntry,
-    OperationEntry,
-    OperationPlanEntry,
-    OperationsEntry,
     ProcessEntry,
     ProcessSetup,
     ProcessStep,
@@ -29,246 +27,15 @@ from plan_cutters.plan_file.operations import (
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
-from plan_cutters.plan_file.words.names import Line, named
+from plan_cutters.plan_file.words.holes import drilling_words
+from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import doubts
+from plan_cutters.plan_file.words.operations import angles_text
 
-#: Operations that are listed, and faces that are named of one.
-_LISTED, _OF_OPERATION = 12, 4
-#: Operations for little area that are named before the others; a gap that counts as none, as a share.
-_SMALL, _NO_GAP = 3, 1e-6
-#: How an operation cuts, where it does not cut in points alone.
-_CUTS_AS = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
-
-
-def operations(plan: Plan) -> list[Line]:
-    """Lines about the operations, the worst first, cutters called as everywhere; none where they were not requested."""
-    operations = plan.operations
-    if operations is None:
-        return []
-    lines = [*_rest(operations), *_fewest(operations)]
-    if any(each.operations for each in operations.plans):
-        lines += [*(line for each in operations.plans for line in _plan(operations, each)), *_fastest(operations)]
-        lines += _by_cutter(operations)
-    return [Line(named(plan, text)) for text in (*lines, *operations.notes)]
-
-
-def in_short(plan: Plan) -> list[str]:
-    """Say what no operation finishes, and how many orientations finish the rest; nothing where operations were not requested."""
-    operations = plan.operations
-    return [] if operations is None else [named(plan, text) for text in (*_rest(operations), next(_fewest(operations)))]
-
-
-def _rest(operations: OperationsEntry) -> Iterator[str]:
-    rest = operations.plans[0].rest
-    if rest.samples:
-        short = f", but for {count(rest.short, 'sample')} for which a step would take less than 1 s" if rest.short else ""
-        yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it{short}."
-    # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
-    first = operations.plans[0]
-    most = first.orientations if operations.fewest is None else operations.fewest.found
-    for each in first.operations:
-        if each.mode == "simultaneous" and first.orientations < most:
-            yield (
-                f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
-                f"{count(first.orientations, 'fixed orientation')} leave{'s' * (first.orientations == 1)} it."
-            )
-        elif each.mode == "simultaneous":
-            yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
-
-
-def _fewest(operations: OperationsEntry) -> Iterator[str]:
-    few = operations.fewest
-    if few is None:
-        plan = operations.plans[0]
-        whose = "The planner's own process" if plan.name == "process" else "The plan, of one copy and its repeats,"
-        yield f"{whose} has {count(plan.orientations, 'fixed orientation')}."
-        return
-    if not few.found:
-        yield "There is nothing that a fixed orientation reaches."
-        return
-    near = f"{few.candidates} candidates ({few.spacing_deg:.2g} deg apart where it matters)"
-    proved = f"; among {near} at least {few.at_least} are needed."
-    if few.found == 1:
-        proved = "."
-    elif few.proof != "not closed":
-        by = f"weights on {len(few.weights)} samples prove" if few.proof == "weights" else "branch and bound proves"
-        proved = f"; no choice among {near} does with fewer, as {by}."
-    verb = "finishes" if few.found == 1 else "finish"
-    yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{proved}"
-    if saving := one_more(operations):
-        yield saving
-
-
-def one_more(operations: OperationsEntry | None) -> str:
-    """Say what one more orientation than the fewest would save; empty where that is little, or not known."""
-    more = None if operations is None or operations.fewest is None else operations.fewest.one_more
-    plan = None if operations is None else next((each for each in operations.plans if each.name == "fewest"), None)
-    if operations is None or more is None or plan is None or plan.seconds is None:
-        return ""
-    where = f" in setup {more.setup + 1}" if more.setup or _setups(operations) else ""
-    what, saved = f"{angles_text(more.angles_deg)} with {more.cutter}{where}", duration(more.saves_seconds)
-    return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [--operations fastest]."
-
-
-def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
-    first = operations.plans[0]
-    if plan is not first and _choice(plan) == _choice(first):
-        yield f"The {plan.name} plan is the same."
-        return
-    work = f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
-    if plan.cutting_seconds is not None:
-        links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
-        work = f"{duration(plan.cutting_seconds)} of cutting{links}"
-        cutters, setups = ({getattr(each, word) for each in plan.operations} for word in ("cutter", "setup"))
-        what = joined(["orientations", *["cutters"] * (len(cutters) > 1), *["setups"] * (len(setups) > 1)])
-        work += f" and {duration(plan.other_seconds)} for {what}" if plan.other_seconds > 0.0 else ""
-    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {work}."
-    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
-    for each in small[:_SMALL]:
-        took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
-        yield f"  {each.id} is there for {some(each.share)} of the area{took}: {_faces(each)}."
-    if len(small) > _SMALL:
-        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
-    for each in plan.operations[:_LISTED]:
-        yield f"  {_listed(each, _setups(operations))}"
-    if len(plan.operations) > _LISTED:
-        yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
-    yield from (line for each in plan.operations if (line := turning(each)))
-    if plan.proved_share is not None and plan.proved_share < 1.0:
-        yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
-
-
-def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
-    return sorted((each.cutter, each.setup, *sorted((each.angles_deg or {}).items())) for each in plan.operations)
-
-
-def share_text(share: float) -> str:
-    """A share of the area: what falls short of all by rounding is all of it, for areas are sums of rounded numbers."""
-    return percent(share, whole=share >= 1.0 - ROUNDING)
-
-
-def _fastest(operations: OperationsEntry) -> Iterator[str]:
-    """How the times of fixed orientations compare with simultaneous motion and with the best choice, and what was guessed."""
-    timed, first = operations.fastest, operations.plans[0]
-    if timed is None:
-        return
-    kind, axes = _INDEXED.get(len(operations.rotary), ("", ""))
-    for plan in operations.plans:
-        if kind and plan.ratio_at_most is not None and (plan is first or _choice(plan) != _choice(first)):
-            cutting = sum((each.seconds or 0.0) + each.link_seconds for each in plan.operations if each.mode == "fixed")
-            times = f"at most {math.ceil(10.0 * plan.ratio_at_most - 1e-9) / 10.0:.1f} times as long as {axes} axes at once"
-            yield f"{kind} ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
-    few = operations.fewest
-    some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
-    near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
-    if timed.gap is None:
-        yield "How far the fastest plan is above the best is not known: a width of a pass is not known."
-    elif timed.gap <= _NO_GAP:
-        yield f"No choice takes less than the fastest plan: it is {near}."
-    else:
-        yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
-    if operations.assumed.index_from == "assumed" and first.orientations > 1:
-        guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
-        yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
-
-
-def _by_cutter(operations: OperationsEntry) -> Iterator[str]:
-    """What each cutter cuts by the fastest plan, what it saves, and what its change costs."""
-    taken = [(use.id, use.takes_mm2["fastest"]) for use in operations.cutters if use.takes_mm2.get("fastest", 0.0) > 0.0]
-    whole = sum(size for _, size in taken)
-    if len(taken) > 1:
-        yield f"Of what is cut, the fastest plan cuts {joined([f'{share_text(size / whole)} with {id}' for id, size in taken])}."
-    used = {each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations}
-    for use in operations.cutters:
-        if use.only_mm2 > 0.0:
-            yield f"Only {use.id} reaches {area(use.only_mm2)}."
-        elif use.saves_seconds is None:
-            yield f"{use.id} is needed: no plan was found without it."
-        elif use.saves_seconds < 1.0:
-            yield f"{use.id} would save nothing."
-        elif use.change_seconds <= 0.0:
-            yield f"{use.id} saves {duration(use.saves_seconds)} against the best without it."
-        else:
-            verb, cost = ("saves", "costs") if use.id in used else ("would save", "cost")
-            yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
-
-
-def _setups(operations: OperationsEntry) -> bool:
-    """Whether operations are in more than one setup: then each says in which."""
-    return len({each.setup for plan in operations.plans for each in plan.operations}) > 1
-
-
-def _listed(each: OperationEntry, setups: bool) -> str:
-    took = "" if each.seconds is None else f", {duration(each.seconds)}"
-    where = f" in setup {each.setup + 1}" if setups else ""
-    how = "" if each.strategy == "point" else f", {_CUTS_AS[each.strategy]}"
-    what = f"{each.cutter}{where}, {_turned(each)}{how}"
-    return f"{each.id}: {what}: {share_text(each.share)} of the area{took}, {_faces(each)}."
-
-
-def turning(each: OperationEntry) -> str:
-    """Say over what share simultaneous motion is proved, and how the axes turn there; empty where nothing was looked at."""
-    turn = each.turning
-    if turn is None or each.proved_share is None:
-        return ""
-    if not turn.pieces_mm2:
-        return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
-    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
-    text = (
-        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
-        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
-    )
-    if turn.angles_deg is not None:
-        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
-    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
-        text += (
-            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
-        )
-    if turn.singular_mm2 > 0.0:
-        text += f"; {area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
-    return f"{text}."
-
-
-class OperationText(NamedTuple):
-    """An operation as a row of a table, with angles in degrees and the setup where there are several, and as a sentence."""
-
-    entry: OperationEntry
-    setup: str
-    turned: str
-    took: str
-    faces: str
-    sentence: str
-
-
-def operation_text(plan: Plan, each: OperationEntry) -> OperationText:
-    """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
-    length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
-    took = length if each.seconds is None else duration(each.seconds)
-    setups = plan.operations is not None and _setups(plan.operations)
-    where = f"setup {each.setup + 1}" if setups else ""
-    return OperationText(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups)))
-
-
-def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:
-    """Those lines that are about plans, not about one operation, and do not stand above: what is indented stands in a list."""
-    mentioned = set(above)
-    return [line for line in lines if not line.text.startswith(" ") and line.text not in mentioned]
-
-
-def _turned(each: OperationEntry) -> str:
-    if each.angles_deg is None:
-        return "simultaneous"
-    return f"{angles_text(each.angles_deg)} deg" if each.angles_deg else "upright"
-
-
-def _faces(each: OperationEntry) -> str:
-    return listed([face.face for face in each.faces], _OF_OPERATION)
-
-
+#: Rows of mills and drills that are listed together, and so many of drills in any case.
+_ROWS, _DRILLED = 10, 4
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
-#: Fixed orientations by how many rotary axes index, and how many axes move at once otherwise.
-_INDEXED = {1: ("3+1", "four"), 2: ("3+2", "five")}
 #: Shares are sums of areas: a gain that is less than it should be by this is that.
 _ROUNDING = 1e-6
 #: Changes that come beside what there is, and take nothing away.
@@ -290,8 +57,8 @@ _MINOR = 0.001
 class StepRow(NamedTuple):
     """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
 
-    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, and `at` its
-    setup, counted from 0.
+    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, `at` its
+    setup, counted from 0, and `holes` how many it drills, 0 for a mill.
     """
 
     number: str
@@ -304,6 +71,7 @@ class StepRow(NamedTuple):
     alone: str
     operation: str
     at: int
+    holes: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -326,10 +94,13 @@ class ProcessStory:
     def table(self) -> list[str]:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
         each setup."""
-        rows = [(row.number, *row[2:6]) for row in self.rows]
+        drills = sorted((row for row in self.rows if row.holes), key=lambda row: -row.holes)
+        unshown = drills[max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
+        shown = [row for row in self.rows if row not in unshown]
+        rows = [(row.number, *row[2:6]) for row in shown]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
         stands, lines, setup = dict(enumerate(self.stands)), list[str](), None if self.rows else -1
-        for row, texts in zip(self.rows, rows, strict=True):
+        for row, texts in zip(shown, rows, strict=True):
             if row.at != setup:
                 setup = row.at
                 lines += wrapped([stands.pop(setup, f"Setup {setup + 1} again:")], 2)
@@ -341,20 +112,26 @@ class ProcessStory:
             line = "  " + "  ".join(cells)
             lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
         idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
+        if unshown:
+            lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
         return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
 
 
-def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
-    """Tell the process of a plan; None where an older file has none."""
+def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> ProcessStory | None:
+    """Tell the process of a plan, about so many steps of it; None where an older file has none."""
     process = plan.process
     if process is None:
         return None
-    setups = len({step.setup for step in process.steps}) > 1
+    setups = len({*(step.setup for step in process.steps), *(step.setup for step in process.drilling)}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
-    largest = sorted(steps, key=lambda k: -steps[k].share)[: _STEPS if len(steps) > _STEPS + 1 else None]
-    rows = tuple(_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest))
+    largest = sorted(steps, key=lambda k: -steps[k].share)[: most if len(steps) > most + 1 else None]
+    rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
+    # Steps that drill follow those of mills in their setup.
+    for k, bores in enumerate(process.drilling, len(steps) + 1):
+        after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
+        rows.insert(after, _drilling_row(k, bores, setups=setups, fixed=fixed or not steps))
     more = ""
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
@@ -362,10 +139,11 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
-    if known and least < MARGIN and steps[step].mode == "fixed" and steps[step].own is None:
+    # The fewest orientations are proved among all that is safe.
+    if known and least < MARGIN and steps[step].mode == "fixed" and process.plan == "fastest":
         clearance = f"{clearance[:-1]}, where no orientation of the plan has {mm(MARGIN)}."
     return ProcessStory(
-        rows=rows,
+        rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
         roughing=roughing(process),
         more=more,
@@ -419,6 +197,22 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         alone="" if step.alone_mm2 is None else area(step.alone_mm2),
         operation=step.operation,
         at=step.setup,
+    )
+
+
+def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool) -> StepRow:
+    return StepRow(
+        number=str(number),
+        setup=f"setup {step.setup + 1}" if setups else "",
+        turned=angles_text(step.angles_deg or {}) if fixed else "",
+        cutter=drilling_words(step),
+        share=count(len(step.holes), "hole"),
+        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
+        faces=[],
+        alone="",
+        operation="",
+        at=step.setup,
+        holes=len(step.holes),
     )
 
 
@@ -529,25 +323,31 @@ def _next(each: NextEntry) -> str:
     return f"Next: {each.words}{stays}{bracket}"
 
 
-def wrapped(texts: list[str], most: int) -> list[str]:
-    """Paragraphs in lines of at most 80 columns, of each as many as are allowed."""
+#: Where a sentence ends, and another begins.
+_SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Z]|--)")
+
+
+def wrapped(texts: Iterable[str], most: int) -> list[str]:
+    """Paragraphs in lines of at most 80 columns, of each as many whole sentences as go into so many lines, and the first one.
+
+    >>> wrapped(["One. " + "Two is long " * 8 + "and ends."], 1)
+    ['One.']
+    """
     lines: list[str] = []
     for text in texts:
-        mine = textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
-        if len(mine) > most:
-            mine = [*mine[: most - 1], textwrap.shorten(" ".join(mine[most - 1 :]).strip(), WIDTH - 2, placeholder=" ...")]
-            mine[-1] = f"  {mine[-1]}" if most > 1 else mine[-1]
+        first, *others = _SENTENCE.split(text)
+        mine = _lines(first)
+        for each in others:
+            first = f"{first} {each}"
+            if len(longer := _lines(first)) > most:
+                break
+            mine = longer
         lines += mine
     return lines
 
 
-def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
-    """Rotary axes with their angles, and by how much some turn from one time to the next.
-
-    >>> angles_text({"C": 0.0, "A": 12.5}, {"C": 36.0})
-    'C 0 + 36 A 12.5'
-    """
-    return " ".join(f"{name} {angle:g}" + (f" + {by[name]:g}" if by and name in by else "") for name, angle in angles.items())
+def _lines(text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
 
 
 def own_steps(process: ProcessEntry) -> Iterator[str]:

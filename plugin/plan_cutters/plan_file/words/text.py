@@ -1,6 +1,6 @@
 """A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -25,18 +25,10 @@ from plan_cutters.plan_file.words.headline import (
     unseen,
 )
 from plan_cutters.plan_file.words.holes import holes
-from plan_cutters.plan_file.words.names import Line, named, short_names
+from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.process import (
-    ProcessStory,
-    in_short,
-    one_more,
-    operations,
-    process_story,
-    shortened,
-    with_process_words,
-    wrapped,
-)
+from plan_cutters.plan_file.words.operations import in_short, one_more, operations
+from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,32 +173,49 @@ def text_of(plan: Plan) -> TextEntry:
     )
 
 
-def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
-    """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next."""
+def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -> list[str]:
+    """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
+
+    `typed`: for a terminal, with the options that one types; other readers have fields of these names.
+    """
     process = story.process
     inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     unshown = len(story.notes) + len(story.setups) + len(story.answers)
-    blocks: list[list[str]] = [
-        wrapped(plan.process.doubts if plan.process else [], 2),
-        [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
-        wrapped([in_summary(plan)] if process and in_summary(plan) else [], 2),
-        [process.roughing] if process and process.roughing else [],
-        process.table() if process else [],
-        wrapped([named(plan, one_more(plan.operations))] if plan.process and plan.process.plan == "fewest" else [], 3),
-        wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],
-        wrapped(list(process.next), 3) if process else [],
-        wrapped(list(process.remaining[process.much :]), _LEFT) if process else [],
-        wrapped([*holes(plan)], 2),
-        wrapped([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2),
-        wrapped([process.clearance] if process and process.clearance else [], 1),
-        wrapped(_alone(story), _ALONE),
-        wrapped([story.headline.why] if story.headline.why else [], 2),
-        wrapped(list(story.between[:1]), 2),
-        [f"{count(unshown, 'note')}: -v, or the review page."] if unshown else [],
-    ]
-    lines = [line for block in blocks for line in block]
-    return lines if len(lines) <= most else [*lines[: most - 1], "More: -v, or the review page."]
+    where = "-v, or the review page" if typed else "see the review page"
+    paragraphs: list[list[str]] = []
+
+    def add(texts: Iterable[str], each: int) -> None:
+        paragraphs.extend(wrapped([text if typed else as_fields(text)], each) for text in texts if text)
+
+    add(plan.process.doubts if plan.process else (), 2)
+    add(inside, 6)
+    add(_doubts(plan, story)[:_DOUBTS], 1)
+    add([judged], 3)
+    if process:
+        add([in_summary(plan)], 2)
+        paragraphs += [[line] for line in ([process.roughing] if process.roughing else []) + process.table()]
+    if plan.process and plan.process.plan == "fewest":
+        add([named(plan, one_more(plan.operations))], 3)
+    if process:
+        add([*shortened(process.own), *process.remaining[: process.much]], _LEFT)
+        add(process.next, 3)
+        add(process.remaining[process.much :], _LEFT)
+    add(holes(plan), 2)
+    add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2)
+    add([process.clearance if process else ""], 1)
+    add(_alone(story), _ALONE)
+    add([story.headline.why], 2)
+    add(story.between[:1], 2)
+    add([f"{count(unshown, 'note')}: {where}."] if unshown else [], 1)
+    if sum(map(len, paragraphs)) <= most:
+        return [line for paragraph in paragraphs for line in paragraph]
+    lines = list[str]()
+    for paragraph in paragraphs:
+        # A sentence that is cut says something else.
+        if len(lines) + len(paragraph) < most:
+            lines += paragraph
+    return [*lines, f"More: {where}."]
 
 
 def _doubts(plan: Plan, story: Story) -> list[str]:

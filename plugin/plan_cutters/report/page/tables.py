@@ -1,14 +1,13 @@
 """All that the page has beside arrays: its `meta` object, its plan of operations, and its tables without JavaScript."""
 
 import math
-import re
 from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
-from cad_io.graphs import connected
+from cad_io.arrays import Floats
 from plan_cutters.document.build import counts, degrees
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.cutter import Cutter
@@ -18,21 +17,19 @@ from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
-from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, OPERATIONS, PALETTE, REASONS, label, operation_colour
+from plan_cutters.plan_file.operations import OperationPlanEntry
+from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, PALETTE, REASONS, label
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
 from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
-from plan_cutters.plan_file.words.names import Line, named, short_names
+from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.process import OperationText, of_the_whole, operation_text
+from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
 from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
+from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
 from plan_cutters.report.protocol import Judged
-
-#: Patterns of operations, another one each time that the colours come round.
-_PATTERNS = ("plain", "hatch", "cross", "dots")
 
 
 def key(plan: OperationPlan | OperationPlanEntry) -> str:
@@ -66,8 +63,7 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
                 "array": f"operation.{key(mine)}",
                 "lean": f"operation_lean.{key(mine)}",
                 "operations": [
-                    _operation(result.plan, one, k, row)
-                    for k, (one, row) in enumerate(zip(each.operations, _shown_at(mine, result.samples), strict=True))
+                    _operation(result.plan, each, k, middle(result, mine.label == k)) for k in range(len(each.operations))
                 ],
             }
             for mine, each in zip(operations.plans, entry.plans, strict=True)
@@ -75,40 +71,31 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
     }
 
 
-def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict[str, Any]:
-    pattern = _PATTERNS[number // len(OPERATIONS) % len(_PATTERNS)]
-    words = operation_text(plan, entry)
+def _operation(plan: Plan, of: OperationPlanEntry, number: int, row: int | None) -> dict[str, Any]:
+    entry = of.operations[number]
+    words, called = operation_text(plan, of, entry), stepped(plan, of, entry.id)
+    step = int(called.split()[1].partition(".")[0]) if called != entry.id else number + 1
     return {
-        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": operation_colour(number), "pattern": pattern,
-        "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
+        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, **colour(step),
+        "label": called, "turned": words.turned, "text": words.sentence, "sample": row,
         "words": [each for each in (entry.g68_2, entry.g53_1, entry.rotary_words) if each],
     }  # fmt: skip
 
 
-def _shown_at(plan: OperationPlan, samples: SurfaceSamples) -> list[int]:
-    """A sample of each operation, where its tool is shown: amid its largest connected region.
-
-    A region may be bent, so that its middle is no part of it: the sample next to the middle is taken.
-    """
-    label, edge = plan.label, samples.neighbours
-    same = edge[label[edge[:, 0]] == label[edge[:, 1]]]
-    piece = connected(len(label), same)
-    area, samples_shown = np.nan_to_num(samples.area), []
-    for k in range(len(plan.operations)):
-        rows = np.flatnonzero(label == k)
-        size = np.bincount(piece[rows], area[rows])
-        rows = rows[piece[rows] == size.argmax()] if size.any() else rows
-        middle = samples.point[rows].mean(axis=0)
-        samples_shown.append(int(rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]))
-    return samples_shown
+def _in_order(plan: Plan, of: OperationPlanEntry, texts: list[OperationText]) -> list[tuple[int, OperationText]]:
+    """Rows with their places in the plan: those of the process in the order of its steps."""
+    number = {name: tuple(map(int, step.split("."))) for name, step in operation_names(plan).items()}
+    rows = list(enumerate(texts))
+    return (
+        sorted(rows, key=lambda row: number.get(row[1].entry.id, (0,))) if plan.process and of.name == plan.process.plan else rows
+    )
 
 
 class OperationTables(NamedTuple):
-    """These are what the template shows of the operations; `process`: the plan and the place in it of each one of the process."""
+    """These are what the template shows of the operations."""
 
     lines: list[Line]
-    plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
-    process: dict[str, tuple[str, int]]
+    plans: list[tuple[OperationPlanEntry, str, list[tuple[int, OperationText]], bool]]
 
 
 def tables(plan: Plan, story: Story) -> OperationTables | None:
@@ -120,18 +107,12 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         (
             each,
             key(each),
-            [operation_text(plan, one) for one in each.operations],
+            _in_order(plan, each, [operation_text(plan, each, one) for one in each.operations]),
             all(o.seconds is not None for o in each.operations),
         )
         for each in operations.plans
     ]
-    places = {
-        one.id: (key(each), k)
-        for each in operations.plans
-        if plan.process is not None and each.name == plan.process.plan
-        for k, one in enumerate(each.operations)
-    }
-    return OperationTables(of_the_whole(story.operations, story.in_short), plans, places)
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans)
 
 
 FORMAT = 1
@@ -139,8 +120,10 @@ FORMAT = 1
 _CHORD = 0.005
 
 
-def meta_of(result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]) -> dict[str, Any]:
-    """All of it but the arrays, and what was left out of them."""
+def meta_of(
+    result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot], number: NDArray[np.uint16]
+) -> dict[str, Any]:
+    """All of it but the arrays, and what was left out of them; `number` (n,): of the step that finishes each sample."""
     plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
     low, high = box
     return {
@@ -187,6 +170,7 @@ def meta_of(result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, F
             for each in spots
         ],
         "operations": operations_of(result),
+        "process": process_of(result, story_of(plan), number),
     }
 
 
@@ -237,8 +221,6 @@ def _cutter(name: str, entry: CutterEntry, cutter: Cutter, data: dict[str, Any])
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.
 _FACES, _CUTTERS = 1000, 40
-#: Where a sentence ends and another begins, and an option of the command.
-_SENTENCE, _OPTION = re.compile(r"(?<=[.!?])\s+(?=[A-Z]|--)"), re.compile(r"(?<!\S)\(?--[a-z]")
 
 
 class Drawing(NamedTuple):
@@ -265,6 +247,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     shown = next(c for c in plan.cutters if c.id == story.shown)
     rows = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
+    warnings = [text for text in plan.part.warnings if not plan.process or text not in repeated_warnings(plan)]
     faces, bars = _faces(plan, shown), dict[str, list[tuple[str, float, float, str]]]()
     for c in plan.cutters:
         # Shares as bars (word, from, width, colour) of 100 in all.
@@ -272,13 +255,16 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         row = zip(VERDICTS, accumulate(wide, initial=0.0), wide, strict=False)
         bars[c.id] = [(word, round(at, 2), round(width, 2), plan.legend[word]) for word, at, width in row if width]
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
-    header, commands = _apart(_header(plan, story, shown))
     return {
         "w": numbers,
         "plan": plan,
         "story": story,
-        "header": header,
-        "commands": commands,
+        "header": _header(plan, story, shown),
+        "plain": as_fields,
+        "size": numbers.size(plan.part.size_mm),
+        "stands": story.process.stands if story.process else (),
+        "heeded": len(warnings) + (not plan.process and not plan.part.orientation.confident),
+        **process_tables(plan, story),
         "names": story.names,
         "named": lambda text: named(plan, text),
         "step_told": step_text,
@@ -302,7 +288,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "more": more,
         "faces": faces[:_FACES],
         "unlisted": len(faces[_FACES:]),
-        "warnings": [text for text in plan.part.warnings if not plan.process or text not in repeated_warnings(plan)],
+        "warnings": warnings,
         "doubts": [line for each in story.doubts.values() for line in each],
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
         "effective": _effective(plan),
@@ -310,26 +296,14 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "left": omitted,
         "empty": headline.not_sampled(plan),
         "operations": tables(plan, story),
+        "stepped": lambda of, name: stepped(plan, of, name),
     }
 
 
 def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
     p = story.process
-    process = [p.more, *p.own, *p.remaining, *p.next, p.clearance] if p else []
+    process = [*p.own, p.clearance] if p else []
     return [*process, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
-
-
-def _apart(texts: list[str]) -> tuple[list[str], list[str]]:
-    """Texts without their sentences that name options of the command, and those sentences.
-
-    Reviewers do not have the command at hand.
-
-    >>> _apart(["All is reached. --spacing 3 looks more closely.", "Take it."])
-    (['All is reached.', 'Take it.'], ['--spacing 3 looks more closely.'])
-    """
-    split = [_SENTENCE.split(text) for text in texts if text]
-    plain = [" ".join(each for each in sentences if not _OPTION.search(each)) for sentences in split]
-    return [text for text in plain if text], [each for sentences in split for each in sentences if _OPTION.search(each)]
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:

@@ -11,6 +11,7 @@ from plan_cutters.domain.verdicts import depths
 from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays, atlas_of, box_of, joined, spots_of, surface_of
+from plan_cutters.report.page.steps import step_arrays, step_of
 from plan_cutters.report.page.tables import Drawing, meta_of, operation_arrays
 from plan_cutters.report.protocol import Judged
 
@@ -52,19 +53,21 @@ def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) 
     box = box_of(surface, result.samples)
     spots, more = spots_of(result)
     scalars, legends = arrays.scalar_arrays(result)
+    number = step_of(result)
     base = {
         **arrays.mesh_arrays(surface, atlas, *box),
         **arrays.sample_arrays(result, *box),
         **arrays.posture_arrays(result, result.shown),
         **scalars,
         **operation_arrays(result),
+        **step_arrays(result, number),
     }
     others = Arrays()
     for name in result.reaches:
         others |= arrays.posture_arrays(result, name) if name != result.shown else {}
     _, overlooked = depths(effective.tolerance_mm, faces.deflection)
     meta = {
-        **meta_of(result, surface, atlas, box, spots),
+        **meta_of(result, surface, atlas, box, spots, number),
         "drawn_chord_mm": faces.deflection,
         "overlooked_mm": overlooked,
         "scalars": legends,

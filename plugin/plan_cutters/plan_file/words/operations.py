@@ -1,0 +1,287 @@
+"""Put plans of operations into words: how few there can be, how fast they are, and each one with its cutter and its faces."""
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, percent, some
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry, ProcessEntry
+from plan_cutters.plan_file.words.names import Line, named
+
+#: The id of an operation in a text.
+_OPERATION = re.compile(r"\bop\d+\b")
+#: Fixed orientations by how many rotary axes index, and how many axes move at once otherwise.
+_INDEXED = {1: ("3+1", "four"), 2: ("3+2", "five")}
+#: Up to this share an orientation is hardly worth its turn.
+_LITTLE = 0.005
+#: Operations that are listed, and faces that are named of one.
+_LISTED, _OF_OPERATION = 12, 4
+#: Operations for little area that are named before the others; a gap that counts as none, as a share.
+_SMALL, _NO_GAP = 3, 1e-6
+#: How an operation cuts, where it does not cut in points alone.
+_CUTS_AS = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
+
+
+def operations(plan: Plan) -> list[Line]:
+    """Lines about the operations, the worst first, cutters called as everywhere; none where they were not requested."""
+    operations = plan.operations
+    if operations is None:
+        return []
+    lines = [*_rest(operations), *_fewest(operations)]
+    if any(each.operations for each in operations.plans):
+        lines += [*(stepped(plan, each, line) for each in operations.plans for line in _plan(operations, each))]
+        lines += _fastest(operations)
+        lines += _by_cutter(operations)
+    return [Line(named(plan, text)) for text in (*lines, *operations.notes)]
+
+
+def operation_names(plan: Plan) -> dict[str, str]:
+    """Number the operations of the process, by their ids, as their steps: `3`, or `3.2` where that is done several times."""
+    return {} if plan.operations is None or plan.process is None else numbered(plan.operations, plan.process)
+
+
+def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, str]:
+    """The numbers of `operation_names`."""
+    names = dict[str, str]()
+    entries = [each for one in operations.plans if one.name == process.plan for each in one.operations]
+    by_id = {each.id: each for each in entries}
+    for number, step in enumerate(process.steps, 1):
+        made = by_id.get(step.operation)
+        orbit = None if made is None else made.orbit
+        images = [each for each in entries if each is made or (orbit is not None and each.orbit == orbit)] if made else []
+        for k, each in enumerate(images, 1):
+            names[each.id] = f"{number}.{k}" if len(images) > 1 else str(number)
+    return names
+
+
+def stepped(plan: Plan, of: OperationPlanEntry, text: str) -> str:
+    """A text on a plan of operations, or the id of one: those of the process are called by their steps."""
+    if plan.process is None or of.name != plan.process.plan:
+        return text
+    names = operation_names(plan)
+    return _OPERATION.sub(lambda match: f"step {names[match[0]]}" if match[0] in names else match[0], text)
+
+
+def in_short(plan: Plan) -> list[str]:
+    """Say what no operation finishes, and how many orientations finish the rest; nothing where operations were not requested."""
+    operations = plan.operations
+    return [] if operations is None else [named(plan, text) for text in (*_rest(operations), next(_fewest(operations)))]
+
+
+def _rest(operations: OperationsEntry) -> Iterator[str]:
+    rest = operations.plans[0].rest
+    if rest.samples:
+        short = f", but for {count(rest.short, 'sample')} for which a step would take less than 1 s" if rest.short else ""
+        yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it{short}."
+    # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
+    first = operations.plans[0]
+    most = first.orientations if operations.fewest is None else operations.fewest.found
+    for each in first.operations:
+        if each.mode == "simultaneous" and first.orientations < most:
+            yield (
+                f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
+                f"{count(first.orientations, 'fixed orientation')} leave{'s' * (first.orientations == 1)} it."
+            )
+        elif each.mode == "simultaneous":
+            yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
+
+
+def _fewest(operations: OperationsEntry) -> Iterator[str]:
+    few = operations.fewest
+    if few is None:
+        plan = operations.plans[0]
+        whose = "The planner's own process" if plan.name == "process" else "The plan, of one copy and its repeats,"
+        yield f"{whose} has {count(plan.orientations, 'fixed orientation')}."
+        return
+    if not few.found:
+        yield "There is nothing that a fixed orientation reaches."
+        return
+    near = f"{few.candidates} candidates ({few.spacing_deg:.2g} deg apart where it matters)"
+    proved = f"; among {near} at least {few.at_least} are needed."
+    if few.found == 1:
+        proved = "."
+    elif few.proof != "not closed":
+        by = f"weights on {len(few.weights)} samples prove" if few.proof == "weights" else "branch and bound proves"
+        proved = f"; no choice among {near} does with fewer, as {by}."
+    verb = "finishes" if few.found == 1 else "finish"
+    yield f"{count(few.found, 'fixed orientation')} {verb} everything that is reached{proved}"
+    if saving := one_more(operations):
+        yield saving
+
+
+def one_more(operations: OperationsEntry | None) -> str:
+    """Say what one more orientation than the fewest would save; empty where that is little, or not known."""
+    more = None if operations is None or operations.fewest is None else operations.fewest.one_more
+    plan = None if operations is None else next((each for each in operations.plans if each.name == "fewest"), None)
+    if operations is None or more is None or plan is None or plan.seconds is None:
+        return ""
+    where = f" in setup {more.setup + 1}" if more.setup or _setups(operations) else ""
+    what, saved = f"{angles_text(more.angles_deg)} with {more.cutter}{where}", duration(more.saves_seconds)
+    return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [--operations fastest]."
+
+
+def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
+    first = operations.plans[0]
+    if plan is not first and _choice(plan) == _choice(first):
+        yield f"The {plan.name} plan is the same."
+        return
+    work = f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
+    if plan.cutting_seconds is not None:
+        links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
+        work = f"{duration(plan.cutting_seconds)} of cutting{links}"
+        cutters, setups = ({getattr(each, word) for each in plan.operations} for word in ("cutter", "setup"))
+        what = joined(["orientations", *["cutters"] * (len(cutters) > 1), *["setups"] * (len(setups) > 1)])
+        work += f" and {duration(plan.other_seconds)} for {what}" if plan.other_seconds > 0.0 else ""
+    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {work}."
+    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
+    for each in small[:_SMALL]:
+        took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
+        yield f"  {each.id} is there for {some(each.share)} of the area{took}: {_faces(each)}."
+    if len(small) > _SMALL:
+        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
+    for each in plan.operations[:_LISTED]:
+        yield f"  {_listed(each, _setups(operations))}"
+    if len(plan.operations) > _LISTED:
+        yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
+    yield from (line for each in plan.operations if (line := turning(each)))
+    if plan.proved_share is not None and plan.proved_share < 1.0:
+        yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
+
+
+def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
+    return sorted((each.cutter, each.setup, *sorted((each.angles_deg or {}).items())) for each in plan.operations)
+
+
+def share_text(share: float) -> str:
+    """A share of the area: what falls short of all by rounding is all of it, for areas are sums of rounded numbers."""
+    return percent(share, whole=share >= 1.0 - ROUNDING)
+
+
+def _fastest(operations: OperationsEntry) -> Iterator[str]:
+    """How the times of fixed orientations compare with simultaneous motion and with the best choice, and what was guessed."""
+    timed, first = operations.fastest, operations.plans[0]
+    if timed is None:
+        return
+    kind, axes = _INDEXED.get(len(operations.rotary), ("", ""))
+    for plan in operations.plans:
+        if kind and plan.ratio_at_most is not None and (plan is first or _choice(plan) != _choice(first)):
+            cutting = sum((each.seconds or 0.0) + each.link_seconds for each in plan.operations if each.mode == "fixed")
+            times = f"at most {math.ceil(10.0 * plan.ratio_at_most - 1e-9) / 10.0:.1f} times as long as {axes} axes at once"
+            yield f"{kind} ({plan.name}) takes {duration(cutting)} of cutting and links, {times}."
+    few = operations.fewest
+    some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
+    near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
+    if timed.gap is None:
+        yield "How far the fastest plan is above the best is not known: a width of a pass is not known."
+    elif timed.gap <= _NO_GAP:
+        yield f"No choice takes less than the fastest plan: it is {near}."
+    else:
+        yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
+    if operations.assumed.index_from == "assumed" and first.orientations > 1:
+        guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
+        yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
+
+
+def _by_cutter(operations: OperationsEntry) -> Iterator[str]:
+    """What each cutter cuts by the fastest plan, what it saves, and what its change costs."""
+    taken = [(use.id, use.takes_mm2["fastest"]) for use in operations.cutters if use.takes_mm2.get("fastest", 0.0) > 0.0]
+    whole = sum(size for _, size in taken)
+    if len(taken) > 1:
+        yield f"Of what is cut, the fastest plan cuts {joined([f'{share_text(size / whole)} with {id}' for id, size in taken])}."
+    used = {each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations}
+    for use in operations.cutters:
+        if use.only_mm2 > 0.0:
+            yield f"Only {use.id} reaches {area(use.only_mm2)}."
+        elif use.saves_seconds is None:
+            yield f"{use.id} is needed: no plan was found without it."
+        elif use.saves_seconds < 1.0:
+            yield f"{use.id} would save nothing."
+        elif use.change_seconds <= 0.0:
+            yield f"{use.id} saves {duration(use.saves_seconds)} against the best without it."
+        else:
+            verb, cost = ("saves", "costs") if use.id in used else ("would save", "cost")
+            yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
+
+
+def _setups(operations: OperationsEntry) -> bool:
+    """Whether operations are in more than one setup: then each says in which."""
+    return len({each.setup for plan in operations.plans for each in plan.operations}) > 1
+
+
+def _listed(each: OperationEntry, setups: bool) -> str:
+    took = "" if each.seconds is None else f", {duration(each.seconds)}"
+    where = f" in setup {each.setup + 1}" if setups else ""
+    how = "" if each.strategy == "point" else f", {_CUTS_AS[each.strategy]}"
+    what = f"{each.cutter}{where}, {_turned(each)}{how}"
+    return f"{each.id}: {what}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+
+
+def turning(each: OperationEntry) -> str:
+    """Say over what share simultaneous motion is proved, and how the axes turn there; empty where nothing was looked at."""
+    turn = each.turning
+    if turn is None or each.proved_share is None:
+        return ""
+    if not turn.pieces_mm2:
+        return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
+    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
+    text = (
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
+        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
+    )
+    if turn.angles_deg is not None:
+        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
+    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
+        text += (
+            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
+        )
+    if turn.singular_mm2 > 0.0:
+        text += f"; {area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
+    return f"{text}."
+
+
+class OperationText(NamedTuple):
+    """An operation as a row of a table, with angles in degrees and the setup where there are several, and as a sentence."""
+
+    entry: OperationEntry
+    setup: str
+    turned: str
+    took: str
+    faces: str
+    sentence: str
+
+
+def operation_text(plan: Plan, of: OperationPlanEntry, each: OperationEntry) -> OperationText:
+    """Put one operation of a plan into words; `took` is its cutting time or, without a feed, its cut length."""
+    length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
+    took = length if each.seconds is None else duration(each.seconds)
+    setups = plan.operations is not None and _setups(plan.operations)
+    where = f"setup {each.setup + 1}" if setups else ""
+    sentence = named(plan, stepped(plan, of, _listed(each, setups)))
+    return OperationText(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), sentence)
+
+
+def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:
+    """Those lines that are about plans, not about one operation, and do not stand above: what is indented stands in a list."""
+    mentioned = set(above)
+    return [line for line in lines if not line.text.startswith(" ") and line.text not in mentioned]
+
+
+def _turned(each: OperationEntry) -> str:
+    if each.angles_deg is None:
+        return "simultaneous"
+    return f"{angles_text(each.angles_deg)} deg" if each.angles_deg else "upright"
+
+
+def _faces(each: OperationEntry) -> str:
+    return listed([face.face for face in each.faces], _OF_OPERATION)
+
+
+def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
+    """Rotary axes with their angles, and by how much some turn from one time to the next.
+
+    >>> angles_text({"C": 0.0, "A": 12.5}, {"C": 36.0})
+    'C 0 + 36 A 12.5'
+    """
+    return " ".join(f"{name} {angle:g}" + (f" + {by[name]:g}" if by and name in by else "") for name, angle in angles.items())
