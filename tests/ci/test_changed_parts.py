@@ -8,9 +8,9 @@ from OCP.IGESControl import IGESControl_Writer
 from cad_io.read import read_part
 from plan_cutters import Cutter, Holder, plan
 from plan_cutters_ci import changed
+from plan_cutters_ci.changed import Changed
 from plan_cutters_ci.matching import match_faces
 from plan_cutters_ci.plans import compare
-from plan_cutters_ci.repository import Changed
 from plan_cutters_ci.review import Picture, Side, page
 from plan_cutters_ci.wording import face_rows, headline, remarks
 

@@ -21,6 +21,7 @@ from plan_cutters.operations import planning
 from plan_cutters.options import Options
 from plan_cutters.pipeline import run as run_stages
 from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
 from plan_cutters_agents.plan_answers import planned
@@ -78,7 +79,7 @@ def unfinished(folder, *absent, alone=True):
     every = (BETWEEN, ANSWERS, OPERATIONS)
     assert [each for each in every if each in text] == [each for each in every if each in absent]
     assert whole.process.doubts[0] == text
-    assert " ".join(line.strip() for line in whole.text.lines[:3]).startswith(text)
+    assert " ".join(line.strip() for line in whole.text.lines[:3]).startswith(as_fields(text))
     assert (BETWEEN in absent) == (whole.cutters[0].area is None)
     assert whole.operations is None
     assert sorted(entry.name for entry in whole.files.values()) == sorted({*leftovers(folder)} - {"plan.json"})
