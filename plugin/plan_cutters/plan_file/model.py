@@ -334,6 +334,7 @@ class TextEntry(Frozen):
 class FileEntry(Frozen):
     name: str
     sha256: str
+    size_bytes: int | None = Field(default=None, description="null in older files")
 
 
 class Run(Frozen):
