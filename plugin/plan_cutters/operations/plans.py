@@ -187,8 +187,8 @@ def _tight(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
     result = np.ones(serves.shape)
     open_ = np.flatnonzero(serves.sum(axis=1) > 1)
     if len(open_):
-        room = task.probes.spacious(task.rows[open_], columns, serves[open_])
-        result[open_] = np.where(serves[open_] & ~room, _TIGHT, 1.0)
+        spacious = task.probes.spacious(task.rows[open_], columns, serves[open_])
+        result[open_] = np.where(serves[open_] & ~spacious, _TIGHT, 1.0)
     return result
 
 
