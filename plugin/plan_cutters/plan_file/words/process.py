@@ -231,7 +231,9 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}"
     if on == "stock" and plan.process is not None and plan.process.stock is not None:
-        how = f"stock of {size(plan.process.stock.size_mm)} {how}"
+        stock = plan.process.stock
+        bar = f"a bar {mm(stock.size_mm[0])} wide and {mm(stock.size_mm[2])} long"
+        how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
 
