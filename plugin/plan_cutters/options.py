@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, Unpack
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import Angle, choice, degrees_too, did_you_mean, flag, not_empty, number, shown, whole
-from plan_cutters.domain.clamping import VISE
+from plan_cutters.domain.clamping import CHUCK, VISE
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.fixture import Fixture
@@ -214,7 +214,7 @@ class Options(OptionValues):
         stock = None if self.stock is None else Stock.of(self.stock)
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
                             propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
-        vise = self.propose and (not self.fixtures or self.fixtures[0].kind == VISE)
+        vise = self.propose and (not self.fixtures or self.fixtures[0].kind in (VISE, CHUCK))
         known = next((each.stock for each in self.fixtures if each.stock), None)
         take(stock=(stock or known or Stock.of(USUAL if vise else PART)).text)
         take(answers=answers_of(self.answers), operations=operations_of(self.operations), process=_own_process(self.process))

@@ -75,10 +75,13 @@ class PlacedFixture:
 
 
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
-    """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup, as two corners; of
-    a cylinder what surely is in it: it is as wide as the part everywhere.
+    """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup: two corners; of a
+    cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side.
     """
-    margin = np.array(margins[:2]) if len(margins) == 3 else np.zeros(2)
+    if len(margins) == 2:
+        middle, wide = 0.5 * (low + high)[:2], 0.5 * float((high - low)[:2].max())
+        return (*middle.tolist(), wide + margins[0], float(low[2]) - margins[1], float(low[2]))
+    margin = np.array(margins[:2])
     return (*(low[:2] - margin).tolist(), float(low[2]) - margins[-1], *(high[:2] + margin).tolist(), float(low[2]))
 
 
@@ -89,12 +92,11 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
     if body.kind == "cylinder":
         radius, height = body.sizes
         # Around the true cylinder, so that nothing of it is left out.
-        wide = radius / math.cos(math.pi / _SIDES)
-        turn = 2.0 * math.pi * np.arange(_SIDES) / _SIDES
-        a = np.column_stack([wide * np.cos(turn), wide * np.sin(turn), np.zeros(_SIDES)])
-        b, up, middle = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height]), np.zeros_like(a)
-        sides = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
-        return np.concatenate([np.stack(each, axis=1) for each in sides])
+        return _cylinder(radius / math.cos(math.pi / _SIDES), height)
+    if body.kind == "stock" and len(body.sizes) == 5:
+        x, y, radius, foot, top = body.sizes
+        # Within the true one: what is in the way of a tool here is so there.
+        return np.asarray((_cylinder(radius, top - foot) + np.array([x, y, foot])) @ frame_of(setup))
     if body.kind == "stock":
         return np.asarray(_box(np.array(body.sizes[:3]), np.array(body.sizes[3:])) @ frame_of(setup))
     if body.kind == "prism":
@@ -107,6 +109,15 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
     end[2] = body.sizes[0]
     start[2] = min(start[2], end[2] - _TABLE)
     return np.asarray(_box(start, end) @ frame)
+
+
+def _cylinder(radius: float, height: float) -> Floats:
+    """Triangles (n, 3, 3) of a prism with its corners on a cylinder about z that stands on the origin."""
+    turn = 2.0 * math.pi * np.arange(_SIDES) / _SIDES
+    a = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.zeros(_SIDES)])
+    b, up, middle = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height]), np.zeros_like(a)
+    sides = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
+    return np.concatenate([np.stack(each, axis=1) for each in sides])
 
 
 def _prism(low: float, high: float, lines: Floats) -> Floats:

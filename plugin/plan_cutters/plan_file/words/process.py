@@ -138,7 +138,11 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
-    clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
+    clearance = (
+        f"Least clearance of neck, shank and holder: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}."
+        if known
+        else ""
+    )
     if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
         clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: --holder-clearance {MARGIN:g}."
     return ProcessStory(
@@ -224,12 +228,12 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
-        how = f"in a {setup.held}{what}, {across}, jaws {mm(setup.grip_mm)} high{rests}"
+        how = f"in a {setup.held}{what}, {across}, gripped {mm(setup.grip_mm)} high{rests}"
     elif setup.held is None:
         how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
     else:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
-        how = f"{held}, {f'stands on {on}' if on else 'on no plane'}"
+        how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
     if on == "stock" and plan.process is not None and plan.process.stock is not None:
         stock = plan.process.stock
         bar = f"a bar {mm(stock.size_mm[0])} wide and {mm(stock.size_mm[2])} long"
