@@ -1,7 +1,7 @@
 # plan-cutters on a slim Debian, as a user who owns nothing but the work folder.
 FROM python:3.12-slim-bookworm AS build
 COPY . /source
-RUN python -m venv /opt/plan-cutters && /opt/plan-cutters/bin/python -m pip install --no-cache-dir "/source[batch]"
+RUN python -m venv /opt/plan-cutters && /opt/plan-cutters/bin/python -m pip install --no-cache-dir "/source[batch,pictures]"
 
 FROM python:3.12-slim-bookworm
 # The CAD kernel links libGL and libX11, although nothing is drawn; git is for `plan-cutters changed`.

@@ -23,10 +23,10 @@ outside() {
     $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
 
-dev="" hosts=yes
+dev="" hosts=yes all="batch,build123d,cadquery,conformance,mcp,pictures" group=""
 case "$*" in
     "") extra="batch,build123d,cadquery,conformance,pictures" what="plan-cutters with CadQuery and build123d, 2.2 GB" ;;
-    dev) extra="dev" dev=yes what="plan-cutters with all that tests and linters need, 2.8 GB" ;;
+    dev) extra="$all" dev=yes group="--group dev" what="plan-cutters with all that tests and linters need, 2.8 GB" ;;
     alone) extra="batch,pictures" hosts="" what="plan-cutters alone, 0.8 GB" ;;
     *) say "unknown words $*: give dev or alone, or nothing" && exit 2 ;;
 esac
@@ -65,7 +65,7 @@ if [ -n "$hosts" ]; then
     fi
 fi
 say "installing $what"
-uv install $again --overrides .venv/overrides.txt --editable ".[$extra]"
+uv install $again $group --overrides .venv/overrides.txt --editable ".[$extra]"
 # Editors and type checkers do not run the import hook that an editable install has for two roots: they read paths.
 printf '%s\n' "$PWD/plugin" "$PWD" >"$($python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
 if ! $python -c "import OCP" 2>/dev/null; then

@@ -5,6 +5,7 @@ then finds it in the cache of uv. Both leave nothing behind but that cache.
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,7 @@ def main() -> None:
         same("sdist", in_sdist(sdist), tracked())
         same("wheel", in_wheel(wheel), {path.removeprefix("plugin/") for path in tracked() if packaged(path)})
         shown(wheel)
+        run(sys.executable, "-m", "twine", "check", "--strict", wheel, sdist, cwd=folder)
         outside = folder / "outside"
         outside.mkdir()
         shutil.copy(ROOT / "samples/v_groove.step", outside)
@@ -114,6 +116,8 @@ def shown(wheel: Path) -> None:
         about = message_from_string(archive.read(path).decode())
     if empty := [field for field in SHOWN if not about[field]]:
         sys.exit(f"wheel: the metadata lack {empty}")
+    if relative := re.findall(r"\]\((?![a-z]+:|#)[^)]*\)", str(about.get_payload())):
+        sys.exit(f"wheel: links of the long description lead to no address: {relative}")
     if about["Author"] != "the plan-cutters developers":
         sys.exit(f"wheel: the author is {about['Author']}")
 

@@ -8,7 +8,7 @@ islands, slots, fillets, bosses, and walls of closed cavities are none.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -42,6 +42,24 @@ _Bottom = Literal["flat", "cone", "round", "open"]
 _TURNED_KINDS = ("cylinder", "cone", "torus", "sphere")
 
 
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A countersink or a counterbore of a hole. Its heights are depths under the mouth of the hole, mm."""
+
+    kind: Literal["countersink", "counterbore"]
+    faces: tuple[int, ...]  #: Numbers of its faces, with its floor.
+    diameter: float  #: mm; the largest.
+    angle: float | None  #: rad; whole angle of a countersink, or of a floor that is a cone.
+    floor: _Bottom  #: Of a counterbore, else `open`.
+    outer: float  #: At its outer end.
+    inner: float  #: At its inner one: deeper at the mouth, less deep at the far end of a hole through.
+
+    @property
+    def far(self) -> bool:
+        """Whether a tool comes to it from the far end."""
+        return self.outer > self.inner
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Hole(Record):
     """A hole, and what of it the tools come from its mouth for."""
@@ -67,6 +85,10 @@ class Hole(Record):
     axis: Floats
     #: (3,); Point of the axis at the mouth, mm.
     place: Floats
+    #: Numbers of the faces of its bottom.
+    floor: tuple[int, ...] = ()
+    #: All that is wider, the widest first.
+    steps: tuple[Step, ...] = ()
 
 
 class _Line(NamedTuple):
@@ -326,19 +348,23 @@ class _Finder:
         way, far = 1.0 if mouth else -1.0, beyond[not mouth]
         top = max(way * end for ring in (*core, *beyond[mouth]) for end in (ring.low, ring.high))
         lowest = min(way * end - top for ring in (*core, *(() if closed else far)) for end in (ring.low, ring.high))
-        sinks, bores = [], []
-        for up, ring in [*_steps(beyond[True], near, up=True), *_steps(beyond[False], near, up=False)]:
-            if ring.kind == "cylinder":
-                inner = way * (ring.low if up else ring.high) - top
-                bores.append((2.0 * ring.wide, -inner if up == mouth else inner - lowest))
-            elif not _narrows(ring, up, radius, near):
-                sinks.append((2.0 * ring.wide, 2.0 * _half_angle(ring)))
+        steps = [
+            step
+            for up in (True, False)
+            for step in _steps(beyond[up], radius, near, up=up, depth=lambda height: top - way * height)
+        ]  # fmt: skip
+        steps.sort(key=lambda step: -step.diameter)
+        # Depths at the far end are those from there.
+        ended = {False: 0.0, True: -lowest}
+        bores = [(step.diameter, abs(step.inner - ended[step.far])) for step in steps if step.kind == "counterbore"]
+        sinks = [(step.diameter, step.angle or 0.0) for step in steps if step.kind == "countersink"]
         bottom, angle = ends[not mouth] or ("open", None)
         every = sorted([*core, *beyond[True], *beyond[False]], key=lambda ring: ring.number)
         return Hole(
             faces=tuple(ring.number for ring in every), within=tuple(2.0 * ring.wide for ring in every), diameter=2.0 * radius,
             depth=-lowest, through=not closed, bottom=bottom, cone=angle, countersink=max(sinks, default=None),
             counterbore=max(bores, default=None), axis=way * line.direction, place=line.point + way * top * line.direction,
+            floor=tuple(sorted(ring.number for ring in far if ring.wide <= radius + near)) if closed else (), steps=tuple(steps),
         )  # fmt: skip
 
     def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
@@ -514,14 +540,36 @@ def _half_angle(ring: _Ring) -> float:
     return float(np.arctan2(abs(ring.at_high - ring.at_low), ring.high - ring.low))
 
 
-def _steps(rings: Sequence[_Ring], near: float, *, up: bool) -> list[tuple[bool, _Ring]]:
-    """Cylinders and cones beyond an end, without cones that are the floor of a cylinder."""
+def _steps(rings: Sequence[_Ring], radius: float, near: float, *, up: bool, depth: Callable[[float], float]) -> list[Step]:
+    """Countersinks and counterbores beyond an end; `depth` under the mouth of what is at a height."""
+    result = list[Step]()
+    whole = [ring for ring in rings if ring.wide > radius + near]
+    ends = {ring.number: (ring.high, ring.low) if up else (ring.low, ring.high) for ring in whole}
 
-    def is_floor(cone: _Ring) -> bool:
-        end = cone.high if up else cone.low
-        return any(
-            ring.kind == "cylinder" and abs(ring.wide - cone.wide) <= near and abs((ring.low if up else ring.high) - end) <= near
-            for ring in rings
-        )
+    def is_floor(ring: _Ring, bore: _Ring) -> bool:
+        """Whether a face begins where a cylinder ends."""
+        met = abs(ends[ring.number][0] - ends[bore.number][1]) <= near
+        return ring.kind != "cylinder" and met and abs(ring.wide - bore.wide) <= near
 
-    return [(up, r) for r in rings if r.kind == "cylinder" or (r.kind == "cone" and not is_floor(r))]
+    def is_one(ring: _Ring, other: _Ring) -> bool:
+        apart = np.subtract((*ends[ring.number], ring.wide), (*ends[other.number], other.wide))
+        return ring.kind == other.kind and bool(np.abs(apart).max() <= near)
+
+    bores = [ring for ring in whole if ring.kind == "cylinder"]
+    floors = {ring.number for ring in whole for bore in bores if is_floor(ring, bore)}
+    seen = list[_Ring]()
+    for ring in whole:
+        if ring.kind not in ("cylinder", "cone") or ring.number in floors or ring in seen or _narrows(ring, up, radius, near):
+            continue
+        same = [r for r in whole if is_one(r, ring)]
+        seen += same
+        below = [r for r in whole if r.number in floors and ring.kind == "cylinder" and is_floor(r, ring)]
+        kinds = {r.kind for r in below}
+        cone = next((r for r in (ring, *below) if r.kind == "cone"), None)
+        floor: _Bottom = "round" if kinds & {"torus", "sphere"} else "cone" if "cone" in kinds else "flat" if kinds else "open"
+        outer, inner = (depth(height) for height in ends[ring.number])
+        result.append(Step(
+            "countersink" if ring.kind == "cone" else "counterbore", tuple(sorted({r.number for r in (*same, *below)})),
+            2.0 * ring.wide, None if cone is None else 2.0 * _half_angle(cone), floor, outer, inner,
+        ))  # fmt: skip
+    return result

@@ -34,6 +34,7 @@ from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
 from plan_cutters_base.forks import SideProcess
 from plan_cutters_base.user_files import fingerprint
+from plan_cutters_base.values import digest
 
 #: Reasons that others look at.
 NO_AREA = "has no area"
@@ -310,11 +311,15 @@ class Part:
         return self.measured()
 
     @property
-    def key(self) -> tuple[Any, ...] | None:
-        """Return all that makes this part what it is, beside the program that read it; None where it is of no file."""
+    def key(self) -> tuple[Any, ...]:
+        """Return all that makes this part what it is, beside the program that read it; of no file, by its shape's own bytes."""
         if self.sha256 is None:
-            return None
+            return self._shape_sum, dict(self.aside)
         return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, self._said
+
+    @cached_property
+    def _shape_sum(self) -> bytes:
+        return digest(packed(self._found()))
 
     def measured(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> tuple[FaceInfo, ...]:
         """`faces`; where they are yet to be measured, `at` is told which one is. With more `jobs` than one, a copy of the process

@@ -18,10 +18,10 @@ _HOME = {
     "Options": ".options",
     "Scene": ".scene.scene",
     "PostureRange": ".domain.posture",
-    "plan": ".pipeline",
+    "plan": ".calls",
     "plan_many": "_batch.run",  # a package of its own
     "Result": ".result",
-    "posture_map": ".point",
+    "posture_map": ".calls",
     "PostureMap": ".judging.posture_maps",
     "PostureMaps": ".judging.posture_maps",
     "Plan": ".plan_file.model",

@@ -1,5 +1,6 @@
 """What type checkers see of the names that `__init__.py` hands on lazily."""
 
+from plan_cutters.calls import plan, posture_map
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder, Segment, Stage
@@ -9,9 +10,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
 from plan_cutters.judging.posture_maps import PostureMap, PostureMaps
 from plan_cutters.options import Options
-from plan_cutters.pipeline import plan
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.point import posture_map
 from plan_cutters.result import Result
 from plan_cutters.scene.scene import Scene
 from plan_cutters_batch.run import plan_many

@@ -15,7 +15,7 @@ from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
-from plan_cutters.document.holes import drilling_entries, hole_entries
+from plan_cutters.document.holes import hole_entries, with_drilling
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
@@ -31,6 +31,7 @@ from plan_cutters.judging.phases import march_differs
 from plan_cutters.judging.posture_maps import posture_maps
 from plan_cutters.judging.reasons import Explained, Reasons, exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.witness import witnesses
+from plan_cutters.operations.orientations import index_times
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
@@ -203,8 +204,11 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
-        made = drilled(ready) if ready.holes else []
-        document = document.model_copy(update={"holes": hole_entries(ready, made), "drilling": drilling_entries(ready, made)})
+        if ready.holes and document.process is not None:
+            done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
+            made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))
+            process = with_drilling(document.process, ready, made, index_times)
+            document = document.model_copy(update={"holes": hole_entries(ready, made), "process": process})
     return Result(document, ready, over, part.travels, answers)
 
 

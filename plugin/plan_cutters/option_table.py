@@ -77,7 +77,7 @@ class Option(NamedTuple):
 _CUTTERS = (
     Option(
         "cutters", str, (), typed="cutter", several=True, brief="D12L80, then rc1, T5, F20, N11x40, S12; repeatable.",
-        takes="Cutter | str | Library | Sequence[Cutter | str] | None", keeps="tuple[Cutter, ...]",
+        takes="Cutter | str | Library | Sequence[Cutter | str] | Mapping[str, Cutter | str] | None", keeps="tuple[Cutter, ...]",
         help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
         "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
         "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in tool set]",

@@ -24,7 +24,7 @@ class SceneOptions(PointOptions, total=False):
     tolerance: float
 
 class PlanOptions(SceneOptions, total=False):
-    cutters: Cutter | str | Library | Sequence[Cutter | str] | None
+    cutters: Cutter | str | Library | Sequence[Cutter | str] | Mapping[str, Cutter | str] | None
     libraries: Library | Sequence[Library] | None
     holder: Holder | str | None
     machine: Machine | str | os.PathLike[str] | None

@@ -116,7 +116,7 @@ class Options(OptionValues):
     ----------
     cutters, libraries : tuple of Cutter, tuple of Library
         Those of libraries (`library.read_library`) are judged, too. May be given as one cutter, text such as `R6L80` or library,
-        or as a list. Neither: the built-in cutters.
+        as a list, or by names of your own: `{"Finisher": "R6L80"}`. Neither: the built-in cutters.
     holder : Holder, optional
         Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float

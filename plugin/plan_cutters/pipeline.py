@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
@@ -16,10 +16,9 @@ from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
-from plan_cutters.document.clock import Clock, Progress
+from plan_cutters.document.clock import Clock
 from plan_cutters.document.process import OtherSetup
 from plan_cutters.domain.answers import LeastSet
-from plan_cutters.domain.checks import shown, spelled_out
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import handed, order, wanted
 from plan_cutters.domain.verdicts import Verdicts
@@ -28,7 +27,7 @@ from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
 from plan_cutters.judging.judge import CachedJudge, Judge, JudgeOnce, in_setup, judge
 from plan_cutters.judging.phases import classify, regions
-from plan_cutters.options import Options, PlanOptions
+from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.proposal import Stand, judged_proposed
@@ -60,57 +59,12 @@ _MANY_FACES, _SAMPLING = 12, 60.0
 _PLANNING = 7200.0
 
 
-@spelled_out(PlanOptions, Options)
-def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **options: Unpack[PlanOptions]) -> Result:
-    """Judge each cutter on the target faces of a part.
-
-    Parameters
-    ----------
-    part : Part, Scene, path, TopoDS_Shape, CadQuery or build123d object, or a list of shapes
-        An object that holds picked faces stands for the shape that they belong to. A Scene brings its setup, flip, ignored
-        faces and tolerance with it.
-    progress : callable, optional
-        Called with the stage, the number of pieces done, and the number of all pieces.
-    cache : bool
-        Keep what stages make of a part that was read from a file, for the next question (`plan_cutters_base.stage_cache`).
-    **options
-        Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`; angles in degrees, too:
-        `tilt_deg=(0, 60)`.
-
-    Returns
-    -------
-    Result
-
-    Raises
-    ------
-    CadIoError
-        The part cannot be read or holds no surface to judge.
-    PlanError
-        An option has no meaning.
-
-    Notes
-    -----
-    Measuring and sampling have no time limit here: a face on which the CAD kernel never ends keeps this call waiting, and a
-    crash of the kernel ends the process. The command bounds both (`docs/kernel_calls.md`).
-
-    Examples
-    --------
-    >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
-    >>> result.selected
-    'R6L80'
-    """
-    if progress is not None and not callable(progress):
-        raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
-    settings = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(settings), Clock(progress), cache=StageCache.of_user() if cache else None)
-
-
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None,
     interim: Interim | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
 ) -> Result:  # fmt: skip
-    """`plan` with its options gathered.
+    """`calls.plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
@@ -298,7 +252,7 @@ def prepare(
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
     whole = stands.part if isinstance(stands, Scene) else stands
-    stages = NO_CACHE if cache is None or whole.key is None else cache
+    stages = NO_CACHE if cache is None else cache
     with clock.stage("measure"):
         whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):

@@ -9,7 +9,7 @@ import numpy as np
 
 from cad_io.sample import locate
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.checks import Angle, in_radians, number, numbers, radians, spelled_out
+from plan_cutters.domain.checks import Angle, in_radians, number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
@@ -18,7 +18,7 @@ from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.verdicts import nominal_depth
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_maps import SETTLED, PostureMap, moved, posture_map_of
-from plan_cutters.options import Options, PointOptions, machine_option
+from plan_cutters.options import PointOptions, machine_option
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
@@ -32,7 +32,6 @@ _FIRST_CHORD, _FINER, _ROUNDS = 2e-3, 0.2, 6
 _TRIANGLES = 600_000
 
 
-@spelled_out(PointOptions, Options)
 def posture_map(
     part: Any,
     *,
@@ -47,48 +46,7 @@ def posture_map(
     tilt_deg: Range | None = None,
     **scene: Unpack[PointOptions],
 ) -> PostureMap:
-    """Find the free tilt intervals of a cutter at a point of a part.
-
-    Parameters
-    ----------
-    part : Part, Scene, path, TopoDS_Shape, CadQuery or build123d object
-        A Scene is not tessellated again for the next point or cutter.
-    point : (3,) float
-        mm; projected to the nearest face.
-    cutter : Cutter or str
-        A text as `R6L80`.
-    rotations : sequence of float
-        rad, from the direction of the largest curvature; at most a full turn either way.
-    tilt : tuple of float, optional
-        Range, rad, within 0 to pi. Default: 0 to pi/2, or as far as the cutter touches.
-    rotations_deg, tilt_deg : optional
-        The same in degrees.
-    machine : Machine or str, optional
-        A text as `tilt:60` (degrees), the name of a built-in one, or a machine file. Default: no axis limit.
-    tolerance : float, optional
-        Gouge tolerance, mm; default that of the Scene, or 0.01. 0: the nominal answer, obstacles refined until the ends
-        settle; not certified.
-    x : (3,) float, optional
-        Direction of the part along the machine's X, as `Placement` has it.
-    **scene
-        `setup`, `flip`, `ignore` and `fixtures`, as in `Options`; the point is not projected to ignored faces. A setup file, a
-        Placement or a host's plane as the setup brings its X, unless `x` is given, and its fixtures.
-
-    Raises
-    ------
-    CadIoError
-        The part cannot be read; the point is farther than 1e-3 mm from it.
-    OptionError
-        A range or tolerance has no meaning, or a value is of the wrong kind.
-
-    Examples
-    --------
-    On the bottom line of a groove, across it and along it:
-
-    >>> found = posture_map("samples/v_groove.step", point=(0, 0, 0), cutter="R8L90", rotations=[0.0, np.pi / 2], tolerance=0)
-    >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
-    [[[27.6, 61.4]], []]
-    """
+    """`calls.posture_map`, which says what each argument is."""
     cutter, machine = Cutter.of(cutter), machine_option(machine)
     place = numbers(point, "point", 3)
     angles = in_radians({"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")})

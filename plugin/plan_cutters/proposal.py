@@ -31,6 +31,8 @@ from plan_cutters.setups.requested import MOST_PROPOSED
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
 _TRIES, _ENOUGH = 3, 0.99
+#: An axis this near to the spindle is along it: cosine of about 2.5 deg.
+_ALONG = 0.999
 #: Shares of area that differ by less are equal.
 _ROUNDING = 1e-9
 Made = TypeVar("Made")
@@ -158,7 +160,11 @@ def _stand(
 
 def _words(options: Options) -> tuple[str, ...]:
     """What may hold the part in each setup: what was requested, or any of them."""
-    return tuple(each.text for each in options.fixtures) or (TABLE, VISE, CHUCK)
+    requested = tuple(each.text for each in options.fixtures)
+    turning = [each for each in options.machine.axes if each.kind == "rotary" and each.carries == "part"]
+    # A chuck is placed along the spindle: nobody stands one across the axis that turns under it.
+    upright = not turning or any(abs(each.direction[2]) > _ALONG for each in turning)
+    return requested or ((TABLE, VISE, CHUCK) if upright else (TABLE, VISE))
 
 
 def _among(words: tuple[str, ...]) -> str:

@@ -24,6 +24,7 @@ from plan_cutters.judging.posture_maps import PostureMaps
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry, nearest
 from plan_cutters.plan_file.shares import VerdictCounts
+from plan_cutters.plan_file.words.names import called
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.distances import Clearances, clearances_over
 from plan_cutters.scene.faces import face_numbers
@@ -193,6 +194,14 @@ class Result:
 
     def __repr__(self) -> str:
         return f"Result({self.part!r}, {len(self.samples)} samples, {len(self.cutters)} cutters, selected {self.selected})"
+
+    def __str__(self) -> str:
+        return self.plan.text.headline if self.plan.text else repr(self)
+
+    @property
+    def names(self) -> dict[str, str]:
+        """How the summary calls each cutter, by its id: by its own name where it has one."""
+        return {each.id: called(each) for each in self.cutters}
 
     @property
     def scene(self) -> Scene:
@@ -425,7 +434,7 @@ class Result:
         return show(self, height, card)
 
     def _repr_html_(self) -> str:
-        """What a notebook shows of a result: headline, table, picture, and the review page to be opened."""
+        """What a notebook shows of a result: a small card, with headline, table and picture (`PLAN_CUTTERS_CARD`)."""
         from plan_cutters.report.notebook import card, chosen_size
 
         return card(self, size=chosen_size())

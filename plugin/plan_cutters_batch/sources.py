@@ -6,6 +6,7 @@ A manifest has the parts of a batch in a TOML or CSV file, with options of each;
 import csv
 import io
 import itertools
+import os
 import posixpath
 import re
 import tomllib
@@ -97,7 +98,11 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | PartRow
     if not files:
         return [failed(word, word, f"{word}: {nothing}")]
     stems = [PurePosixPath(file[len(base) :].lstrip("/")).with_suffix("").as_posix() for file in files]
-    return [Source(stem, fs.unstrip_protocol(file) if "://" in word else file) for stem, file in zip(stems, files, strict=True)]
+    if "://" in word:
+        places = [fs.unstrip_protocol(file) for file in files]
+    else:  # as it was given: reports on a folder of a repository name its files within that
+        places = files if os.path.isabs(word) else [os.path.relpath(file) for file in files]
+    return [Source(stem, place) for stem, place in zip(stems, places, strict=True)]
 
 
 def _named_once(sources: Sequence[Source | PartRow]) -> list[Source | PartRow]:

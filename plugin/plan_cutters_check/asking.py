@@ -28,7 +28,18 @@ from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.scene.faces import choose, clamped_faces, ignored_faces, ignored_words
 from plan_cutters_check.findings import same, short
-from plan_cutters_check.question import FREE, Body, Grip, MachineAxes, Question, Section, Setup, ToolSizes, require_operations
+from plan_cutters_check.question import (
+    FREE,
+    Body,
+    DrillSizes,
+    Grip,
+    MachineAxes,
+    Question,
+    Section,
+    Setup,
+    ToolSizes,
+    require_operations,
+)
 
 #: How far the chords of a chuck's jaws may be from their bore, mm.
 _BORE = 1e-3
@@ -48,7 +59,7 @@ def question_of(
     return Question(
         part, machine_axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
         ignored | repeated_faces(part, ignored).keys(), orient(part, options.setup, options.flip).sign, tolerance, document,
-        arrays["operations.npz"], arrays["samples.npz"], grips=grips,
+        arrays["operations.npz"], arrays["samples.npz"], grips=grips, drills=_drills(options),
     )  # fmt: skip
 
 
@@ -202,6 +213,18 @@ def sizes_of(cutter: Cutter) -> ToolSizes:
         cutter.id, cutter.shape, cutter.radius, cutter.corner_radius, cutter.arc_radius, cutter.arc_height, cutter.outline,
         cutter.taper, above[0].low if above else cutter.length, above, cutter.allowance or 0.0, cutter.clearance or 0.0,
     )  # fmt: skip
+
+
+def _drills(options: Options) -> dict[str, DrillSizes]:
+    """The tools for holes of all libraries by their ids, each with the first feed that is stated for it."""
+    drills = dict[str, DrillSizes]()
+    for entry in (each for library in options.libraries for each in library.entries):
+        if (drill := entry.drill) is not None:
+            known = drills.get(drill.id)
+            sizes = replace(sizes_of(drill.body.asked(0.0, options.holder_clearance, None)), id=drill.id)
+            feed = entry.feed if known is None or known.feed is None else known.feed
+            drills[drill.id] = DrillSizes(drill.kind, sizes, drill.point, feed, drill.body.name if known is None else known.name)
+    return drills
 
 
 def _fits(part: Part, options: Options, document: Mapping[str, Any], cutters: list[str], setups: tuple[Setup, ...]) -> float:

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters_check import fixtures, spoken
+from plan_cutters_check import drilling, fixtures, spoken
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.findings import Answer, Compared, Finding
 from plan_cutters_check.paper import Paper, faults, ill_formed
@@ -57,6 +57,7 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
         return replace(first, findings=(*first.findings, last))
     bench = Bench(fixtures.resting(question), tell)
     clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
+    findings += drilling.findings(question, bench, clock["clearance"])
     findings += Trials(reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
     return _compared(question, findings, Compared().compare(expected, question.document))
 

@@ -354,7 +354,7 @@ def contacts_at(question: Question, plan: Planned, each: Mapping[str, Any], rows
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
     if each["mode"] != "fixed":
         # The posture that was found may touch elsewhere than at the sample; other axes touch there.
-        same = (axis == question.samples[f"axis_{each['cutter']}"][rows]).all(axis=1)
+        same = (np.abs(axis - question.samples[f"axis_{each['cutter']}"][rows]) <= _SAME).all(axis=1)
         point[same] += question.shift(each["cutter"])[rows[same]]
     tilt_direction = plan["lean"][rows].copy()
     written = np.isfinite(plan["contact"][rows]).all(axis=1)

@@ -44,6 +44,30 @@ class ToolSizes:
     clearance: float
 
 
+@dataclass(frozen=True, slots=True)
+class DrillSizes:
+    """A tool for holes: its kind, its body as a cutter with a flat end, its name; and if they are known, the whole angle of its
+    point, rad, and its feed, mm/min.
+    """
+
+    kind: str
+    sizes: ToolSizes
+    point: float | None
+    feed: float | None
+    name: str
+
+    @property
+    def angle(self) -> float:
+        """Whole angle of its point, rad; one that is not known counts as 90 deg."""
+        return 0.5 * math.pi if self.point is None else self.point
+
+    @property
+    def beyond(self) -> float:
+        """How far its tip is beyond the depth that is written, mm: of a cone and a counterbore not at all."""
+        flat = self.kind in ("countersink", "centre drill", "counterbore")
+        return 0.0 if flat else self.sizes.radius / math.tan(0.5 * self.angle)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class MachineAxes:
     """The rotary axes of a machine, the one next to the part first, in the machine's frame.
@@ -117,7 +141,8 @@ class Question:
     `samples`: plan.json, and the arrays of operations.npz and samples.npz; `checksums`: by file, the SHA-256 that plan.json
     states, and the file's own; `grips`: vises and chucks of which the plan alone says where they stand; `names`: by id, those of
     a cutter and of its holder, empty: not known; `stated`: what plan.json must say by the user's own command, and by the
-    program's words for the plan's own numbers; `odd`: what of plan.json no plan of this version has, empty: nothing.
+    program's words for the plan's own numbers; `odd`: what of plan.json no plan of this version has, empty: nothing; `drills`: by
+    id, the tools for holes of the libraries.
     """
 
     part: Part
@@ -136,6 +161,7 @@ class Question:
     names: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     stated: Mapping[str, Any] = field(default_factory=dict)
     odd: str = ""
+    drills: Mapping[str, DrillSizes] = field(default_factory=dict)
 
     def shift(self, name: str) -> Floats:
         """From samples to where a cutter is put down with the postures of its verdicts, (n, 3), mm."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters_check import drilling
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
 from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
@@ -75,7 +76,9 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
             "count": len(face), "unjudged": int(reckoned.unjudged.sum()), "inside_bodies": int(samples["inside_bodies"].sum()),
             "exempt": int(reckoned.exempt.sum()), **_drilled(reckoned.drilled),
         },
-        "holes": [_hole(reckoned, each) for each in document.get("holes", [])],
+        "holes": [
+            {**_hole(reckoned, each), **drilling.hole(document, k)} for k, each in enumerate(document.get("holes", []))
+        ],
         "faces": [
             {
                 "id": each.id, "name": each.name, "surface": each.surface, "shape": each.shape, "target": each.id in targets,
@@ -326,13 +329,14 @@ class _Process:
         exempt = np.flatnonzero(self.reckoned.exempt)
         strips = np.where(self.question.samples["inside_bodies"], 0.0, self.reckoned.sampled)
         edges = Weights(self.question.samples, strips, requested)
-        return {
+        entry = {
             "setups": [self._stand(k, each.z) for k, each in enumerate(self.question.setups)],
             "steps": steps, "plan": self.plan.entry["name"], "left": left, "finished_mm2": finished, "asked_mm2": requested,
             "finished_share": 1.0 if not left else share if self.done.any() else 0.0,
             "seconds": seconds, **self._times(clamping),
             "exempt": self._remaining("sharp_edge", exempt, edges, self.written.get("exempt")) if len(exempt) else None,
         }  # fmt: skip
+        return entry | drilling.times(self.question, entry, steps)
 
     def _times(self, clamping: float) -> dict[str, float | None]:
         """What its seconds are made of, from the plan of operations."""

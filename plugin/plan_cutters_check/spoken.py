@@ -20,6 +20,9 @@ _STEP = re.compile(
     r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<share>[<>]?[\d.]+) %"
     r"(?: +(?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?(?:  (?P<faces>F[\dF +]*))?$"
 )
+_DRILLING = re.compile(
+    r"^ {2} *(?P<number>\d+) {2}(?P<what>.*?) +(?P<holes>\d+) holes?(?: +(?P<took>less than 1 s|[\d.]+ (?:s|min|h)))?$"
+)
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 #: How far a written number may be from the true one, in units of its last digit.
 _HALF = 0.5 + 1e-6
@@ -73,10 +76,27 @@ def _contradictions(document: Mapping[str, Any]) -> Iterator[str]:
             yield from (
                 f"line {k} of the table has {what} than the process" for what in _step(row, process["steps"][k - 1], document)
             )
+    yield from _drilled(text["lines"], process)
     for cutter in document["cutters"]:
         for word, share in text["shares"].get(cutter["id"], {}).items():
             if not _in(_share(share.removesuffix(" %")), cutter["area_share"][word]):
                 yield f"the share {share} of {cutter['id']}, {word}, is another one"
+
+
+def _drilled(lines: list[str], process: Mapping[str, Any]) -> Iterator[str]:
+    """List what rows of steps that drill say otherwise: their numbers follow those of mills."""
+    first, drilling = len(process["steps"]) + 1, process.get("drilling", [])
+    for row in (match for line in lines if (match := _DRILLING.match(line))):
+        k = int(row["number"])
+        if not first <= k < first + len(drilling):
+            yield f"there is no step {k} that drills"
+            continue
+        step = drilling[k - first]
+        size = re.search(r"\bD([\d.]+)", row["what"])
+        alike = step["kind"] in row["what"] and int(row["holes"]) == len(step["holes"])
+        time = None if step["seconds"] is None else step["seconds"] + step["link_seconds"]
+        if not alike or size is None or not _in(_time(row["took"]), time):
+            yield f"line {k} of the table has another tool, number of holes or time than the process"
 
 
 def _step(row: re.Match[str], step: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:

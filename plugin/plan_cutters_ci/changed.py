@@ -228,13 +228,15 @@ def row_cases(row: Row, rule: str) -> Iterator["Case"]:
 
 
 def links_of(rows: Sequence[Row], branch: str) -> dict[Path, str]:
-    """Addresses of the pictures of folders, once they are pushed."""
+    """Addresses of the pictures of folders, once they are pushed; where there is none, nothing is."""
     data = {
         folder: (folder / "review.png").read_bytes()
         for row in rows
         for folder in (row.before, row.after)
         if folder is not None and (folder / "review.png").is_file()
     }
+    if not data:
+        return {}
     names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
     made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
     where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"

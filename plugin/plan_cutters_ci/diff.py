@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _SELF = "plan-cutters diff"
 #: Something was lost; two plans that cannot be compared are as a wrong command line.
 LOST, NOT_COMPARABLE = 1, USAGE
-_COLOURS = {"lost": "bold red", "won": "green", "lost and won": "bold red"}
+_COLOURS = {"lost": "bold red", "less": "red", "won": "green", "lost and won": "bold red"}
 
 _output, _rules = heading("Output"), heading("Comparison")
 

@@ -23,6 +23,8 @@ from plan_cutters_ci.model import (
     Reach,
 )
 
+#: The old radius of a face and the new one, mm.
+Radii = tuple[float, float]
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
 #: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
@@ -65,9 +67,12 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         why_not.append("no cutter of the old plan is known again in the new one")
     known = {a.id for a, _, _ in pairs}, {b.id for _, b, _ in pairs}
     tool = {a.id for a, _, _ in tools}, {b.id for _, b, _ in tools}
-    faces = [*(_face(old, a, new, b, how, slack) for a, b, how in pairs),
-             *(_face(old, face, new, None, None, slack) for face in old.faces if face.id not in known[0]),
-             *(_face(old, None, new, face, None, slack) for face in new.faces if face.id not in known[1])]  # fmt: skip
+    radii = _other_radii(old, new, pairs)
+    faces = [
+        *(_face(old, a, new, b, how, slack) for a, b, how in pairs),
+        *(_face(old, f, new, None, None, slack, radii.get(f"-{f.id}")) for f in old.faces if f.id not in known[0]),
+        *(_face(old, None, new, f, None, slack, radii.get(f"+{f.id}")) for f in new.faces if f.id not in known[1]),
+    ]
     cutters = [*(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
                *(_cutter(old, c, new, None, None, pairs, slack) for c in old.cutters if c.id not in tool[0]),
                *(_cutter(old, None, new, c, None, pairs, slack) for c in new.cutters if c.id not in tool[1])]  # fmt: skip
@@ -151,7 +156,15 @@ def _text(value: Any) -> str:
     return text if len(text) <= 120 else f"{text[:57]} ... {text[-57:]}"
 
 
-def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: Any, slack: float) -> FaceDifference | None:
+def _face(
+    old: Plan,
+    a: FaceEntry | None,
+    new: Plan,
+    b: FaceEntry | None,
+    how: Any,
+    slack: float,
+    radius: tuple[float, float] | None = None,
+) -> FaceDifference | None:
     """A face as the last plan has it that has it; None where both have it and its answer is the same.
 
     Of those that one plan has a new target that is not reached whole is lost, and one that is gone is not won.
@@ -169,8 +182,33 @@ def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: A
     return FaceDifference(
         old=a.id if a else None, new=b.id if b else None, matched_by=how, name=face.name, kind=face.kind or face.shape,
         area_mm2=face.area_mm2 if math.isfinite(face.area_mm2) else None, centre_mm=face.centre_mm, was=was, now=now, lost=loses,
-        won=wins,
+        won=wins, radius_mm=radius,
     )  # fmt: skip
+
+
+def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[str, Radii]:
+    """Radii of faces that only one plan has, and that took the place of another one: by `-F3` of the old, `+F4` of the new plan.
+
+    They are of one shape, and most of the faces around them are the same.
+    """
+    again = {a.id: b.id for a, b, _ in pairs}
+    theirs = {*again.values()}
+    came = [(face, radius) for face in new.faces if face.id not in theirs and (radius := _radius(face))]
+    radii: dict[str, Radii] = {}
+    for face in old.faces:
+        if face.id in again or not (radius := _radius(face)):
+            continue
+        neighbours = {again[name] for name in face.neighbours or () if name in again}
+        for other, its in came:
+            same = neighbours & {*(other.neighbours or ())}
+            if other.shape == face.shape and 2 * len(same) > len(neighbours) > 1 and not math.isclose(radius, its, rel_tol=1e-4):
+                radii |= {f"-{face.id}": (radius, its), f"+{other.id}": (radius, its)}
+    return radii
+
+
+def _radius(face: FaceEntry) -> float | None:
+    """Of a cylinder or sphere, or of the tube of a torus, mm."""
+    return None if face.carrier is None else face.carrier.minor_radius_mm or face.carrier.radius_mm
 
 
 def _cutter(

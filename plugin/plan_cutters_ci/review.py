@@ -69,7 +69,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     # Of plans that are not comparable the pictures show what each one reaches, and nothing of what became of a face.
     shown, marks = (difference.faces, MARKS) if difference.comparable else ([], {**MARKS, **_ALONE})
     # What became of each face, in words of `MARKS`.
-    alike = {"new": "alone", "gone": "alone", "lost and won": "lost"}
+    alike = {"new": "alone", "less": "lost", "gone": "alone", "lost and won": "lost"}
     states = dict[str, dict[str, str]]()
     for side_name, side in sides.items():
         marked = {getattr(f, side_name): mark(f) for f in shown}

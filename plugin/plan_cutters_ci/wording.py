@@ -45,12 +45,16 @@ def headline(difference: PlanDifference) -> str:
         return f"{difference.name}: not comparable."
     parts = [
         f"{count(number, what)} {word}"
-        for word in ("lost", "won")
+        for word in ("lost", "less", "won")
         for what, entries in (("face", difference.faces), ("cutter", difference.cutters))
-        if (number := sum(getattr(each, word) for each in entries))
+        if (number := sum(_counts(each, word) for each in entries))
     ]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
     return f"{difference.name}: {text}."
+
+
+def _counts(each: FaceDifference | CutterDifference, word: str) -> bool:
+    return each.won if word == "won" else each.lost and fall(each) == word
 
 
 def mark_of(difference: PlanDifference) -> str:
@@ -103,7 +107,7 @@ def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
     for f in difference.faces:
         name = f" {f.name}" if f.name else ""
         size = "not known" if f.area_mm2 is None else area(f.area_mm2)
-        yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was), _reach(f.now)
+        yield mark(f), f"{called(f.old, f.new)}{name}", _formed(f), size, _reach(f.was), _reach(f.now)
 
 
 def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
@@ -121,8 +125,28 @@ def mark(each: FaceDifference | CutterDifference) -> str:
     if each.lost and each.won:
         return "lost and won"
     if each.lost or each.won:
-        return "lost" if each.lost else "won"
+        return fall(each) if each.lost else "won"
     return "new" if each.was is None else "gone" if each.now is None else "changed"
+
+
+def fall(each: FaceDifference | CutterDifference) -> str:
+    """`lost` of what was reached whole or finished, and of what is new or gone; `less` of what was not, and is less by now."""
+    if each.was is None or each.now is None:
+        return "lost"
+    whole = each.was.reach == "reached" if isinstance(each.was, FaceState) else each.was.finishes
+    return "lost" if whole else "less"
+
+
+def _formed(face: FaceDifference) -> str:
+    """The kind of a face, and its radius where that is another one now.
+
+    >>> face = FaceDifference(name="", kind="blend", area_mm2=None, centre_mm=None, lost=True, won=False, radius_mm=(5.0, 2.0))
+    >>> _formed(face)
+    'blend, R5 to R2'
+    """
+    if face.radius_mm is None:
+        return face.kind
+    return f"{face.kind}, {' to '.join(f'R{each:.4g}' for each in face.radius_mm)}"
 
 
 def called(old: str | None, new: str | None) -> str:

@@ -203,3 +203,10 @@ def test_setups_are_not_compared_again_for_the_next_question(tmp_path, monkeypat
     monkeypatch.setattr(setup_ranking, "ranked", lambda *_: (_ for _ in ()).throw(RuntimeError("compared")))
     with pytest.raises(RuntimeError, match="compared"):
         plan(file, **{**how, "machine": "trunnion-bc"})
+
+
+@pytest.mark.parametrize(("machine", "chuck"), [("trunnion-ac", True), ("3-axis", True), ("4-axis-a", False)])
+def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, chuck):
+    """A round rod that only a chuck would hold: on a fourth axis across the spindle none is proposed."""
+    plans = plan(rod(20.0, 30.0), setup="auto", **{**HOW, "machine": machine}).plan
+    assert any(each.clamping == "chuck" for each in plans.setup_proposal.setups) == chuck

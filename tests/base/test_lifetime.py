@@ -59,7 +59,8 @@ def patch(module):
     module.Clock.stage = stage
 
 class Finder:
-    after = {"plan_cutters_base.workers.supervise": lambda module: setattr(module, "WRITING", float(os.environ["WRITING"])),
+    after = {"plan_cutters_base.workers.supervise":
+                 lambda module: vars(module).update(dict.fromkeys(("BEGINNING", "WRITING"), float(os.environ["WRITING"]))),
              "plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
              "plan_cutters.scene.conditions":
                  lambda _: "plan_cutters.command.background_compile" in sys.orig_argv and trap("ahead"),
@@ -198,7 +199,7 @@ def test_the_other_commands_end_too(tmp_path, command, number):
 
 @pytest.mark.slow("waits for a time limit")
 def test_what_hangs_where_verdicts_stand_is_given_time_and_no_more(tmp_path):
-    with Run(tmp_path, "area:", writing=supervise.WRITING) as run:
+    with Run(tmp_path, "area:", writing=supervise.BEGINNING) as run:
         run.until_stuck()
         run.process.send_signal(signal.SIGINT)
         run.gone_within(10.0 + SOON)

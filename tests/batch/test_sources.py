@@ -163,3 +163,12 @@ def test_a_manifest_that_is_not_there(folder):
     assert why.endswith("none.toml: no such file")
     with pytest.raises(PlanError):
         manifest(str(folder), KNOWN)
+
+
+def test_files_of_a_relative_folder_are_relative(folder, monkeypatch):
+    """Reports name them as a repository does: a service that shows findings knows no other folder."""
+    monkeypatch.chdir(folder.parent)
+    absolute = [each.file for each in found(str(folder))]
+    assert [each.file for each in found(folder.name)] == [f"{folder.name}/{each.removeprefix(f'{folder}/')}" for each in absolute]
+    assert [each.file for each in found(f"{folder.name}/**/*.step")]
+    assert not [each for each in found(f"{folder.name}/**/*.step") if each.file.startswith("/")]

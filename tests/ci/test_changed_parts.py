@@ -7,6 +7,8 @@ from OCP.IGESControl import IGESControl_Writer
 
 from cad_io.read import read_part
 from plan_cutters import Cutter, Holder, plan
+from plan_cutters_ci import changed
+from plan_cutters_ci.changed import Changed
 from plan_cutters_ci.matching import match_faces
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.review import Picture, Side, page
@@ -54,6 +56,9 @@ def test_after_a_smaller_radius_the_rounds_are_new_and_all_else_is_known(before)
     assert {f.old for f in found.faces if f.new is None} == mine
     assert {f.new for f in found.faces if f.old is None} == theirs
     assert all(f.lost == (f.now.reach != "reached") for f in found.faces if f.old is None)
+    # Rows of both sides say what was changed.
+    assert all(f.radius_mm == pytest.approx((5.0, 2.0)) for f in found.faces if None in (f.old, f.new))
+    assert all("R5 to R2" in row[2] for row in face_rows(found) if row[0] in ("gone", "new", "lost"))
     # The larger cutter rounded the pocket no more than the smaller one does now.
     assert not [f for f in found.faces if f.won]
 
@@ -216,3 +221,10 @@ def test_a_name_pairs_no_bore_with_a_pin():
         for p in (planned(bore, (2,)), planned(pin, (2,)))
     )
     assert not any(a.shape == "cylinder" for a, _, _ in match_faces(old, new))
+
+
+def test_where_there_is_no_picture_nothing_is_pushed(tmp_path, monkeypatch):
+    """A branch without a file is no help to anybody."""
+    monkeypatch.setattr(changed, "publish", lambda *words: pytest.fail("it was pushed"))
+    (tmp_path / "after").mkdir()
+    assert changed.links_of([changed.Row(Changed("a.step", "a.step"), after=tmp_path / "after")], "pictures") == {}

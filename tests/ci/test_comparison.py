@@ -284,7 +284,7 @@ def test_the_worst_rows_come_first():
     old = plan({1: (0, h), 2: (0, h), 3: (900, h), 4: (500, h), 9: (800, h)}, "a", face(20, shape="plane"))
     new = plan({1: (900, h), 2: (900, h), 3: (0, h), 4: (500, n), 9: (900, h)}, "b", face(30))
     rows = [(row[0], row[1]) for row in face_rows(compare(old, new))]
-    lost = [("lost", "F2"), ("lost", "F1"), ("lost", "F9"), ("lost", "F30")]
+    lost = [("lost", "F2"), ("lost", "F1"), ("less", "F9"), ("lost", "F30")]
     assert rows == [*lost, ("changed", "F4"), ("won", "F3"), ("gone", "F20")]
 
 

@@ -96,7 +96,7 @@ def test_the_command_says_it_in_four_forms_and_one_code(tmp_path, before, fat):
     assert found.plans[0].faces == compare(before, fat).faces
     marked = run("diff", old, new, "--markdown", cwd=tmp_path)
     assert marked.returncode == 1
-    assert "| lost | " in marked.stdout
+    assert "| less | " in marked.stdout
     assert run("diff", old, new, "--json", "--markdown", cwd=tmp_path).returncode == 2
 
 

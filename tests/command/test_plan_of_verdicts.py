@@ -21,6 +21,7 @@ from plan_cutters.operations import planning
 from plan_cutters.options import Options
 from plan_cutters.pipeline import run as run_stages
 from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
 from plan_cutters_agents.plan_answers import planned
@@ -71,14 +72,14 @@ WRITTEN = ["annotated.glb", "annotated.step", "plan.json", "process.toml", "revi
 
 
 def unfinished(folder, *absent, alone=True):
-    """The plan of a folder, alone there: it is one, and says once, in front, what it is without."""
-    assert leftovers(folder) == (["plan.json"] if alone else WRITTEN)
+    """The plan of a folder, alone there with its samples: it is one, and says once, in front, what it is without."""
+    assert leftovers(folder) == (["plan.json", "samples.npz"] if alone else WRITTEN)
     whole = plan_of((folder / "plan.json").read_bytes(), "plan.json")
     (text,) = [text for code, text in zip(whole.note_codes, whole.notes, strict=True) if code == "run_unfinished"]
     every = (BETWEEN, ANSWERS, OPERATIONS)
     assert [each for each in every if each in text] == [each for each in every if each in absent]
     assert whole.process.doubts[0] == text
-    assert " ".join(line.strip() for line in whole.text.lines[:3]).startswith(text)
+    assert " ".join(line.strip() for line in whole.text.lines[:3]).startswith(as_fields(text))
     assert (BETWEEN in absent) == (whole.cutters[0].area is None)
     assert whole.operations is None
     assert sorted(entry.name for entry in whole.files.values()) == sorted({*leftovers(folder)} - {"plan.json"})
@@ -115,9 +116,9 @@ def test_where_the_kernel_does_not_come_back_the_plan_is_left_and_told(tmp_path,
     """The worker is killed: what it had written stands, the summary is shown of that, and the files that lack are named."""
     where, absent = STAGES[stage]
     monkeypatch.setattr(*where, interrupted_in_c)
-    monkeypatch.setattr(supervise, "WRITING", 0.5)
+    monkeypatch.setattr(supervise, "BEGINNING", 0.5)
     last = told(run(*WORDS, "-o", "out", cwd=tmp_path), 130, *absent)
-    assert "There was no time to write review.html, annotated.step, annotated.glb, samples.npz: " in last
+    assert "There was no time to write review.html, annotated.step, annotated.glb: plan-cutters show " in last
     assert leftovers(tmp_path) == ["out"]
     assert set(unfinished(tmp_path / "out", *absent).not_written.values()) == {"interrupted"}
 
@@ -188,6 +189,21 @@ def test_an_interrupt_of_the_writing_waits_for_the_files(tmp_path, monkeypatch):
     assert done.stdout.startswith("Take flat end D12 x 80: it finishes all 13,300 mm².\n")
     assert done.stderr.splitlines()[-1].startswith("plan-cutters: interrupted; its plan is in ")
     assert leftovers(tmp_path / "out") == WRITTEN
+
+
+def test_what_is_being_written_is_given_longer_than_what_hangs(tmp_path, monkeypatch):
+    """A large page or model takes more than the time in which the writing must have begun."""
+    real = models.split_result
+
+    def slowly(result):
+        time.sleep(2.0)
+        return real(result)
+
+    monkeypatch.setattr(supervise, "BEGINNING", 0.7)
+    monkeypatch.setattr(*STAGES["answers"][0], interrupted)
+    monkeypatch.setattr(models, "split_result", slowly)
+    told(run(*WORDS, "-o", "out", cwd=tmp_path), 130, ANSWERS, OPERATIONS)
+    assert unfinished(tmp_path / "out", ANSWERS, OPERATIONS, alone=False).not_written == {}
 
 
 def test_a_second_interrupt_ends_it_at_once(tmp_path, monkeypatch):

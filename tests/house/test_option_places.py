@@ -16,7 +16,7 @@ import pytest
 
 import cad_io
 import plan_cutters
-from plan_cutters import Options, Scene, plan, plan_many, posture_map
+from plan_cutters import Options, PostureMap, Result, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.request import PlanRequest, planning_options
@@ -36,7 +36,7 @@ def test_type_checkers_see_the_options():
     assert set(ANGLES) == {word for word, each in ATTRIBUTES.items() if each.is_angle}
     assert STUB.read_text() == stub(), "run: python -m tests.support.option_stub"
     for function, words in ((plan, PlanOptions), (Scene.of, SceneOptions), (posture_map, PointOptions), (plan_many, PlanOptions)):
-        assert Unpack[words] in get_type_hints(function).values()
+        assert Unpack[words] in get_type_hints(function, localns={"Result": Result, "PostureMap": PostureMap}).values()
 
 
 def test_people_see_each_option_with_its_default():

@@ -578,3 +578,23 @@ def test_what_a_bit_has_beyond_its_shape_is_noted(tmp_path):
         path.write_text(json.dumps(bit))
         with pytest.raises(LibraryError, match="Diameter is"):
             read_library(path, assume_stickout=40.0, holder="none")
+
+
+def test_a_slitting_saw_of_freecad_is_as_thick_as_its_blade(tmp_path):
+    sizes = {
+        "BladeThickness": "3 mm",
+        "CapDiameter": "8 mm",
+        "Diameter": "60 mm",
+        "ShankDiameter": "16 mm",
+        "CuttingEdgeHeight": None,
+    }
+    (entry,) = listing(
+        write_bit(tmp_path / "a.fctb", "SlittingSaw", CapHeight="0 mm", **sizes), assume_stickout=40, holder="none"
+    ).entries
+    assert entry.cutter.id == "R30L40F3S8"
+    # What stands out below the blade would be taken for what cuts.
+    (entry,) = listing(
+        write_bit(tmp_path / "b.fctb", "SlittingSaw", CapHeight="3 mm", **sizes), assume_stickout=40, holder="none"
+    ).entries
+    assert entry.cutter is None
+    assert "CapHeight" in entry.unused

@@ -1,14 +1,13 @@
-"""Neck, shank and holder keep 1 mm from everything where any posture does, and a step that has less says so."""
+"""Samples go with a step that has a margin about neck, shank and holder, if one has; what has less is told."""
 
 import cadquery as cq
 import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.judging.judge import judge
-from plan_cutters.operations.probes import Probes, roomy, with_margin
+from plan_cutters.operations.probes import Probes
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.operations import MARGIN
@@ -20,42 +19,34 @@ TIGHT = "D12L40HR20L30"
 
 
 def step():
-    """A low ledge beside a tower: upright, the holder passes the tower 0.3 mm away; the ledge may be cut with a lean, too."""
+    """A low ledge beside a tower: upright, the holder passes the tower close by; the ledge may be cut with a lean, too."""
     return cq.Workplane().box(60, 40, 10).union(cq.Workplane().box(20, 40, 60).translate((-20, 0, 35))).val()
 
 
-def test_a_tool_with_room_is_the_same_tool_and_asks_for_no_less():
-    for own, wanted in ((None, MARGIN), (0.2, MARGIN), (3.0, 3.0)):
-        wide = roomy(Cutter.flat(radius=6, length=40, clearance=own))
-        assert (wide.clearance, wide.radius, wide.length) == (wanted, 6.0, 40.0)
-
-
-def test_where_a_posture_has_room_no_step_goes_without():
-    """All of a block lower than the tool is long, less the room, is cut with room; of one as high nothing at its foot can be."""
+def test_less_than_the_margin_is_told_with_the_option_that_asks_for_it():
     low, high = (plan(box(30, 30, tall), cutters=TIGHT, **HOW) for tall in (38.0, 39.9))
     clear = [min(s.clearance_mm for s in each.plan.process.steps if s.clearance_mm is not None) for each in (low, high)]
-    assert clear[0] >= MARGIN
-    assert 0.0 < clear[1] < MARGIN
-    assert high.plan.process.finished_share == low.plan.process.finished_share
-    lines = " ".join(high.plan.text.lines)
-    assert "where no orientation of the plan has 1 mm" in lines
-    assert "where no orientation of the plan has 1 mm" not in " ".join(low.plan.text.lines)
+    assert clear[0] >= MARGIN > clear[1]
+    lines = [" ".join(each.plan.text.lines) for each in (low, high)]
+    assert ["1 mm everywhere" in each for each in lines] == [False, True]
+    asked = plan(box(30, 30, 39.9), cutters=TIGHT, holder_clearance=MARGIN, **HOW)
+    assert "1 mm everywhere" not in " ".join(asked.plan.text.lines)
 
 
 @pytest.mark.parametrize("cutter", ["D8L30HR15L30", "D8L30"])
-def test_what_serves_with_room_serves_without(cutter):
-    """Where the same tool with a clearance of its own reaches a sample, there is room; a bare tool has it anywhere."""
+def test_what_serves_with_a_margin_is_what_the_tool_with_that_clearance_serves(cutter):
+    """Of a bare tool, which has no neck, shank or holder, all that it serves."""
     ready = prepare(step(), Options(cutters=cutter, **HOW))
     (tool,) = ready.cutters
-    everywhere, open_ = [{tool: judge(ready, tool)}], ready.machinable
-    rows = np.flatnonzero(everywhere[0][tool].reached & open_[0])
-    room = with_margin(ready.samples, rows, everywhere, ready.setups, open_)
-    assert room[rows].any()
-    assert (room[rows] == judge(ready, roomy(tool)).reached[rows]).all()
-    probes = [Probes(ready.samples, ready.cutters, ready.setups, open_, margin=each) for each in (room, None)]
+    rows = np.flatnonzero(judge(ready, tool).reached)
     columns = columns_of(np.array([[0.0, 0.0, 1.0], [np.sin(0.3), 0.0, np.cos(0.3)]]), np.zeros((2, 2)))
-    with_, without = (each.table(rows, columns) for each in probes)
-    assert not (with_ & ~without).any()
-    assert (probes[0].tight(rows, columns) == without).all()
+    probes = Probes(ready.samples, ready.cutters, ready.setups, ready.machinable)
+    serves = probes.table(rows, columns)
+    spacious = probes.spacious(rows, columns, serves)
+    wide = prepare(step(), Options(cutters=cutter, holder_clearance=MARGIN, **HOW))
+    assert (spacious == Probes(wide.samples, wide.cutters, wide.setups, wide.machinable).table(rows, columns)).all()
+    assert serves.any()
     if not tool.stages:
-        assert (with_ == without).all()
+        assert (spacious == serves).all()
+    else:
+        assert spacious.sum() < serves.sum()

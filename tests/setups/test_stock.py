@@ -98,6 +98,7 @@ def test_a_bar_is_gripped_by_a_chuck():
     process = plan(rod(10, 40), fixtures="chuck", stock="cylinder:1,8", **HOW).plan.process
     setup = process.setups[0]
     assert (setup.held, setup.stands_on, setup.apart_mm) == ("chuck", "stock", pytest.approx(22.0, abs=0.05))
+    assert "a bar 22 mm wide and " in setup.text
 
 
 def test_stock_of_a_file_is_its_box_and_must_enclose_the_part(tmp_path):

@@ -42,7 +42,8 @@ _LISTED = (
      "selection** samples.max_gap_mm samples.convex samples.concave samples.saddle samples.regions inside_other_bodies** "
      "missing** patterns**"),
     ("holes are not looked for again", "holes[].", "faces** depth_mm through bottom cone_deg countersink** counterbore** group"),
-    ("drills are not judged again", "holes[].", "drilled tool"),
+    ("which other tools would do is not looked for", "holes[].", "missing**"),
+    ("the best order of the rotary axes is not looked for", "process.drilling[].", "index_seconds"),
     ("it describes the input", "faces[].", "kind component carrier** neighbours** centre_mm** gap_mm chord_error_mm unjudged"),
     ("it describes the input", "", "part.** libraries** machine.linear** machine.rotary[].** fixtures**"),
     ("it is about the program and its files", "",

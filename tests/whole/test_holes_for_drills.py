@@ -8,18 +8,17 @@ import cadquery as cq
 import numpy as np
 import pytest
 
-from plan_cutters import Cutter, plan
+from plan_cutters import plan
 from plan_cutters.answers.drilling import drilled
-from plan_cutters.domain.drill import Drill
 from plan_cutters.domain.verdicts import DRILLED, WORDS
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.library.raw_tool import Entry, Library
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.to_json import dumps
 from plan_cutters_check.asking import question_of
 from plan_cutters_check.check import check
+from tests.support.drills import drill, library_of
 from tests.support.plates import block
 from tests.support.plates import drilled as bored
 
@@ -190,28 +189,20 @@ def test_the_checker_knows_what_is_for_drills(tmp_path):
     assert failed()
 
 
-def _library(*drills, feed=300.0):
-    entries = [Entry(f"tool {i}", drill=each, feed=feed) for i, each in enumerate(drills, 1)]
-    return Library("set.toml", "plan-cutters TOML", tuple(entries))
-
-
-def drill(diameter, flutes=40.0, length=60.0, point=118.0, kind="drill", holder="R16L60"):
-    body = Cutter.flat(radius=0.5 * diameter, length=length, flutes=flutes, shank_radius=0.5 * diameter, holder=holder)
-    return Drill(kind, body, None if point is None else np.radians(point))
-
-
 def made_with(*drills, shape=None, **words):
-    options = {**WORDS_OF_PLAN, **words, "libraries": [_library(*drills)]}
+    options = {**WORDS_OF_PLAN, **words, "libraries": [library_of(*drills)]}
     ready = prepare(plate() if shape is None else shape, Options.of(options))
-    return {round(hole.diameter, 3): by for hole, by in zip(ready.holes, drilled(ready), strict=True)}
+    made = drilled(ready, np.ones(len(ready.samples), bool))
+    by = [next((use for use in each.uses if use.main), None) for each in made]
+    return {round(hole.diameter, 3): each for hole, each in zip(ready.holes, by, strict=True)}
 
 
 def test_a_drill_of_its_size_makes_a_hole():
     made = made_with(drill(3.3), drill(8.0), drill(12.0))
     assert made[3.3].drill.diameter == pytest.approx(3.3)
     assert made[8.0].drill.diameter == pytest.approx(8.0)
-    # A floor is no drill's.
-    assert made[12.0] is None
+    # Over a floor, which is a mill's, it ends with its point.
+    assert made[12.0].tip == pytest.approx([12.0, 0.0, -6.0])
     assert made[3.3].axis == pytest.approx([0.0, 0.0, 1.0])
     assert made[3.3].setup == 0
 
@@ -256,14 +247,15 @@ def test_a_machine_that_cannot_hold_the_axis_drills_nothing():
 
 
 def test_steps_have_minutes_and_what_none_makes_is_named():
-    words = {**WORDS_OF_PLAN, "libraries": [_library(drill(3.3))]}
+    words = {**WORDS_OF_PLAN, "libraries": [library_of(drill(3.3))]}
     made = plan(plate(), **words).plan
-    (step,) = made.drilling
+    (step,) = made.process.drilling
     deep = 16.0 + 1.65 / np.tan(np.radians(59.0))
-    assert (step.holes, step.setup, step.angles_deg) == (4, 0, {"C": 0.0, "A": 0.0})
-    assert step.seconds == pytest.approx(4 * (1.3 * deep / 300.0 * 60.0 + 1.0))
+    assert (len(step.holes), step.setup, step.angles_deg) == (4, 0, {"C": 0.0, "A": 0.0})
+    assert step.seconds == pytest.approx(4 * 1.3 * deep / 300.0 * 60.0)
+    assert step.link_seconds == 4.0
     assert [hole.drilled for hole in made.holes].count(True) == 4
-    text = " ".join(made.text.lines)
+    text = " ".join(" ".join(made.text.lines).split())
     assert "Drills of the set make 4 of them" in text
-    assert "none makes D8 x 7, D12 x 6." in text
+    assert "no tool makes D8 x 7, D12 x 6." in text
     assert replace(drill(3.3), point=None).id != drill(3.3).id

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import cadquery
 import numpy as np
 import pytest
 
@@ -36,7 +37,8 @@ def answered(part, folder, cache=True, **words):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stage_cache.StageCache, "cached", watched)
-        result = plan(real_file(PARTS[part]) if part in PARTS else OWN, cache=cache, **{**COARSE, **words})
+        source = part if not isinstance(part, str) else real_file(PARTS[part]) if part in PARTS else OWN
+        result = plan(source, cache=cache, **{**COARSE, **words})
     stage_cache.settle()
     result.write(folder, ["json", "npz"])
     document = json.loads((folder / "plan.json").read_text())
@@ -86,6 +88,25 @@ def test_another_question_makes_what_it_does_not_share_and_answers_as_without(tm
     second = answered("blade", tmp_path / "second", **words)
     assert set(second[2]) <= made
     same(answered("blade", tmp_path / "without", cache=False, **words), second)
+
+
+def tray(radius):
+    """A block with a pocket, made anew."""
+    sketch = cadquery.Sketch().rect(30, 20).vertices().fillet(radius)
+    return cadquery.Workplane().box(40, 30, 10).faces(">Z").workplane().placeSketch(sketch).cutBlind(-6).val()
+
+
+def test_a_shape_in_memory_is_known_by_its_own_bytes(tmp_path):
+    """A script that makes its part again asks the same question; another radius is another part, and so is a turned one."""
+    words = {"cutters": ["R3L40"], "faces": "all", "spacing": 4.0}
+    first = answered(tray(4.0), tmp_path / "first", **words)
+    second = answered(tray(4.0), tmp_path / "second", **words)
+    assert {"faces", "triangles", "samples", "tree", "verdicts"} <= set(first[2])
+    assert second[2] == []
+    same(first, second)
+    same(answered(tray(4.0), tmp_path / "without", cache=False, **words), second)
+    for k, other in enumerate((tray(4.5), tray(4.0).rotate((0, 0, 0), (1, 0, 0), 10))):
+        assert "samples" in answered(other, tmp_path / f"other{k}", **words)[2]
 
 
 def test_another_file_shares_nothing(tmp_path):

@@ -1,57 +1,211 @@
-"""Which drill of the libraries makes each hole: along the hole's axis it must stand free down to the end of the hole."""
+"""Which tools of the libraries make each hole: along the hole's axis they must stand free down to where they cut."""
 
+import math
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from cad_io.part.holes import Hole
-from plan_cutters.domain.drill import Drill, Drilled
+from cad_io.part.holes import Hole, Step
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled, Missing, Why
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, free_in_posture
+from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Prepared
 
 #: Share of a flat's radius that is none.
 _NO_WAY = 1e-12
+#: Share of the area of a bottom that mills have to finish.
+_BOTTOM = 0.99
+#: Cosine of the angle between directions that are one.
+_ALONG = 1.0 - 1e-9
 
 
-def drills_of(ready: Prepared) -> list[Drill]:
-    """The tools for holes of all libraries, each once, in their order."""
-    return [*{each.id: each for library in ready.options.libraries for each in library.drills}.values()]
+class _Way(NamedTuple):
+    """Into a hole from one end: a setup, the tool axis, and the middle of the mouth."""
+
+    setup: int
+    axis: Floats
+    mouth: Floats
 
 
-def drilled(ready: Prepared) -> list[Drilled | None]:
-    """Find of each hole the drill that makes it: the nearest in diameter, of equal ones the shortest; None: none does."""
-    clearance = ready.options.holder_clearance
-    drills = sorted(drills_of(ready), key=lambda each: each.body.length)
-    return [_made_by(ready, hole, drills, clearance) for hole in ready.holes]
+class _Task(NamedTuple):
+    """A tool goes so deep under a mouth, mm: its body, and how far that is above the end of its depth."""
+
+    drill: Drill
+    body: Cutter | None
+    depth: float
+    diameter: float
+    main: bool = False
 
 
-def _made_by(ready: Prepared, hole: Hole, drills: Sequence[Drill], clearance: float) -> Drilled | None:
-    fitting = [each for each in drills if each.fits(hole.diameter, hole.bottom, hole.cone)]
-    for drill in sorted(fitting, key=lambda each: round(abs(each.diameter - hole.diameter), 6)):
-        # Through a hole the point goes on until all of its width is.
-        deep = drill.depth_in(hole.depth, through=hole.through)
-        body = drill.in_hole(hole.diameter)
-        if body is None or drill.reach < deep:
-            continue
-        body = body.asked(0.0, clearance, None)
-        for setup, conditions in enumerate(ready.setups):
-            for axis, mouth in _ways(hole):
-                if _free(Context.of(body, conditions), conditions, mouth - deep * axis, axis):
-                    return Drilled(drill, setup, axis)
-    return None
+def drilled(ready: Prepared, done: NDArray[np.bool_], used: Sequence[int] = ()) -> list[Bored]:
+    """Find of each hole the tools that make it.
+
+    A drill of its diameter does, the nearest, of equal ones the shortest; else a reamer behind a drill; before a drill comes a
+    centre drill where there is one. Countersinks and counterbores are made by tools of their own.
+
+    Parameters
+    ----------
+    done : (n,) bool
+        Samples that mills reach: the bottom of a hole may be among them.
+    used : sequence of int
+        Setups that are there anyway, which come first.
+    """
+    maker = _Maker(ready, sorted(made_of(ready.options.libraries), key=lambda each: each.body.length), done, used)
+    return [maker.bored(hole) for hole in ready.holes]
 
 
-def _ways(hole: Hole) -> Iterator[tuple[Floats, Floats]]:
-    """Axes of a tool in a hole, each with the point of the axis at its mouth."""
-    yield hole.axis, hole.place
+class _Maker:
+    def __init__(self, ready: Prepared, drills: Sequence[Drill], done: NDArray[np.bool_], used: Sequence[int]) -> None:
+        self.ready, self.drills, self.done = ready, drills, done
+        self.order = sorted(range(len(ready.setups)), key=lambda setup: (setup not in used, setup))
+
+    def bored(self, hole: Hole) -> Bored:
+        """The tools of a hole."""
+        uses, missing = self._cylinder(hole), list[Missing]()
+        if not uses or not self._floored(hole):
+            missing.append(Missing("hole", hole.diameter, hole.depth, why="bottom" if uses else self._why(hole)))
+            uses = []
+        for step in hole.steps:
+            if not {*step.faces}.intersection(hole.faces):
+                # A mill makes it.
+                continue
+            use = self._widened(hole, step)
+            # Where there is no hole nothing is sunk.
+            uses += [use] if uses and use is not None else []
+            deep, angle = (None, step.angle) if step.kind == "countersink" else (abs(step.inner - step.outer), None)
+            missing += [Missing(step.kind, step.diameter, deep, angle)] if use is None else []
+        return Bored(tuple(uses), tuple(missing))
+
+    def _why(self, hole: Hole) -> Why:
+        """Why no tools make its narrowest cylinder."""
+        chains, setups = [*self._chains(hole)], self.ready.setups
+        if not chains:
+            return ""
+        if not any(setups[way.setup].allows(way.axis[None])[0] for way in self._ways(hole)):
+            return "axis"
+        long = any(all(task.body is not None and task.drill.reach >= task.depth for task in chain) for chain in chains)
+        return "in_the_way" if long else "short"
+
+    def _floored(self, hole: Hole) -> bool:
+        """Whether mills finish a bottom that no drill leaves."""
+        samples = self.ready.samples
+        milled = [n for n in hole.floor if n not in hole.faces]
+        mine = np.isin(samples.face, milled) & self.ready.finished
+        area = np.nan_to_num(samples.area)
+        return not milled or bool(mine.any() and area[mine & self.done].sum() >= _BOTTOM * area[mine].sum())
+
+    def _cylinder(self, hole: Hole) -> list[Drilled]:
+        """The tools of its narrowest cylinder; none where they cannot make it."""
+        tasks = [each for each in self._chains(hole) if all(task.body is not None for task in each)]
+        for chain in tasks:
+            for way in self._ways(hole):
+                made = [self._use(task, way) or self._onto_stock(task, hole, way) for task in chain]
+                if all(made):
+                    first = self._centre(hole, way)
+                    return [*([] if first is None else [first]), *(use for use in made if use is not None)]
+        return []
+
+    def _chains(self, hole: Hole) -> Iterator[list[_Task]]:
+        """Tools that make it one after the other: the best first."""
+        near = sorted(self.drills, key=lambda each: round(abs(each.diameter - hole.diameter), 6))
+        for drill in near:
+            if drill.kind == "drill" and drill.wide_as(hole.diameter) and _ends(drill, hole):
+                yield [_down(drill, hole, hole.diameter, main=True)]
+        for reamer in near:
+            if reamer.kind != "reamer" or not reamer.wide_as(hole.diameter) or hole.bottom not in ("open", "cone"):
+                continue
+            # The largest drill comes first: it leaves the least.
+            for drill in sorted(self.drills, key=lambda each: -each.diameter):
+                if drill.kind == "drill" and drill.comes_before(reamer) and _ends(drill, hole):
+                    yield [_down(drill, hole, drill.diameter), _down(reamer, hole, hole.diameter, main=True)]
+
+    def _centre(self, hole: Hole, way: _Way) -> Drilled | None:
+        """A centre drill makes a cone no wider than the hole before the drill, if the libraries have one."""
+        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - hole.diameter), 6)):
+            if drill.kind == "centre drill" and drill.point is not None:
+                wide = min(drill.diameter, hole.diameter)
+                task = _Task(drill, drill.as_cone(drill.point), 0.5 * wide / math.tan(0.5 * drill.point), wide)
+                if task.depth < hole.depth and (use := self._use(task, way)) is not None:
+                    return use
+        return None
+
+    def _widened(self, hole: Hole, step: Step) -> Drilled | None:
+        """The tool that makes a countersink or counterbore."""
+        deep = abs(step.inner - step.outer)
+        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - step.diameter), 6)):
+            if step.kind == "countersink" and step.angle is not None and drill.sinks(step.diameter, step.angle):
+                task = _Task(drill, drill.as_cone(step.angle), 0.5 * step.diameter / math.tan(0.5 * step.angle), step.diameter)
+            elif step.kind == "counterbore" and drill.wide_as(step.diameter) and _floors(drill, step) and drill.reach >= deep:
+                task = _Task(drill, drill.in_hole(step.diameter), deep, step.diameter)
+            else:
+                continue
+            for setup in self.order:
+                axis = -hole.axis if step.far else hole.axis
+                use = self._use(task, _Way(setup, axis, hole.place - step.outer * hole.axis))
+                if use is not None:
+                    return use
+        return None
+
+    def _ways(self, hole: Hole) -> Iterator[_Way]:
+        for setup in self.order:
+            yield _Way(setup, hole.axis, hole.place)
+            if hole.through:
+                yield _Way(setup, -hole.axis, hole.place - hole.depth * hole.axis)
+
+    def _onto_stock(self, task: _Task, hole: Hole, way: _Way) -> Drilled | None:
+        """A tool through a hole whose point goes into the stock below the part, which is cut away later."""
+        conditions = self.ready.setups[way.setup]
+        surroundings, up = conditions.surroundings, np.asarray(conditions.setup, float)
+        below = max((each.fixture.stock.below for each in surroundings.fixtures if each.fixture.stock is not None), default=0.0)
+        point, end = task.drill.point_length, way.mouth - hole.depth * way.axis
+        lowest = float(((surroundings.alone or surroundings).certain.lowest(up) @ up).min())
+        if not hole.through or way.axis @ up < _ALONG or not below > point or end @ up > lowest + conditions.tolerance:
+            return None
+        return self._use(task._replace(depth=hole.depth), way)
+
+    def _use(self, task: _Task, way: _Way) -> Drilled | None:
+        """A tool in a hole if it stands free there; None: it does not, or is too short."""
+        drill, body = task.drill, task.body
+        if body is None or (drill.kind not in CONES and drill.reach < task.depth):
+            return None
+        conditions = self.ready.setups[way.setup]
+        context = Context.of(body.asked(0.0, self.ready.options.holder_clearance, None), conditions)
+        if not _free(context, conditions, way.mouth - task.depth * way.axis, way.axis):
+            return None
+        return Drilled(drill, way.setup, way.axis, way.mouth, task.depth, task.diameter, task.main)
+
+
+def _ends(drill: Drill, hole: Hole) -> bool:
+    """Whether the point of a drill leaves the bottom, or what a mill may make of it."""
+    return hole.bottom != "cone" or drill.points_at(hole.cone)
+
+
+def _floors(drill: Drill, step: Step) -> bool:
+    """Whether a tool leaves the floor of a counterbore."""
+    if step.floor == "cone":
+        return drill.kind == "drill" and drill.points_at(step.angle)
+    return step.floor == "flat" and drill.kind == "counterbore"
+
+
+def _down(drill: Drill, hole: Hole, diameter: float, *, main: bool = False) -> _Task:
+    """A tool down to the bottom: until all of its width is through, or as wide as a cone is; over a floor with its tip."""
+    deep, point = hole.depth, drill.point_length
     if hole.through:
-        yield -hole.axis, hole.place - hole.depth * hole.axis
+        deep += point
+    elif hole.bottom == "cone" and hole.cone is not None:
+        deep += 0.5 * (hole.diameter - diameter) / math.tan(0.5 * hole.cone)
+    else:
+        deep -= point
+    return _Task(drill, drill.in_hole(diameter) if deep > 0.0 else None, deep, diameter, main)
 
 
 def _free(context: Context, conditions: Conditions, tip: Floats, axis: Floats) -> bool:
-    """Whether a tool stands free with the middle of its flat tip at a point; an axis that the machine cannot hold is no way."""
+    """Whether a tool stands free with the middle of its tip at a point; an axis that the machine cannot hold is no way."""
     if not context.judges or conditions.surroundings.doubtful or not conditions.allows(axis[None])[0]:
         return False
     point, normal = np.ascontiguousarray(tip[None]), np.ascontiguousarray(axis[None])

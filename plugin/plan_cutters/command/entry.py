@@ -77,6 +77,7 @@ _SELF = "plan-cutters"
 OURS = {
     "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
     "map": ("map", "Draw all postures of one cutter at one point."),
+    "show": ("show", "Show a folder's plan: print its summary, and make page and models that it lacks."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
 }

@@ -73,7 +73,7 @@ def verdicts_text(out: Path, missing: str = "") -> str:
 
     if not (text := unfinished(out / PLAN)):
         return ""
-    late = f" There was no time to write {missing}: the same command without those options does." if missing else ""
+    late = f" There was no time to write {missing}: plan-cutters show {out} does." if missing else ""
     return f"the plan of the verdicts is in {out / PLAN}. {text}{late}"
 
 

@@ -182,7 +182,7 @@ class Display:
         """Say that what is to end writes something first."""
         self.clear()
         if not self.quiet:
-            terminal.error("plan-cutters: what stands is written now, in at most 10 s; a second interrupt ends it at once")
+            terminal.error("plan-cutters: what stands is written now, in at most a minute; a second interrupt ends it at once")
 
     def tick(self) -> None:
         self._show(False)

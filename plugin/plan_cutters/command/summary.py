@@ -33,6 +33,8 @@ MOST_ROWS = 40
 _NAME = 27
 #: Longest that a cutter is called here, and an obstacle.
 _CUTTER, _OBSTACLE = 2 * _NAME - 4, 22
+#: Files of more bytes have their size told.
+_LARGE = 100_000
 _COLOURS = {True: "green", False: "red", None: "yellow"}
 
 
@@ -162,7 +164,11 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str], *, verbose: 
     lines: list[Any] = []
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
     if files and verbose:
-        lines.append(f"Written to {out}: {', '.join(files)} ({plan.run.total:.0f} s in all).")
+        sizes = {
+            f.name: f" ({f.size_bytes / 1e6:.1f} MB)" for f in plan.files.values() if f.size_bytes and f.size_bytes >= _LARGE
+        }
+        each = ", ".join(f"{name}{sizes.get(name, '')}" for name in files)
+        lines.append(f"Written to {out}: {each} ({plan.run.total:.0f} s in all).")
     if verbose:
         lines += _not_split(plan)
     if out is not None and formats and (old := stale_files(out, plan, formats)):

@@ -1,51 +1,120 @@
-"""Entries of holes that are for drills, and of the steps that drill them."""
+"""Entries of holes that are for drills, and of the steps of the process that drill them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
+from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
-from plan_cutters.domain.drill import Drilled, time_of_hole
+from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
+from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingEntry, HoleEntry
+from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, MissingEntry, StrokeEntry
+from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
 from plan_cutters.scene.preparation import Prepared
 
 #: Decimals of lengths and angles: behind them there is noise alone.
 _DIGITS = 6
+#: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
+IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
+#: Tools in the order in which they come in a setup.
+_IN_TURN: tuple[Kind, ...] = ("centre drill", "drill", "reamer", "counterbore", "countersink", "tap")
 
 
-def hole_entries(ready: Prepared, made: Sequence[Drilled | None]) -> list[HoleEntry]:
-    """The holes for drills of a part, those of the first group first; `made`: what drills each of them."""
-    rows = zip(ready.holes, groups(ready.holes), made, strict=True)
-    return sorted((_entry(hole, group, by) for hole, group, by in rows), key=lambda each: each.group)
+def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[HoleEntry]:
+    """The holes for drills of a part, those of the first group first; `made`: by what tools."""
+    number = groups(ready.holes)
+    return [_entry(ready.holes[k], number[k], made[k]) for k in _in_order(number)]
 
 
-def drilling_entries(ready: Prepared, made: Sequence[Drilled | None]) -> list[DrillingEntry]:
-    """The steps that drill holes, in the order of setups, and of tools by diameter."""
-    options = ready.options
+def _in_order(number: Sequence[int]) -> list[int]:
+    return sorted(range(len(number)), key=lambda k: number[k])
+
+
+def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored], index_times: IndexTimes) -> ProcessEntry:
+    """The process with the steps that drill holes, and their seconds in its own where these are known."""
+    drilling = _steps(ready, made, index_times, timed=process.seconds is not None)
+    if not drilling:
+        return process
+    options, seconds = ready.options, [step.seconds for step in drilling]
+    if process.seconds is None or None in seconds:
+        names = ("seconds", "cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
+        return process.model_copy(update={"drilling": drilling, **dict.fromkeys(names)})
+    tools = len({step.tool for step in drilling}) + len({step.cutter for step in process.steps if step.operation})
+    setups = len({*(step.setup for step in drilling), *(step.setup for step in process.steps)})
+    times: dict[str, Any] = {
+        "cutting_seconds": (process.cutting_seconds or 0.0) + sum(each or 0.0 for each in seconds),
+        "link_seconds": (process.link_seconds or 0.0) + sum(step.link_seconds for step in drilling),
+        "index_seconds": (process.index_seconds or 0.0) + sum(step.index_seconds for step in drilling),
+        "change_seconds": options.change_time * (tools - 1),
+        "setup_seconds": options.setup_time * (setups - 1),
+    }  # fmt: skip
+    return process.model_copy(update={"drilling": drilling, "seconds": sum(times.values()), **times})
+
+
+def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[DrillingStep]:
+    """The steps that drill holes: by setup, kind and diameter; those of one tool follow each other."""
+    options, number = ready.options, groups(ready.holes)
     entries_of = [entry for library in options.libraries for entry in library.entries if entry.drill is not None]
     feeds = {entry.drill.id: entry.feed for entry in reversed(entries_of) if entry.drill is not None and entry.feed is not None}
-    steps: dict[tuple[int, str, int, bytes], list[tuple[Hole, Drilled]]] = {}
-    for hole, group, by in zip(ready.holes, groups(ready.holes), made, strict=True):
-        if by is not None:
-            steps.setdefault((by.setup, by.drill.id, group, np.round(by.axis, _DIGITS).tobytes()), []).append((hole, by))
-    entries = []
-    for (setup, tool, group, _), each in steps.items():
-        hole, by = each[0]
-        deep, feed = by.drill.depth_in(hole.depth, through=hole.through), feeds.get(tool, options.feed)
-        entries.append(
-            DrillingEntry(
-                tool=tool, name=by.drill.body.name, group=group, holes=len(each), setup=setup, axis=vector(by.axis + 0.0),
-                angles_deg=_angles(ready, setup, by.axis), depth_mm=round(deep, _DIGITS),
-                seconds=None if feed is None else len(each) * (time_of_hole(deep, feed) + options.link_time),
+    same: dict[tuple[Any, ...], list[tuple[int, Drilled]]] = {}
+    for place, k in enumerate(_in_order(number)):
+        for use in made[k].uses:
+            size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
+            key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
+            same.setdefault(key, []).append((place, use))
+    steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
+    for key in sorted(same):
+        use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
+        axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
+        begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
+        before += [axis] * begins
+        steps.append(
+            DrillingStep(
+                kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
+                holes=[_stroke(place, each) for place, each in same[key]],
+                setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
+                diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
+                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed),
+                link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
-    diameter = {by.drill.id: by.drill.diameter for by in made if by is not None}
-    return sorted(entries, key=lambda step: (step.setup, diameter[step.tool], step.tool, step.group))
+    return [step for group in _by_tool(steps) for step in _indexed(ready, group, index_times)]
 
 
-def _angles(ready: Prepared, setup: int, axis: np.ndarray) -> dict[str, float] | None:
+def _stroke(hole: int, use: Drilled) -> StrokeEntry:
+    return StrokeEntry(hole=hole, mouth_mm=_rounded(use.mouth), tip_mm=_rounded(use.tip))
+
+
+def _by_tool(steps: Sequence[DrillingStep]) -> list[list[DrillingStep]]:
+    """Steps of one tool in one setup together, in their order."""
+    each: dict[tuple[int, str], list[DrillingStep]] = {}
+    for step in steps:
+        each.setdefault((step.setup, step.tool), []).append(step)
+    return [*each.values()]
+
+
+def _indexed(ready: Prepared, steps: Sequence[DrillingStep], index_times: IndexTimes) -> list[DrillingStep]:
+    """The steps of one tool in one setup with the seconds of turns: as those of mills they begin with the axes at zero."""
+    kinematics, options = ready.setups[steps[0].setup].kinematics, ready.options
+    turns = [k for k, step in enumerate(steps) if step.index_seconds]
+    rates = [axis.rate for axis in options.machine.rotary or ()]
+    times = np.full(len(turns), INDEX_TIME if options.index_time is None else options.index_time)
+    if kinematics is not None and all(rates) and options.index_time is None:
+        both = [kinematics.positions(np.array([steps[k].axis]))[0][0] for k in turns]
+        known = [each[np.isfinite(each).all(axis=1)] for each in both]
+        times = index_times(known, kinematics.limit, np.array(rates, float)) if rates else np.zeros(len(turns))
+    seconds = dict(zip(turns, times.tolist(), strict=True))
+    return [step.model_copy(update={"index_seconds": seconds.get(k, 0.0)}) for k, step in enumerate(steps)]
+
+
+def _rounded(point: Floats) -> tuple[float, float, float]:
+    return vector(np.round(point, _DIGITS) + 0.0)
+
+
+def _angles(ready: Prepared, setup: int, axis: Floats) -> dict[str, float] | None:
     """Angles of the rotary axes that hold a tool axis, deg; None where no axes are known."""
     kinematics = ready.setups[setup].kinematics
     if kinematics is None:
@@ -55,8 +124,8 @@ def _angles(ready: Prepared, setup: int, axis: np.ndarray) -> dict[str, float] |
     return dict(zip((each.name for each in ready.options.machine.rotary or ()), angles.tolist(), strict=True))
 
 
-def _entry(hole: Hole, group: int, by: Drilled | None) -> HoleEntry:
-    sink, bore = hole.countersink, hole.counterbore
+def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
+    by, sink, bore = made.by, hole.countersink, hole.counterbore
     return HoleEntry(
         faces=[f"F{number}" for number in hole.faces],
         diameter_mm=round(hole.diameter, _DIGITS),
@@ -70,7 +139,18 @@ def _entry(hole: Hole, group: int, by: Drilled | None) -> HoleEntry:
         place_mm=vector(np.round(hole.place, _DIGITS) + 0.0),
         group=group,
         drilled=by is not None,
-        tool=None if by is None else by.drill.id,
+        tool=None if by is None else by.id,
+        missing=[_missing(each) for each in made.missing],
+    )
+
+
+def _missing(each: Missing) -> MissingEntry:
+    return MissingEntry(
+        thing=each.thing,
+        diameter_mm=round(each.diameter, _DIGITS),
+        depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
+        angle_deg=None if each.angle is None else _degrees(each.angle),
+        why=each.why,
     )
 
 

@@ -1,7 +1,7 @@
 """Cutters: tool assemblies that can exist, how they are made, and what follows from their dimensions."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -157,9 +157,11 @@ class Cutter(Dimensions):
 
     @classmethod
     def each_of(cls, given: Any) -> tuple["Cutter", ...]:
-        """One cutter or text, or a list of such; None is an empty list."""
+        """One cutter or text, a list of such, or a mapping of names to such; None is an empty list."""
         if given is None:
             return ()
+        if isinstance(given, Mapping):
+            return tuple(replace(cls.of(each), name=str(name)) for name, each in given.items())
         if isinstance(given, str | cls):
             return (cls.of(given),)
         return tuple(cls.of(each) for each in items(given, "cutters", "cutters", error=CutterError))

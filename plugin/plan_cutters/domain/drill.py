@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
+import numpy as np
+
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length
@@ -11,9 +13,11 @@ from plan_cutters.errors import CutterError
 
 Kind = Literal["drill", "centre drill", "reamer", "tap", "countersink", "counterbore"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-#: A drill makes a hole whose diameter differs by no more than this, mm, or this share of it, whichever is more; and a cone whose
-#: angle differs by no more than this, rad.
-_WIDE, _SHARE, _ANGLE = 0.05, 0.01, math.radians(3.0)
+#: A tool makes a diameter that differs by no more than this, mm, or this share of it, whichever is more; and a cone at the bottom
+#: whose angle differs by no more than this, rad, or a countersink by this.
+_WIDE, _SHARE, _ANGLE, _SINK = 0.05, 0.01, math.radians(3.0), math.radians(1.0)
+#: A reamer takes at least this off a diameter, mm, and at most that with this share of it.
+_ALLOWANCE, _MORE = 0.1, 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +41,9 @@ class Drill:
 
     @property
     def point_length(self) -> float:
-        """Height of its point, mm, or more: one that is not stated is taken for 90 deg."""
+        """Height of its point, mm, or more: one that is not stated is taken for 90 deg, and a counterbore has none."""
+        if self.kind == "counterbore":
+            return 0.0
         return self.body.radius / math.tan(0.5 * (0.5 * math.pi if self.point is None else self.point))
 
     @property
@@ -45,20 +51,22 @@ class Drill:
         """Length of its flutes without its point, mm."""
         return flute_length(self.body) - self.point_length
 
-    def depth_in(self, depth: float, *, through: bool) -> float:
-        """How deep its full width goes into a hole of a depth, mm: through one its point goes on until all of it is."""
-        return depth + (self.point_length if through else 0.0)
+    def wide_as(self, diameter: float) -> bool:
+        """Whether what it cuts has a diameter, mm."""
+        return abs(self.diameter - diameter) <= max(_WIDE, _SHARE * diameter)
 
-    def fits(self, diameter: float, bottom: str, cone: float | None) -> bool:
-        """Whether a drill leaves a hole of a diameter, mm, with its bottom; `cone`, rad, as of a hole.
+    def comes_before(self, reamer: "Drill") -> bool:
+        """Whether it leaves what a reamer takes off."""
+        return _ALLOWANCE - 1e-9 <= reamer.diameter - self.diameter <= _ALLOWANCE + _MORE * reamer.diameter
 
-        A floor, or a rounded corner, it would cut into with its point.
-        """
-        if self.kind != "drill" or abs(self.diameter - diameter) > max(_WIDE, _SHARE * diameter):
-            return False
-        if bottom == "open":
-            return True
-        return bottom == "cone" and cone is not None and self.point is not None and abs(self.point - cone) <= _ANGLE
+    def points_at(self, cone: float | None) -> bool:
+        """Whether its point leaves a cone at the bottom; its whole angle in rad."""
+        return cone is not None and self.point is not None and abs(self.point - cone) <= _ANGLE
+
+    def sinks(self, diameter: float, angle: float) -> bool:
+        """Whether it is a countersink that leaves one of a largest diameter, mm, and a whole angle, rad."""
+        wide = self.diameter >= diameter - max(_WIDE, _SHARE * diameter)
+        return self.kind == "countersink" and wide and self.point is not None and abs(self.point - angle) <= _SINK
 
     def in_hole(self, diameter: float) -> Cutter | None:
         """The body above its point, with flutes as wide as a hole, mm; None where there is no such tool."""
@@ -69,14 +77,67 @@ class Drill:
         except CutterError:
             return None
 
+    def as_cone(self, angle: float) -> Cutter | None:
+        """The body of a tool that cuts with a cone of a whole angle, rad; None where its flutes are shorter than that."""
+        radius, high, top = self.body.radius, self.body.radius / math.tan(0.5 * angle), flute_length(self.body)
+        if high > top + 1e-9:
+            return None
+        outline = [(0.0, 0.0), (radius, high), *([(radius, top)] if top > high + 1e-9 else [])]
+        try:
+            return replace(self.body, shape="form", outline=tuple(outline), flutes=None)
+        except CutterError:
+            return None
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drilled:
-    """A drill makes a hole in a setup."""
+    """A tool goes down along the axis of a hole in a setup."""
 
     drill: Drill
     setup: int  #: Counted from 0.
     axis: Floats  #: (3,) float: unit tool axis.
+    mouth: Floats  #: (3,) float: where it enters, mm: the middle of the mouth of the hole, of its countersink or counterbore.
+    depth: float  #: How deep its full width goes under that, mm; a cone's tip.
+    diameter: float  #: mm; that it leaves.
+    main: bool = False  #: It makes the narrowest cylinder of the hole, or the last of it.
+
+    @property
+    def tip(self) -> Floats:
+        """Where its tip stands at the deepest, (3,), mm."""
+        cone = self.drill.kind in CONES
+        return np.asarray(self.mouth - (self.depth + (0.0 if cone else self.drill.point_length)) * self.axis)
+
+
+#: Tools that cut with their point.
+CONES: tuple[Kind, ...] = ("centre drill", "countersink")
+
+
+#: Why tools of its size do not make something; empty: there is none of its size.
+Why = Literal["", "axis", "short", "in_the_way", "bottom"]
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """No tool makes this of a hole: its narrowest cylinder, or a countersink or counterbore."""
+
+    thing: Literal["hole", "countersink", "counterbore"]
+    diameter: float  #: mm
+    depth: float | None = None  #: mm; not of a countersink.
+    angle: float | None = None  #: rad; of a countersink.
+    why: Why = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bored:
+    """All that tools make of a hole, in their order; and what none of them makes."""
+
+    uses: tuple[Drilled, ...]
+    missing: tuple[Missing, ...]
+
+    @property
+    def by(self) -> Drill | None:
+        """The tool that makes its narrowest cylinder; None: none does."""
+        return next((use.drill for use in self.uses if use.main), None)
 
 
 #: The way of a drill at its feed, in depths of the hole: it begins over the mouth.

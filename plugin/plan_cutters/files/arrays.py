@@ -19,11 +19,11 @@ from plan_cutters_base import user_files as files
 
 #: Members that are looked at, and bytes of an array's header.
 _MEMBERS, _HEADER = 10_000, 4096
-#: Deflated bytes never unpack to more than so many each.
-_RATIO = 1040
+#: Packed bytes never unpack to more than so many each: of deflate, and of LZMA, which packs what repeats itself harder.
+_RATIO = {zipfile.ZIP_STORED: 1, zipfile.ZIP_DEFLATED: 1040, zipfile.ZIP_LZMA: 8000}
 #: Most bytes of memory that an archive may fill where the system does not tell how much there is.
 _UNPACKED = 8 << 30
-_WAYS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_WAYS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA)
 _FAULTS = (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, RuntimeError, NotImplementedError, LookupError,
            TypeError, SyntaxError, MemoryError, RecursionError, OverflowError)  # fmt: skip
 
@@ -110,7 +110,7 @@ class Archive:
             headers[name] = self._header(each, shown)
             if each.file_size != headers[name].start + headers[name].bytes:
                 raise self.fault(f"{shown} is not as long as its shape says")
-            if each.file_size > _RATIO * (each.compress_size + 1):
+            if each.file_size > _RATIO[each.compress_type] * (each.compress_size + 1):
                 raise self.fault(f"{shown} cannot unpack to the {each.file_size} bytes that its header states")
             total += each.file_size
         if total > _most():

@@ -20,7 +20,7 @@ def register() -> None:
     import cadquery
 
     def step(self: Any, **options: Any) -> "Result":
-        from plan_cutters.pipeline import plan
+        from plan_cutters.calls import plan
 
         faces = options.get("faces")
         if isinstance(faces, cadquery.Selector) or (isinstance(faces, str) and faces.strip().startswith(_SELECTOR)):

@@ -49,6 +49,8 @@ _AS_TOML = "write it as TOML (docs/tool_libraries.md)"
 _STRANGE = ("Radius", "TaperAngle")
 #: Of a tapered ball nose, the diameter where its cone ends.
 _TOP = "TaperDiameter"
+#: Of a slitting saw: how thick its blade is, and how high the cap of its screw stands out below that.
+_BLADE, _CAP = "BladeThickness", "CapHeight"
 #: Its drawing does not say from where it counts.
 _NECK = "NeckLength"
 #: What shapes are among mills; the others stay what they are called.
@@ -61,6 +63,7 @@ _SORTS = {
     "v-bit": "chamfer mill",
     "chamfer": "chamfer mill",
     "taperedballnose": "tapered mill",
+    "slittingsaw": "slot mill",
 }
 #: Folders in which a library's bits are looked for.
 _FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
@@ -224,6 +227,15 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
         if re.search("[1-9]", neck):
             tool.notes.append(f"{_NECK} {neck[:40]} is not used")
         _cone(tool, parameters.get(_ANGLE))
+        if tool.sort == "slot mill":
+            tool.take("LCF", parameters.get(_BLADE), _BLADE, length)
+            if "CornerRadius" not in parameters:
+                # Its drawing has none.
+                tool.take("RE", "0 mm", "CornerRadius", length)
+            if re.search("[1-9]", str(parameters.get(_CAP) or "")):
+                tool.doubts.append(
+                    f"{_CAP} {shown(parameters[_CAP])}: what is below its blade does not cut, and no tool is known so"
+                )
         if tool.sort == "tapered mill":
             _tapered_ball(tool, parameters, length)
     # FreeCAD writes 0 for a stick-out that nobody gave.

@@ -46,7 +46,7 @@ from plan_cutters.operations.plans import (
     small_pieces,
     worth_their_turn,
 )
-from plan_cutters.operations.probes import Probes, with_margin
+from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.task import Problems, Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
@@ -319,12 +319,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
-    rows = np.flatnonzero(reached)
-    compared = [{cutter: verdicts[cutter] for cutter in cutters} for verdicts in everywhere]
-    # The fewest are proved: there whatever is safe counts.
-    quick = options.process is None and options.operations == "fastest"
-    margin = with_margin(ready.samples, rows, compared, ready.setups, open_) if quick else None
-    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere, margin=margin)
+    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     machine = ready.conditions.machine
     paths = Paths(
@@ -334,7 +329,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     walls = Walls.of(probes, paths)
     where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
-    return Task(ready, cutters, where, tuple(everywhere), rows, probes, paths, indexing,
+    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls,
                 MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths), Seams.of(ready))  # fmt: skip
 

@@ -80,6 +80,8 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
 Rows = NDArray[np.int64]
 #: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
 _SMALL = 4.0
+#: A sample with less than the margin about neck, shank and holder counts so many times as long.
+_TIGHT = 2.0
 #: An orientation that adds less of the area is not worth its turn.
 MINOR_AREA = 0.001
 
@@ -115,9 +117,6 @@ def plan_with(
     area, edge = np.nan_to_num(samples.area), task.seams.edge
     serves, pace = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
-    # Where no step of the plan has room about its tool, one without is taken before another orientation is.
-    missed = rows[~serves[rows].any(axis=1)] if task.probes.margin is not None else rows[:0]
-    serves[missed] = task.probes.tight(missed, columns)
     pace[rows] = _paces(task, columns, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, pace[rows], serves[rows], area[rows], task.cutters, task.paths)
@@ -132,7 +131,10 @@ def plan_with(
     may = may if task.moved is None else may & ~task.moved[:, None]
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
-    label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
+    priced = np.where(may, cost, np.inf)
+    if own is None:
+        priced[rows] *= _tight(task, columns, serves[rows])
+    label = joined(labelled(priced, edge, border), joining, edge, area, _SMALL * overlap**2)
     operations, order = _fixed(task, columns, label, area, orbit, (0,) * len(columns) if own is None else own.step)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
@@ -177,6 +179,17 @@ def plan_with(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
         links, other, short, mark * task.seams.marks(number),
     )  # fmt: skip
+
+
+def _tight(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
+    """How much the time of samples (r, k) counts with columns that serve them: more with little room about the tool, where there
+    is a choice."""
+    result = np.ones(serves.shape)
+    open_ = np.flatnonzero(serves.sum(axis=1) > 1)
+    if len(open_):
+        spacious = task.probes.spacious(task.rows[open_], columns, serves[open_])
+        result[open_] = np.where(serves[open_] & ~spacious, _TIGHT, 1.0)
+    return result
 
 
 def _to_pieces(task: Task, region: Ints) -> float:

@@ -193,9 +193,7 @@ def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
     area[rows] = shared_area(ready.samples, task.rows, rows)
     samples, stands_for = replace(ready.samples, area=area), np.full(len(area), -1, np.int64)
     stands_for[task.rows] = rows[nearest(ready.samples, task.rows, rows)] if len(rows) else -1
-    probes = Probes(
-        samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred, task.everywhere, task.probes.margin
-    )
+    probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred, task.everywhere)
     walls = task.walls.of_probes(probes)
     return replace(
         task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls, seams=task.seams.among(stands_for),

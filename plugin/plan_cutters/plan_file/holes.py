@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from plan_cutters.domain.drill import Kind, Why
 from plan_cutters.plan_file.frozen import Frozen, Vector
 
 
@@ -21,10 +22,26 @@ class CounterboreEntry(Frozen):
     depth_mm: float = Field(description="from that mouth")
 
 
+class MissingEntry(Frozen):
+    """No tool of the libraries makes this of a hole."""
+
+    thing: Literal["hole", "countersink", "counterbore"] = Field(description="hole: its narrowest cylinder, with its bottom")
+    diameter_mm: float
+    depth_mm: float | None = Field(description="null of a countersink")
+    angle_deg: float | None = Field(description="the whole angle of a countersink, else null")
+    why: Why = Field(
+        description="empty: no tool has its size; of those that have it: axis: no setup has it; short: flutes are too short; "
+        "in_the_way: they do not stand free; bottom: no mill reaches its bottom, which is no cone"
+    )
+
+
 class HoleEntry(Frozen):
     """A hole for drills: a cylinder with more than half a turn of material around it, and what lies about its axis."""
 
-    faces: list[str] = Field(description="its faces that are narrower than `effective.drill_below_mm`: no mill has to reach them")
+    faces: list[str] = Field(
+        description="its faces that no mill has to reach: narrower than `effective.drill_below_mm`, without a bottom that is no "
+        "cone, and without a counterbore that is milled"
+    )
     diameter_mm: float = Field(description="of its narrowest cylinder")
     depth_mm: float = Field(description="from the mouth to the lower end of that cylinder, without the point of a drill")
     through: bool
@@ -35,21 +52,38 @@ class HoleEntry(Frozen):
     axis: Vector = Field(description="unit direction out of the mouth")
     place_mm: Vector = Field(description="point of the axis at the mouth")
     group: int = Field(description="from 1: holes of one group are equal but for their place")
-    drilled: bool = Field(description="a tool of the libraries makes it (`drilling`)")
-    tool: str | None = Field(description="that tool; null where none does")
+    drilled: bool = Field(
+        description="tools of the libraries make its narrowest cylinder (`process.drilling`), and its bottom, or a mill does"
+    )
+    tool: str | None = Field(description="the tool that makes that cylinder last; null where none does")
+    missing: list[MissingEntry] = Field(default=[], description="what of it no tool of the libraries makes")
 
 
-class DrillingEntry(Frozen):
-    """A step that drills equal holes with one tool in one orientation of a setup."""
+class StrokeEntry(Frozen):
+    """A tool goes down in a hole."""
 
-    tool: str
+    hole: int = Field(description="its place in `holes`, from 0")
+    mouth_mm: Vector = Field(description="where it enters: the middle of the mouth of the hole, countersink or counterbore")
+    tip_mm: Vector = Field(
+        description="where its tip stands at the deepest; a point of an angle that is not stated is one of 90 deg"
+    )
+
+
+class DrillingStep(Frozen):
+    """A step of a process that does the same in equal holes, with one tool for holes in one orientation of a setup."""
+
+    kind: Kind = Field(description="of the tool")
+    tool: str = Field(description="id")
     name: str = Field(description="of that tool in its library; empty where it has none")
-    group: int = Field(description="of the holes")
-    holes: int = Field(description="how many")
+    holes: list[StrokeEntry]
     setup: int = Field(description="0 is the first")
     axis: Vector = Field(description="unit tool axis")
     angles_deg: dict[str, float] | None = Field(description="of the rotary axes; null where the machine has none that are known")
-    depth_mm: float = Field(description="of each hole, with what the point of the drill goes further through it")
-    seconds: float | None = Field(
-        description="for each hole 1.3 times the depth at the feed, and a link; null where no feed is known"
+    diameter_mm: float = Field(description="that it leaves")
+    depth_mm: float = Field(
+        description="of its full width under each mouth, with what the point goes further through a hole; of a countersink or "
+        "centre drill that of the tip"
     )
+    seconds: float | None = Field(description="for all holes 1.3 times the depth at the feed; null where no feed is known")
+    link_seconds: float = Field(description="from hole to hole: a link for each")
+    index_seconds: float = Field(description="of the turn to its orientation, once for the tool; 0 without operations")

@@ -12,7 +12,7 @@ from pydantic import Field
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
-from plan_cutters.plan_file.holes import DrillingEntry, HoleEntry
+from plan_cutters.plan_file.holes import HoleEntry
 from plan_cutters.plan_file.operations import OperationsEntry, ProcessEntry, SplitEntry
 from plan_cutters.plan_file.part_info import (
     CarrierEntry,
@@ -334,6 +334,7 @@ class TextEntry(Frozen):
 class FileEntry(Frozen):
     name: str
     sha256: str
+    size_bytes: int | None = Field(default=None, description="null in older files")
 
 
 class Run(Frozen):
@@ -397,11 +398,6 @@ class Plan(Frozen):
     holes: list[HoleEntry] = Field(
         default=[],
         description="holes for drills: those narrower than `effective.drill_below_mm`, with a target face among theirs",
-    )
-    drilling: list[DrillingEntry] = Field(
-        default=[],
-        exclude_if=lambda steps: not steps,
-        description="steps that drill `holes`, with tools of the libraries; not written where there are none",
     )
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")

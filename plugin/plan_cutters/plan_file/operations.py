@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
+from plan_cutters.plan_file.holes import DrillingStep
 
 
 class SplitEntry(Frozen):
@@ -300,7 +301,7 @@ class OperationsEntry(Frozen):
 UNJUDGED_CAUSE, NOT_PLANNED, SHORT_STEP = "unjudged", "not_planned", "short_step"
 #: Why a step of the planner's own leaves something: another orientation of its cutter would reach it.
 OTHER_ORIENTATION = "orientation"
-#: Neck, shank and holder keep so far from everything where any posture does, mm.
+#: Neck, shank and holder keep so far from everything where a step of the plan has that at no twice the time, mm.
 MARGIN = 1.0
 
 
@@ -457,6 +458,12 @@ class ProcessEntry(Frozen):
     steps: list[ProcessStep] = Field(
         description="the planner's own first, then by setup; in a setup by cutter, the largest first, and with a cutter floors, "
         "walls, other fixed orientations, simultaneous motion"
+    )
+    drilling: list[DrillingStep] = Field(
+        default=[],
+        exclude_if=lambda steps: not steps,
+        description="steps that drill `holes` with tools of the libraries, by setup; their numbers follow those of `steps`, "
+        "and their seconds are in those of the process; not written where there are none",
     )
     setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
     stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")

@@ -4,6 +4,7 @@ import base64
 import csv
 import io
 import json
+import math
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.assembly import part_words
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
@@ -23,11 +25,32 @@ from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
+from plan_cutters.report.question import question_of
 from plan_cutters.scene.conditions import rotations_of
+
+#: Parts of unit vectors are written to so many binary places at this tolerance, mm, and to more at smaller ones: rounding moves
+#: the far end of a tool of 180 mm by less than 2 % of it.
+_PLACES, _AT, _MOST_PLACES = 20, 0.01, 24
+#: Positions of the machine are written of all cutters where there are no more than so many, else of those of the answer.
+_MACHINE_CUTTERS = 8
+#: Arrays of more bytes than this in all are packed harder: three times the time for a third less.
+_LARGE = 20 << 20
+
+
+def rounded(vector: Floats, tolerance: float) -> NDArray[np.float32]:
+    """Unit vectors (n, 3) as files have them, for postures that hold to a tolerance, mm.
+
+    >>> rounded(np.array([[0.6, 0.8, np.nan]]), 0.01).tolist()
+    [[0.6000003814697266, 0.8000001907348633, nan]]
+    """
+    places = min(_MOST_PLACES, _PLACES + max(0, math.ceil(math.log2(_AT / tolerance))))
+    return np.ldexp(np.rint(np.ldexp(vector, places)), -places).astype(np.float32)
 
 
 def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
+
+    Postures are `rounded`, in 32 bits: with many cutters they are nearly all of the file.
 
     `shift_ID`, where a flank or a flat that is not quite square serves, goes from the samples to where the tool is put down.
 
@@ -40,8 +63,9 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
     were requested, also the largest radii with `flat` and `ball` as suffix.
     """
-    samples = result.samples
-    arrays = {
+    samples, tolerance = result.samples, result.plan.effective.tolerance_mm
+    machined = _machined(result)
+    arrays: dict[str, Any] = {
         "point": samples.point,
         "normal": samples.normal,
         "direction_max": samples.direction_max,
@@ -52,16 +76,18 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         "surface_class": result.surface_class,
         "inside_bodies": result.inside_bodies,
     }
+    if len(question := question_of(result)):
+        arrays["question"] = question
     if result.exempt is not None:
         arrays["exempt"] = result.exempt
     for name, verdicts in result.reaches.items():
         arrays[f"verdict_{name}"] = verdicts.verdict
-        arrays[f"axis_{name}"] = verdicts.axis
-        arrays[f"lean_{name}"] = verdicts.tilt_direction
+        arrays[f"axis_{name}"] = rounded(verdicts.axis, tolerance)
+        arrays[f"lean_{name}"] = rounded(verdicts.tilt_direction, tolerance)
         arrays[f"reason_{name}"] = verdicts.reason
         if verdicts.shift.any():
-            arrays[f"shift_{name}"] = verdicts.shift
-        if result.kinematics is not None:
+            arrays[f"shift_{name}"] = verdicts.shift.astype(np.float32)
+        if result.kinematics is not None and name in machined:
             angles, taken = result.rotary(name)
             if name in result.travels:
                 arrays[f"travel_{name}"] = result.travels[name].position
@@ -80,6 +106,21 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     write_arrays(arrays, path)
 
 
+def state(result: Judged) -> tuple[Any, ...]:
+    """All that samples of a part whose verdicts stand may still differ by."""
+    return len(result.answers.radius_maps), sorted(_machined(result))
+
+
+def _machined(result: Judged) -> set[str]:
+    """Ids of the cutters whose positions of the machine are written: of many those of all steps, and the one shown."""
+    plan = result.plan
+    if len(result.reaches) <= _MACHINE_CUTTERS:
+        return set(result.reaches)
+    steps = plan.process.steps if plan.process is not None else []
+    operations = [each for one in (plan.operations.plans if plan.operations else []) for each in one.operations]
+    return {result.shown, *(each.cutter for each in steps), *(each.cutter for each in operations)}
+
+
 def write_postures(result: Judged, _split: object, path: Path) -> None:
     """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown.
 
@@ -96,14 +137,13 @@ def write_postures(result: Judged, _split: object, path: Path) -> None:
 
 
 def write_arrays(arrays: dict[str, Any], path: Path) -> None:
+    way = zipfile.ZIP_LZMA if sum(np.asarray(array).nbytes for array in arrays.values()) > _LARGE else zipfile.ZIP_DEFLATED
     # numpy's own writer stamps the time: two runs would differ.
     with zipfile.ZipFile(path, "w") as archive:
         for key, array in arrays.items():
             buffer = io.BytesIO()
             np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
-            archive.writestr(
-                zipfile.ZipInfo(f"{key}.npy", (1980, 1, 1, 0, 0, 0)), buffer.getvalue(), zipfile.ZIP_DEFLATED, compresslevel=1
-            )
+            archive.writestr(zipfile.ZipInfo(f"{key}.npy", (1980, 1, 1, 0, 0, 0)), buffer.getvalue(), way, compresslevel=1)
 
 
 def write_operations(result: Judged, _split: object, path: Path) -> None:

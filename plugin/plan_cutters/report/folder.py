@@ -95,7 +95,7 @@ class Making:
         write = getattr(import_module(f"plan_cutters.report.{writer.module}"), writer.function)
         schema = {"schema": self._schema} if path.suffix == ".step" else {}
         write(self._result, split, path, **schema, **(writer.options or {}))
-        return FileEntry(name=path.name, sha256=sha256(path))
+        return FileEntry(name=path.name, sha256=sha256(path), size_bytes=path.stat().st_size)
 
     def files(self, formats: Sequence[str]) -> Generator[tuple[str, Callable[[], "FileEntry"]]]:
         """Formats, and what to call for the file of each, which raises what its making does.
@@ -187,6 +187,8 @@ class Staging:
         self.out = out
         #: Whether a plan of this run is in the output already.
         self.stands = False
+        #: What the samples that are in the output already differ by from those of a later stage (`arrays.state`), and their file.
+        self.samples: tuple[Any, FileEntry] | None = None
         self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
         named(self.folder)
         try:
@@ -257,16 +259,12 @@ def write_all(
     read_formats(",".join(formats))
     clock = clock or Clock.after(result.plan.run)
     with clock.stage("start", shown=False):
-        from plan_cutters.report.models import SCHEMAS, with_splits
+        from plan_cutters.report.models import SCHEMAS
         from plan_cutters.report.to_json import PENDING
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    plans = [str(each.name) for each in result.plan.operations.plans] if result.plan.operations else []
-    # The first plan's models have no name of a plan.
-    about = ["operations", *plans[1:]] if plans else []
-    wanted = [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
-    later = [name for name in LATER if name in wanted]
+    later = _later(result.plan, formats)
     with staging or Staging(out) as staging:
         making = Making(
             result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None, alone=hurried
@@ -274,49 +272,89 @@ def write_all(
         stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
         steps = result.plan.process is not None and bool(result.plan.process.steps)
-        arrays = [*(["npz"] if "npz" in formats else []), *_setup_files(result)]
+        stands = "npz" in formats and _has_samples(staging, result)
+        arrays = [*(["npz"] if "npz" in formats and not stands else []), *_setup_files(result)]
         arrays += ["process"] if steps and not _edited(result, out) else []
-        arrays += [*(["postures"] if result.maps else []), *(["operations", "operations_csv"] if plans else [])]
+        arrays += [*(["postures"] if result.maps else []), *(["operations", "operations_csv"] if result.plan.operations else [])]
         try:
             for name in arrays:
                 with clock.stage(name, shown=False):
                     written.files[name] = making.file(name)
+            if stands and staging.samples is not None:
+                written.files["npz"] = staging.samples[1]
         except OSError as error:
             raise _unwritable(out, error) from None
         written.put()
         # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
         if not staging.stands:
             _clear(out, result)
-        written.publish(written.files)
+        written.publish(arrays)
         staging.stands = True
         if listener:
             with clock.stage("show", shown=False):
                 listener.safe(written.plan)
         if later:
             staging.models_follow()
-        split = 0
-        with closing(making.files(later)) as each:
-            for name, make in each:
+        _write_later(making, written, later, listener)
+    return written.plan
+
+
+def _later(plan: "Plan", formats: Sequence[str]) -> list[str]:
+    """What follows the plan and the arrays where some formats are requested; the first plan's models have no name of a plan."""
+    plans = [str(each.name) for each in plan.operations.plans] if plan.operations else []
+    about = ["operations", *plans[1:]] if plans else []
+    wanted = [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
+    return [name for name in LATER if name in wanted]
+
+
+def _write_later(making: Making, written: "_Written", later: Sequence[str], listener: "ProgressListener | None") -> None:
+    """Make one file after the other; each appears with a plan that has it, or says why it is not there."""
+    split = 0
+    with closing(making.files(later)) as each:
+        for name, make in each:
+            if listener:
+                listener.begins(name)
+            try:
+                with written.clock.stage(name, shown=False):
+                    written.files[name] = make()
+            except Exception as error:
+                written.missing[name] = _cause(error)
                 if listener:
-                    listener.begins(name)
-                try:
-                    with clock.stage(name, shown=False):
-                        written.files[name] = make()
-                except Exception as error:
-                    written.missing[name] = _cause(error)
-                    if listener:
-                        listener.failed(name, error)
-                else:
-                    del written.missing[name]
-                if len(making.splits) > split:
-                    split, written.plan = len(making.splits), with_splits(written.plan, making.splits)
-                written.put()
-                written.publish([name])
+                    listener.failed(name, error)
+            else:
+                written.missing.pop(name, None)
+            if len(making.splits) > split:
+                from plan_cutters.report.models import with_splits
+
+                split, written.plan = len(making.splits), with_splits(written.plan, making.splits)
+            written.put()
+            written.publish([name])
+
+
+def missing_files(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
+    """Formats of a plan in a folder, page and models, whose file is not there as the plan lists it."""
+    files = {name: out / entry.name for name, entry in plan.files.items()}
+    return [
+        name for name in _later(plan, formats)
+        if name not in files or not files[name].is_file() or sha256(files[name]) != plan.files[name].sha256
+    ]  # fmt: skip
+
+
+def write_missing(
+    result: Judged, out: Path, names: Sequence[str], staging: Staging, clock: "Clock", listener: ProgressListener | None = None
+) -> "Plan":
+    """Write page and models of a plan into its folder, which has all else; the plan as written. As `write_all`."""
+    making = Making(result, staging.folder, "ap242", clock, listener.begins if listener else lambda what: None)
+    plan = result.plan
+    files = {name: entry for name, entry in plan.files.items() if name not in names}
+    written = _Written(plan, staging, clock, out, dict(plan.not_written), files, as_json=True)
+    staging.models_follow()
+    _write_later(making, written, names, listener)
     return written.plan
 
 
 def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, clock: "Clock") -> bool:
-    """Let the plan of a run that goes on appear in the output, whole, with its setups alone; whether it is written at all.
+    """Let the plan of a run that goes on appear in the output, whole, with its samples and setups; whether it is written at all.
 
     The plan says of the other formats that the run ended before they were written: that is true whenever it ends. A PlanError
     where the folder cannot be written to.
@@ -329,12 +367,27 @@ def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, c
     written = _Written(result.plan, staging, clock, staging.out, others, as_json=True)
     making = Making(result, staging.folder, "", clock, lambda what: None)
     written.files |= {name: making.file(name) for name in _setup_files(result)}
+    news = [] if "npz" not in formats or _has_samples(staging, result) else ["npz"]
+    if news:
+        from plan_cutters.report.arrays import state
+
+        staging.samples = state(result), making.file("npz")
+    if staging.samples is not None:
+        written.files["npz"] = staging.samples[1]
+        del written.missing["npz"]
     written.put()
     if not staging.stands:
         _clear(staging.out, result)
-    written.publish(written.files)
+    written.publish([*_setup_files(result), *news])
     staging.stands = True
     return True
+
+
+def _has_samples(staging: Staging, result: Judged) -> bool:
+    """Whether the samples in the output are those of a result, though it is one of a later stage."""
+    from plan_cutters.report.arrays import state
+
+    return staging.samples is not None and staging.samples[0] == state(result)
 
 
 def _setup_files(result: Judged) -> list[str]:

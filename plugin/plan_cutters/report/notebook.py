@@ -60,8 +60,8 @@ def text_of(plan: Plan) -> str:
 
 
 def chosen_size() -> Size:
-    """The size of cards that end a cell: `PLAN_CUTTERS_CARD=small`, else full."""
-    return "small" if os.environ.get(VARIABLE) == "small" else "full"
+    """The size of cards that end a cell: small, which git can hold, unless `PLAN_CUTTERS_CARD=full`."""
+    return "full" if os.environ.get(VARIABLE) == "full" else "small"
 
 
 @reporting(lambda result: result.plan.effective.units)

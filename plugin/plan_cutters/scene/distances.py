@@ -119,19 +119,6 @@ def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts,
     return float(steps[free]) if free >= 0 else 0.0
 
 
-def clear_by(
-    distance: float, samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions, rows: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """At which of some samples (m,) neck, shank and holder are clear by a distance, mm, in the posture found; of a tool without
-    them, wherever there is one."""
-    clear = verdicts.reached[rows]
-    if cutter.stages and clear.any():
-        triangle, which = np.full(len(samples), -1, np.int32), np.full(len(samples), -1, np.int32)
-        _probed(samples, verdicts, rows[clear], cutter, distance, conditions, triangle, which)
-        clear[clear] = triangle[rows[clear]] == -1
-    return clear
-
-
 def _unknown(cutter: Cutter, conditions: Conditions) -> bool:
     """Whether nothing can be said: an obstacle is only guessed, or nothing of the tool is above its working height."""
     return conditions.surroundings.doubtful or not grown(cutter, 0.0).piece.shape[1]

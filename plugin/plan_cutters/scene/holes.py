@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.part.holes import Hole, holes
+from plan_cutters.domain.drill import Drill
+from plan_cutters.library.raw_tool import Library
 from plan_cutters.scene.preparation import Prepared
 
 
@@ -21,16 +23,39 @@ def with_holes(ready: Prepared) -> Prepared:
     every = ready.cache.cached("holes", key, lambda: holes(scene.part, scene.orientation, near.triangles, scene.ignored))
     # What the planner's own steps name is milled by them.
     named = () if ready.options.process is None else ready.options.process.faces_named
-    narrow = [for_drills(hole, below) for hole in every if hole.diameter < below]
+    drills, least = made_of(ready.options.libraries), min((2.0 * each.radius for each in ready.cutters), default=np.inf)
+    narrow = [for_drills(hole, below, drills, least) for hole in every if hole.diameter < below and not _shallow(hole)]
     mine = tuple(hole for hole in narrow if targets.intersection(hole.faces) and not {*named}.intersection(hole.faces))
     samples = ready.samples
     within = np.isin(samples.face, [n for hole in mine for n in hole.faces]) & (samples.unjudged < 0) & ~ready.inside_bodies
     return replace(ready, holes=mine, drilled=within) if mine else ready
 
 
-def for_drills(hole: Hole, below: float) -> Hole:
-    """A hole with those of its faces alone that are narrower than a diameter, mm."""
-    taken = [(number, wide) for number, wide in zip(hole.faces, hole.within, strict=True) if wide < below]
+def made_of(libraries: Collection[Library]) -> list[Drill]:
+    """The tools for holes of all libraries, each once, in their order."""
+    return [*{each.id: each for library in libraries for each in library.drills}.values()]
+
+
+#: Height of the point of a drill of 118 deg, of its diameter: over a floor it makes no wall of a hole that is less deep.
+_POINT = 0.5 / np.tan(np.deg2rad(59.0))
+
+
+def _shallow(hole: Hole) -> bool:
+    return hole.bottom in ("flat", "round") and hole.depth <= _POINT * hole.diameter
+
+
+def for_drills(hole: Hole, below: float, drills: Collection[Drill] = (), least: float = np.inf) -> Hole:
+    """A hole with those of its faces alone that no mill has to reach: those narrower than `below`, mm.
+
+    A bottom that is no cone is milled. So is a counterbore with a floor that is no cone, if a mill is as narrow and none of the
+    `drills` is a counterbore of its size; `least`: the diameter of the narrowest mill, mm.
+    """
+    milled = {*(hole.floor if hole.bottom in ("flat", "round") else ())}
+    for step in hole.steps:
+        fits = step.floor == "flat" and any(each.kind == "counterbore" and each.wide_as(step.diameter) for each in drills)
+        if step.kind == "counterbore" and step.floor != "cone" and least <= step.diameter and not fits:
+            milled |= {*step.faces}
+    taken = [(n, wide) for n, wide in zip(hole.faces, hole.within, strict=True) if wide < below and n not in milled]
     return replace(hole, faces=tuple(n for n, _ in taken), within=tuple(wide for _, wide in taken))
 
 

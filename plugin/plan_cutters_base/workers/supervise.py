@@ -89,8 +89,10 @@ class Display(Protocol):
 
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
 GRACE = 0.25
-#: Seconds that it has where verdicts stand, to write what there is of a plan, its page, samples and models.
-WRITING = 9.0
+#: Seconds that it has where verdicts stand, to begin to write what there is of a plan; and, once it writes, until page, samples
+#: and models are done.
+BEGINNING, WRITING = 9.0, 60.0
+_WRITES = ("files", "write")
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
            "write": 5.0}  # fmt: skip
@@ -113,7 +115,8 @@ def supervise(
     """Run a command in a child; its exit code.
 
     An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing; where verdicts stand, within
-    WRITING, in which it writes them, and a second one ends it at once. So does the end of `timeout`.
+    WRITING, in which it writes them, and within BEGINNING where it does not; a second one ends it at once. So does the end of
+    `timeout`.
 
     `words`, `name`: its arguments, and the command's name as `entry.begin` takes it.
     `read_timeout`: seconds that reading one part may take; the limits of later stages follow from it.
@@ -147,7 +150,7 @@ def supervise(
             ask(child)
 
     def waited(*_: object) -> None:
-        rest = ending + WRITING - time.monotonic()
+        rest = ending + (WRITING if watch.stage in _WRITES else BEGINNING) - time.monotonic()
         if watch.stands and rest > 0.0:
             signal.setitimer(signal.ITIMER_REAL, rest)
         elif child is not None:

@@ -1,14 +1,18 @@
 """A plan says which holes are for drills, and which drills make them."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 
+from plan_cutters.domain.drill import CONES, Why
 from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
-from plan_cutters.plan_file.holes import HoleEntry
+from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry
 from plan_cutters.plan_file.model import Plan
 
 #: Groups that are described; where there are more, their diameters are named: so many of these.
 _GROUPS, _DIAMETERS = 3, 10
+#: A length that is more than a whole one by less is that.
+_WHOLE = 1e-6
 
 
 def holes(plan: Plan) -> Iterator[str]:
@@ -28,20 +32,43 @@ def holes(plan: Plan) -> Iterator[str]:
     number = len(plan.holes)
     yield f"{count(number, 'hole')}{much} {'is for a drill' if number == 1 else 'are for drills'}: {what}."
     if any(library.drills for library in plan.libraries):
-        yield _made(plan, ordered)
+        yield _made(plan)
 
 
-def _made(plan: Plan, groups: list[list[HoleEntry]]) -> str:
-    """Say how many of them tools of the libraries drill, in which time, and which usual drills are missing."""
+def _made(plan: Plan) -> str:
+    """Say how many of them tools of the libraries make, in which time, and what is missing, by its usual size."""
     made = sum(each.drilled for each in plan.holes)
-    times = [step.seconds for step in plan.drilling]
+    steps = [] if plan.process is None else plan.process.drilling
+    times = [None if step.seconds is None else step.seconds + step.link_seconds for step in steps]
     took = f", {duration(math.fsum(each or 0.0 for each in times))}" if times and None not in times else ""
-    setups = sorted({step.setup + 1 for step in plan.drilling})
+    setups = sorted({step.setup + 1 for step in steps})
     where = f" in setup{'s' if len(setups) > 1 else ''} {joined([*map(str, setups)])}" if setups and len(plan.setups) > 1 else ""
     text = f"Drills of the set make {'all' if made == len(plan.holes) else made if made else 'none'} of them{where}{took}"
-    open_groups = [group[0] for group in groups if not all(each.drilled for each in group)]
-    missing = [f"{size(each.diameter_mm)} x {math.ceil(each.depth_mm)}" for each in open_groups]
-    return f"{text}; none makes {listed([*dict.fromkeys(missing)], _DIAMETERS)}." if missing else f"{text}."
+    missing = Counter(missing_words(thing) for each in plan.holes for thing in each.missing)
+    named = [f"{number} x {words}" if number > 1 else words for words, number in missing.items()]
+    return f"{text}; no tool makes {listed(named, _DIAMETERS)}." if missing else f"{text}."
+
+
+#: Why tools of its size do not make something.
+_WHY: dict[Why, str] = {
+    "": "", "axis": "no setup has its axis", "short": "flutes are too short", "in_the_way": "something is in the way",
+    "bottom": "no mill reaches its bottom",
+}  # fmt: skip
+
+
+def missing_words(missing: MissingEntry) -> str:
+    """Name the tool that is missing by its usual size, and say why others of it do not do."""
+    deep = "" if missing.depth_mm is None else f" x {math.ceil(reported(missing.depth_mm) - _WHOLE)}"
+    angle = "" if missing.angle_deg is None else f" x {missing.angle_deg:.4g} deg"
+    what = "" if missing.thing == "hole" else f"{missing.thing} "
+    why = f" ({_WHY[missing.why]})" if missing.why else ""
+    return f"{what}{size(missing.diameter_mm)}{deep if missing.thing == 'hole' else ''}{angle}{why}"
+
+
+def drilling_words(step: DrillingStep) -> str:
+    """The tool of a step that drills, with what it leaves."""
+    deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
+    return f"{step.kind} {size(step.diameter_mm)}{deep}"
 
 
 def group_words(group: list[HoleEntry]) -> str:

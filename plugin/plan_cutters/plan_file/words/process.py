@@ -10,6 +10,7 @@ from typing import NamedTuple
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import (
     MARGIN,
@@ -26,10 +27,13 @@ from plan_cutters.plan_file.operations import (
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
+from plan_cutters.plan_file.words.holes import drilling_words
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.operations import angles_text
 
+#: Rows of mills and drills that are listed together, and so many of drills in any case.
+_ROWS, _DRILLED = 10, 4
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
 #: Shares are sums of areas: a gain that is less than it should be by this is that.
@@ -53,8 +57,8 @@ _MINOR = 0.001
 class StepRow(NamedTuple):
     """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
 
-    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, and `at` its
-    setup, counted from 0.
+    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, `at` its
+    setup, counted from 0, and `holes` how many it drills, 0 for a mill.
     """
 
     number: str
@@ -67,6 +71,7 @@ class StepRow(NamedTuple):
     alone: str
     operation: str
     at: int
+    holes: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +94,13 @@ class ProcessStory:
     def table(self) -> list[str]:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
         each setup."""
-        rows = [(row.number, *row[2:6]) for row in self.rows]
+        drills = sorted((row for row in self.rows if row.holes), key=lambda row: -row.holes)
+        unshown = drills[max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
+        shown = [row for row in self.rows if row not in unshown]
+        rows = [(row.number, *row[2:6]) for row in shown]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
         stands, lines, setup = dict(enumerate(self.stands)), list[str](), None if self.rows else -1
-        for row, texts in zip(self.rows, rows, strict=True):
+        for row, texts in zip(shown, rows, strict=True):
             if row.at != setup:
                 setup = row.at
                 lines += wrapped([stands.pop(setup, f"Setup {setup + 1} again:")], 2)
@@ -104,6 +112,8 @@ class ProcessStory:
             line = "  " + "  ".join(cells)
             lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
         idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
+        if unshown:
+            lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
         return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
 
 
@@ -112,12 +122,16 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     process = plan.process
     if process is None:
         return None
-    setups = len({step.setup for step in process.steps}) > 1
+    setups = len({*(step.setup for step in process.steps), *(step.setup for step in process.drilling)}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: most if len(steps) > most + 1 else None]
-    rows = tuple(_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest))
+    rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
+    # Steps that drill follow those of mills in their setup.
+    for k, bores in enumerate(process.drilling, len(steps) + 1):
+        after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
+        rows.insert(after, _drilling_row(k, bores, setups=setups, fixed=fixed or not steps))
     more = ""
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
@@ -125,10 +139,10 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
     least, step = min(known, default=(0.0, 0))
     clearance = f"Least clearance: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}." if known else ""
-    if known and least < MARGIN and steps[step].mode == "fixed" and steps[step].own is None:
-        clearance = f"{clearance[:-1]}, where no orientation of the plan has {mm(MARGIN)}."
+    if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
+        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: --holder-clearance {MARGIN:g}."
     return ProcessStory(
-        rows=rows,
+        rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
         roughing=roughing(process),
         more=more,
@@ -185,6 +199,22 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
     )
 
 
+def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool) -> StepRow:
+    return StepRow(
+        number=str(number),
+        setup=f"setup {step.setup + 1}" if setups else "",
+        turned=angles_text(step.angles_deg or {}) if fixed else "",
+        cutter=drilling_words(step),
+        share=count(len(step.holes), "hole"),
+        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
+        faces=[],
+        alone="",
+        operation="",
+        at=step.setup,
+        holes=len(step.holes),
+    )
+
+
 def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     """Say which way is up, what holds the part, and what it stands on."""
     along = [f"{sign}{name}" for name, each in zip("XYZ", setup.up, strict=True) for sign in "+-" if each == float(f"{sign}1")]
@@ -201,7 +231,9 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}"
     if on == "stock" and plan.process is not None and plan.process.stock is not None:
-        how = f"stock of {size(plan.process.stock.size_mm)} {how}"
+        stock = plan.process.stock
+        bar = f"a bar {mm(stock.size_mm[0])} wide and {mm(stock.size_mm[2])} long"
+        how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
 

@@ -1,0 +1,257 @@
+"""Steps that drill holes: what they must say, and whether their tools stand free where they cut.
+
+A tool for holes is put down as wide as the hole that it leaves, from above its point up; one that cuts with a cone as this.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.findings import Between, Exactly, Finding, Loose
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, held
+from plan_cutters_check.surface import FREE as STANDS_FREE
+from plan_cutters_check.surface import MET, OPEN, Clock, met
+from plan_cutters_check.tool import Tool, tool_of
+
+#: Tools that cut with a cone; the way of a tool at its feed in depths of the hole.
+_CONES, _WAY = ("centre drill", "countersink"), 1.3
+#: How much wider or narrower than its hole a tool may be, mm, and as a share; by how much the angle of its cone may be off, deg.
+_WIDE, _SHARE, _POINT, _SINK = 0.05, 0.01, 3.0, 1.0
+#: What a reamer takes off: at least, mm, and at most besides as a share of its diameter.
+_ALLOWANCE, _MORE = 0.1, 0.03
+#: Lengths that are rounded when they are written, mm; parts of unit axes.
+_ROUNDED, _AXIS = 2e-5, 1e-5
+#: A tool that goes on by so much, mm, or so many tolerances, is too deep where it reaches a bottom.
+_ON, _TIMES = 0.05, 4.0
+
+
+def entries(question: Question) -> list[Any]:
+    """Reckon `process.drilling`, as far as it follows from the libraries, the holes and the command."""
+    document = question.document
+    written: Sequence[Mapping[str, Any]] = document["process"].get("drilling", [])
+    timed, seen, steps = _timed(document), set[tuple[Any, ...]](), list[Any]()
+    for step in written:
+        drill = question.drills.get(step["tool"])
+        if drill is None:
+            steps.append("a step with a tool of the libraries")
+            continue
+        number, deep, feed = len(step["holes"]), float(step["depth_mm"]), drill.feed
+        feed = document["effective"]["feed_mm_min"] if feed is None else feed
+        turn = step["setup"], step["tool"], tuple(np.round(step["axis"], 5).tolist())
+        first, rates = turn not in seen, question.machine.rates
+        seen.add(turn)
+        constant = document["operations"]["assumed"]["index_s"]
+        index = 0.0 if not first or not timed else Loose(0.0, math.inf) if rates or not question.machine.names else constant
+        first_way = np.array(step["holes"][0]["mouth_mm"], float) - np.array(step["holes"][0]["tip_mm"], float)
+        tip = (np.array([each["mouth_mm"] for each in step["holes"]]) - (deep + drill.beyond) * np.array(step["axis"])).tolist()
+        steps.append({
+            "kind": drill.kind, "tool": drill.sizes.id, "name": drill.name, "setup": step["setup"],
+            "holes": [
+                {"hole": each["hole"], "mouth_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in _on_axis(document, each)],
+                 "tip_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in point]}
+                for each, point in zip(step["holes"], tip, strict=True)
+            ],
+            **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
+            "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
+            "seconds": None if feed is None else number * _WAY * deep / feed * 60.0,
+            "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
+        })  # fmt: skip
+    return steps
+
+
+def _timed(document: Mapping[str, Any]) -> bool:
+    return any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
+
+
+def _on_axis(document: Mapping[str, Any], stroke: Mapping[str, Any]) -> list[float]:
+    """Where the mouth of a stroke would be on the axis of its hole."""
+    hole = document["holes"][stroke["hole"]]
+    place, axis, mouth = (np.array(each, float) for each in (hole["place_mm"], hole["axis"], stroke["mouth_mm"]))
+    on: list[float] = (place + ((mouth - place) @ axis) * axis).tolist()
+    return on
+
+
+def _diameter(drill: DrillSizes, wide: float) -> Any:
+    """The diameter that a tool leaves: its own, of a cone any that is no wider."""
+    own = 2.0 * drill.sizes.radius
+    off = max(_WIDE, _SHARE * wide)
+    return Between(0.0, own + off) if drill.kind in _CONES else Between(own - off, own + off)
+
+
+def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
+    """The axis of the angles of a step; where it has none, one that the machine holds."""
+    machine, setup = question.machine, question.setups[step["setup"]]
+    if step["angles_deg"] is None:
+        able = bool(held(machine, setup, np.array([step["axis"]], float))[0])
+        return {"angles_deg": None, "axis": step["axis"] if able and machine.names == FREE else "an axis that the machine holds"}
+    degrees = np.array([[float(step["angles_deg"][name]) for name in machine.names]], float).reshape(1, -1)
+    if not allowed(machine, setup, degrees)[0]:
+        return {"angles_deg": "angles within the limits"}
+    axis = axes_of(machine, setup, degrees)[0].tolist()
+    return {"angles_deg": Exactly(step["angles_deg"]), "axis": [Between(x - _AXIS, x + _AXIS) for x in axis]}
+
+
+def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:
+    """The seconds of a process whose `steps` of mills have those of the entry, with those that drill."""
+    drilling, document = entries(question), question.document
+    known = [step for step in drilling if isinstance(step, dict)]
+    if not known or process["seconds"] is None:
+        return {"drilling": drilling} if drilling else {}
+    names = ("cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
+    if any(step["seconds"] is None for step in known):
+        return {"drilling": drilling, "seconds": None, **dict.fromkeys(names)}
+    assumed, written = document["operations"]["assumed"], document["process"]
+    turns = [step["index_seconds"] for step in known]
+    loose = any(isinstance(each, Loose) for each in turns)
+    tools = len({step["tool"] for step in known}) + len({step["cutter"] for step in steps if step["operation"]})
+    made = {
+        "cutting_seconds": process["cutting_seconds"] + sum(step["seconds"] for step in known),
+        "link_seconds": process["link_seconds"] + sum(step["link_seconds"] for step in known),
+        "index_seconds": process["index_seconds"] + (
+            sum(float(step["index_seconds"]) for step in written["drilling"]) if loose else sum(turns)
+        ),
+        "change_seconds": assumed["change_s"] * (tools - 1),
+        "setup_seconds": assumed["setup_s"] * (len({step["setup"] for step in (*known, *steps)}) - 1),
+    }  # fmt: skip
+    return {"drilling": drilling, "seconds": sum(made.values()), **made}
+
+
+def hole(document: Mapping[str, Any], number: int) -> dict[str, Any]:
+    """Reckon which tool `holes` must name for one, by the steps that drill it."""
+    written, tools = document["holes"][number], list[str]()
+    for step in document["process"].get("drilling", []):
+        through = abs(step["diameter_mm"] - written["diameter_mm"]) <= _ROUNDED and step["kind"] in ("drill", "reamer")
+        tools += [step["tool"]] if through and any(each["hole"] == number for each in step["holes"]) else []
+    return {"tool": tools[-1] if tools else None, "drilled": bool(tools)}
+
+
+@dataclass(frozen=True)
+class _Stroke:
+    """A tool at the end of its way in a hole: how it is called, its setup, tip, axis, and how it must end."""
+
+    words: str
+    setup: int
+    tool: Tool
+    tip: Floats
+    axis: Floats
+    ends: bool
+
+
+def findings(question: Question, bench: Bench, clock: Clock) -> Iterator[Finding]:
+    """Put down the tools of all steps that drill, and look whether holes come out as they are."""
+    document = question.document
+    steps = document["process"].get("drilling", [])
+    if not steps:
+        return
+    wrong, strokes = [*_sizes(question)], [each for step in steps for each in _strokes(question, step)]
+    undecided = 0
+    for stroke in strokes:
+        free = _stands(bench, stroke, 0.0, clock)
+        undecided += free == OPEN
+        if free == MET:
+            wrong.append(f"{stroke.words} does not stand free")
+        elif stroke.ends and _stands(bench, stroke, max(_ON, _TIMES * question.tolerance), clock) == STANDS_FREE:
+            wrong.append(f"{stroke.words} does not reach the bottom")
+    text = f": {'; '.join(wrong[:3])}" if wrong else ""
+    words = f"{len(strokes)} tools were put down in holes, from {len(steps)} steps that drill; {len(wrong)} are wrong{text}."
+    yield Finding(False if wrong else None if undecided else True, words)
+
+
+def _stands(bench: Bench, stroke: _Stroke, deeper: float, clock: Clock) -> int:
+    tip, tool = (stroke.tip - deeper * stroke.axis)[None], stroke.tool
+    limits = bench.question.tolerance, -tool.clearance
+    verdict = int(met(bench.cells, bench.root[stroke.setup], tool, tip, stroke.axis[None], limits, bench.grain, clock).verdict[0])
+    within = any(each.holds(tip + tool.high * stroke.axis)[0] for each in bench.standing[stroke.setup])
+    return MET if within else verdict
+
+
+def _strokes(question: Question, step: Mapping[str, Any]) -> Iterator[_Stroke]:
+    drill, axis = question.drills[step["tool"]], np.array(step["axis"], float)
+    angle = None
+    for each in step["holes"]:
+        of = question.document["holes"][each["hole"]]
+        if drill.kind == "countersink":
+            angle = min((two for _, two in _cones(question, of)), key=lambda two: abs(two - drill.angle), default=None)
+        tool = _body(drill, step["diameter_mm"], drill.angle if angle is None else angle)
+        words = f"{drill.kind} D{step['diameter_mm']:.4g} in hole {each['hole'] + 1}"
+        if tool is None:
+            continue
+        main = drill.kind == "reamer" or (drill.kind == "drill" and abs(step["diameter_mm"] - of["diameter_mm"]) <= _ROUNDED)
+        ends = drill.kind in ("countersink", "counterbore") or (main and of["bottom"] == "cone")
+        up = 0.0 if drill.kind in _CONES else drill.beyond
+        yield _Stroke(words, step["setup"], tool, np.array(each["tip_mm"], float) + up * axis, axis, ends)
+
+
+def _body(drill: DrillSizes, diameter: float, angle: float) -> Tool | None:
+    """A tool above its point, as wide as what it leaves; one that cuts with a cone as this. None: its flutes are too short."""
+    sizes, radius = drill.sizes, drill.sizes.radius
+    if drill.kind in _CONES:
+        high = radius / math.tan(0.5 * angle)
+        if high > sizes.flutes + 1e-6:
+            return None
+        outline = [(0.0, 0.0), (radius, high), *([(radius, sizes.flutes)] if sizes.flutes > high + 1e-6 else [])]
+        return tool_of(replace(sizes, shape="form", outline=tuple(outline), corner_radius=0.0))
+    off = drill.beyond
+    sections = tuple(replace(each, low=each.low - off) for each in sizes.sections)
+    return tool_of(replace(sizes, radius=0.5 * diameter, flutes=sizes.flutes - off, sections=sections))
+
+
+def _sizes(question: Question) -> Iterator[str]:
+    """What is wrong with diameters, depths, points and flutes of steps."""
+    document = question.document
+    for step in document["process"]["drilling"]:
+        drill, wide, deep = question.drills[step["tool"]], step["diameter_mm"], step["depth_mm"]
+        for each in step["holes"]:
+            of = document["holes"][each["hole"]]
+            words = f"{drill.kind} D{wide:.4g} in hole {each['hole'] + 1}"
+            along = float(np.dot(step["axis"], of["axis"]))
+            if abs(abs(along) - 1.0) > _AXIS:
+                yield f"{words} is not along its axis"
+            if drill.kind not in _CONES and deep > drill.sizes.flutes - drill.beyond + _ROUNDED:
+                yield f"{words} has flutes that are too short"
+            yield from (f"{words} {fault}" for fault in _faults(question, drill, step, of, along))
+
+
+def _faults(
+    question: Question, drill: DrillSizes, step: Mapping[str, Any], of: Mapping[str, Any], along: float
+) -> Iterator[str]:  # fmt: skip
+    """What is wrong with a tool for a hole; `along`: 1 from its mouth, -1 from the far end."""
+    wide, deep, bottom = step["diameter_mm"], step["depth_mm"], of["bottom"]
+    if drill.kind in ("drill", "reamer") and wide <= of["diameter_mm"] + _ROUNDED:
+        main = abs(wide - of["diameter_mm"]) <= _ROUNDED
+        off = of["diameter_mm"] - wide
+        if not main and not _ALLOWANCE - _ROUNDED <= off <= _ALLOWANCE + _MORE * of["diameter_mm"] + max(_WIDE, _SHARE * wide):
+            yield "is no drill before a reamer"
+        if along < 0.0 and not of["through"]:
+            yield "comes from its bottom"
+        floor = drill.beyond if bottom in ("flat", "round") else 0.0
+        if deep + floor < of["depth_mm"] - _ROUNDED:
+            yield "is not as deep"
+        if bottom == "cone" and drill.kind == "drill" and abs(math.degrees(drill.angle) - (of["cone_deg"] or 0.0)) > _POINT:
+            yield "has another point"
+        if bottom in ("flat", "round") and deep + drill.beyond > of["depth_mm"] + _ROUNDED:
+            yield "cuts into its bottom"
+    elif drill.kind in ("counterbore", "drill"):
+        if not any(abs(2.0 * radius - wide) <= _ROUNDED for radius in _cylinders(question, of)):
+            yield "has no cylinder of its diameter"
+    elif drill.kind == "countersink" and not any(
+        abs(math.degrees(two - drill.angle)) <= _SINK for _, two in _cones(question, of)
+    ):
+        yield "has no cone of its angle"
+
+
+def _cylinders(question: Question, of: Mapping[str, Any]) -> list[float]:
+    """Radii of the cylinders of a hole."""
+    carriers = [question.part.faces[int(name[1:]) - 1].carrier for name in of["faces"]]
+    return [each.radius for each in carriers if each and each.radius and each.half_angle is None and each.direction is not None]
+
+
+def _cones(question: Question, of: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """Names and whole angles, rad, of the cones of a hole."""
+    carriers = [(name, question.part.faces[int(name[1:]) - 1].carrier) for name in of["faces"]]
+    return [(name, 2.0 * abs(each.half_angle)) for name, each in carriers if each and each.half_angle is not None]
