@@ -156,10 +156,10 @@ class Walls:
             return self._free(c, s, axis, rows[which], point, square[which])
 
         for start in starts:
-            for aside in (False, True):
+            for moved in (False, True):
                 open_ = np.flatnonzero(known & np.isnan(raised) & (-low >= start - NOTHING))
-                open_ = open_[free(open_, np.full(len(open_), start), off if aside else 0.0 * off)]
-                raised[open_], stands[open_] = start, not aside
+                open_ = open_[free(open_, np.full(len(open_), start), off if moved else 0.0 * off)]
+                raised[open_], stands[open_] = start, not moved
         blocked, free_at = np.full(len(rows), starts[-1]), -low
         open_ = np.flatnonzero(known & np.isnan(raised) & (free_at > blocked + NOTHING))
         open_ = open_[free(open_, free_at[open_], off)]
