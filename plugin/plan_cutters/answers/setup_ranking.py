@@ -159,8 +159,8 @@ def holdable(
         tilt = max(min(1.0, (float(high) + 2.0 * cutter.radius) / cutter.length) for cutter in cutters)
         cap = float(np.arccos(-tilt))
         limit = cap if machine.tilt_limit is None else min(cap, machine.tilt_limit)
-        over = replace(conditions, machine=replace(machine, tilt_limit=limit))
-        held |= within_limits(samples, cutters, over, setup, mine)
+        over = replace(conditions, machine=replace(machine, tilt_limit=limit), setup=np.array(setup), x=None)
+        held |= within_limits(samples, cutters, over, rows=mine)
     return held
 
 

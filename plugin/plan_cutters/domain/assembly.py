@@ -7,6 +7,7 @@ proofs. Heights are over the tip.
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -167,6 +168,7 @@ class Assembly(Record):
         return wide
 
 
+@lru_cache(maxsize=1024)
 def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer") -> Assembly:
     """Pieces of a cutter.
 

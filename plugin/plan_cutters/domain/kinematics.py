@@ -10,6 +10,7 @@ nothing changes (`kernels.limits`).
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,7 @@ def within(angle: Floats, low: float, high: float) -> Floats:
     return np.asarray(np.where(least <= most, near + turn * turns, np.nan))
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Kinematics(Record):
     """The rotary axes of a machine under one setup, all directions in one frame."""
 
@@ -62,6 +63,10 @@ class Kinematics(Record):
 
         An axis whose limits leave one angle stands still, and so does one that lies along the tool, with nothing between.
         """
+        return self._turning
+
+    @cached_property
+    def _turning(self) -> tuple["Kinematics", list[int]]:
         turning_axes: list[int] = []
         direction, tool = np.array(self.direction), self.tool
         for k in range(len(direction) - 1, -1, -1):
@@ -217,7 +222,7 @@ class Kinematics(Record):
         count = max(1, math.ceil((high - low) / STEP))
         return self.axis(np.linspace(low, high, count + (not whole), endpoint=not whole)[:, None])
 
-    @property
+    @cached_property
     def swing(self) -> tuple[float, float, float]:
         """How the second axis moves the tool towards the first and away: the angle at which it is nearest, the amplitude, the
         middle, of the cosine between the two.

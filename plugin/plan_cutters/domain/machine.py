@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, cross
 from plan_cutters.domain.checks import Angle, degrees_too, did_you_mean, items, number, radians, shown
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.errors import MachineError
@@ -208,9 +208,9 @@ class Machine:
         tool = np.array(self.tool_axis)
         if len(turning) == 2:
             first, second = (np.array(axis.direction) for axis in turning)
-            if np.linalg.norm(np.cross(first, second)) <= PARALLEL:
+            if np.linalg.norm(cross(first, second)) <= PARALLEL:
                 raise MachineError(f"machine {self.name}: its rotary axes {turning[0].name} and {turning[1].name} are parallel")
-        if turning and np.linalg.norm(np.cross(np.array(turning[-1].direction), tool)) <= PARALLEL:
+        if turning and np.linalg.norm(cross(np.array(turning[-1].direction), tool)) <= PARALLEL:
             last = turning[-1].name
             raise MachineError(f"machine {self.name}: its axis {last} lies along the tool, which it only turns about itself")
 

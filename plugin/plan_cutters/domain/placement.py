@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, cross
 from plan_cutters.domain.checks import items, numbers, shown
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.posture import Direction, Heading, HostAxis, HostPlane, unit
@@ -79,7 +79,7 @@ class Placement:
         object.__setattr__(self, "z", tuple(z.tolist()))
         if self.x is not None:
             x = unit(self.x, "setup x")
-            if float(np.linalg.norm(np.cross(x, z))) <= _PARALLEL:
+            if float(np.linalg.norm(cross(x, z))) <= _PARALLEL:
                 raise OptionError("setup x is parallel to the setup axis; give the direction of the part along the machine's X")
             across = x - (x @ z) * z
             # One that has length 1 across z up to rounding stays as it is: what is kept is kept when it is given again.
@@ -128,9 +128,9 @@ def frame_of(setup: Floats, x: Floats | None = None) -> Floats:
     reference = np.array([1.0, 0.0, 0.0]) if x is None else np.asarray(x, float)
     across = reference - (reference @ z) * z
     if np.linalg.norm(across) < _PARALLEL:
-        across = np.cross(np.array([0.0, 1.0, 0.0]), z)
+        across = cross(np.array([0.0, 1.0, 0.0]), z)
     across = across / np.linalg.norm(across)
-    return np.array([across, np.cross(z, across), z])
+    return np.array([across, cross(z, across), z])
 
 
 #: Axes of the part by name; `auto`: the setups that the plan proposes.

@@ -192,7 +192,7 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
     rows_of = [each.tolist() for each in np.split(np.flatnonzero(mine)[np.argsort(number[mine], kind="stable")], ends)]
     both = np.concatenate([edge, edge[:, ::-1]])
     adjacency = coo_array((np.ones(len(both), np.int8), both.T), shape=(len(label), len(label))).tocsr()
-    neighbours = [each.tolist() for each in np.split(adjacency.indices, adjacency.indptr[1:-1])]
+    neighbours, starts = adjacency.indices.tolist(), adjacency.indptr.tolist()
     waiting = [(each, piece) for piece, each in enumerate(size) if each < least]
     heapify(waiting)
     while waiting:
@@ -202,7 +202,7 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
             continue
         # Most pieces are a sample or two, for which arrays would take ten times as long.
         rows = rows_of[piece]
-        others = [(label.item(k), number.item(k)) for row in rows for k in neighbours[row]]
+        others = [(label.item(k), number.item(k)) for row in rows for k in neighbours[starts[row] : starts[row + 1]]]
         others = [(its, other) for its, other in others if its >= 0 and other != piece]
         touching = Counter(its for its, _ in others)
         to = next((each for each in sorted(touching, key=lambda own: (-touching[own], own)) if serves[rows, each].all()), -1)

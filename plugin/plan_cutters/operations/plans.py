@@ -504,14 +504,14 @@ def _floors_of_other_setups(task: Task, columns: Columns, serves: NDArray[np.boo
     at = np.flatnonzero((others & serves).any(axis=1))
     if len(at):
         by_tip = paces(columns, rows[at], samples, task.cutters, task.paths, serves[at])
-        flank[at] = task.walls.cached(columns, rows)[at] > np.nan_to_num(by_tip)
+        flank[at] = task.walls.cached(columns, rows[at], serves[at]) > np.nan_to_num(by_tip)
     return others & flank
 
 
 def _paces(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
     """What a mm of path cuts (r, k), mm2, of columns at the samples of a task that they serve: by the tip, or along a wall."""
     by_tip = paces(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
-    return np.fmax(by_tip, np.where(serves, task.walls.cached(columns, task.rows), np.nan))
+    return np.fmax(by_tip, task.walls.cached(columns, task.rows, serves))
 
 
 def worth_their_turn(task: Task, columns: Columns) -> Columns:

@@ -69,8 +69,8 @@ class Walls:
         self._probes, self._obstacles, self._band = probes, obstacles, obstacles.triangles.chord_error + paths.scallop
         self._paths, self._scallop, self._accuracy = paths, paths.scallop, paths.accuracy
         self._upright: dict[int, NDArray[np.bool_]] = {}
+        #: By the key of a column the paces of all samples (n,); -inf: not looked at yet.
         self._known: dict[str, Floats] = {}
-        self._known_rows: Rows = np.zeros(0, np.int64)
 
     @classmethod
     def of(cls, probes: Probes, paths: Paths) -> "Walls":
@@ -78,9 +78,9 @@ class Walls:
         return cls(probes, probes.setups[0].obstacles, paths)
 
     def of_probes(self, probes: Probes) -> "Walls":
-        """The same with probes of the same tools at the same samples: what is cut along the setup axis is known already."""
+        """The same with probes of the same tools at the same samples: what was looked at is known already."""
         same = Walls(probes, self._obstacles, self._paths)
-        same._upright = self._upright
+        same._upright, same._known = self._upright, self._known
         return same
 
     def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
@@ -97,15 +97,17 @@ class Walls:
                 result[at, k] = passes.cut.pace(self._paths, cutter)
         return result
 
-    def cached(self, columns: Columns, rows: Rows) -> Floats:
-        """As `paces` at all of some samples, (rows, columns), for columns that are requested again and again at these."""
-        if not np.array_equal(rows, self._known_rows):
-            self._known, self._known_rows = {}, rows
-        keys = columns.key.tolist()
-        for k, key in enumerate(keys):
-            if key not in self._known:
-                self._known[key] = self.paces(columns.of(np.array([k])), rows, np.ones((len(rows), 1), bool))[:, 0]
-        return np.array([self._known[key] for key in keys]).reshape(len(keys), len(rows)).T
+    def cached(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
+        """As `paces`, for columns that are requested again and again."""
+        result = np.full(where.shape, np.nan)
+        for k, key in enumerate(columns.key.tolist()):
+            known = self._known.setdefault(key, np.full(len(self._probes.samples), -np.inf))
+            at = rows[where[:, k]]
+            new = at[np.isneginf(known[at])]
+            if len(new):
+                known[new] = self.paces(columns.of(np.array([k])), new, np.ones((len(new), 1), bool))[:, 0]
+            result[where[:, k], k] = known[at]
+        return result
 
     def _side(self, cutter: Cutter, cosine: Floats) -> NDArray[np.bool_]:
         """Where normals with these cosines to an axis stand on the side of the flutes."""
@@ -127,23 +129,24 @@ class Walls:
         low, high = self._ends(rows[at], normal[at], axis)
         begins = flank[0] / math.cos(cutter.taper)
         starts = (0.0, begins) if flank[0] > NOTHING else (0.0,)
-        raised = self._lowest(c, s, axis, rows[at], square, ruling, low, starts)
+        raised, stands = self._lowest(c, s, axis, rows[at], square, ruling, low, starts)
         open_ = np.flatnonzero(np.isfinite(raised))
         ends = low[open_] + raised[open_], high[open_]
-        more = self._pass(c, s, axis, rows[at[open_]], square[open_], ruling[open_], ends, flank[1])
+        more = self._pass(c, s, axis, rows[at[open_]], square[open_], ruling[open_], ends, flank[1], stands[open_])
         for name in ("strip", "path", "links", "point", "normal"):
             getattr(result, name)[at[open_]] = getattr(more, name)
         return result
 
     def _lowest(
         self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, low: Floats, starts: Sequence[float]
-    ) -> Floats:
-        """How far above the lower end of the wall the lowest strip begins (m,), mm; nan where it would be above the sample.
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """How far above the lower end of the wall the lowest strip begins (m,), mm; nan where it would be above the sample; and
+        where the tool stands free there without being kept off the wall.
 
         It begins at the first of the `starts` at which the tool stands free; where something is in the way at all of them, such
         as a jaw, it begins where the tool comes free of that.
         """
-        raised = np.full(len(rows), np.nan)
+        raised, stands = np.full(len(rows), np.nan), np.zeros(len(rows), bool)
         known = np.isfinite(low)
         # Kept off by what the surface may be off, so that a shank as wide as the flutes does not touch the wall above.
         lower, off = self._tangent(rows, ruling), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance) * square
@@ -153,9 +156,10 @@ class Walls:
             return self._free(c, s, axis, rows[which], point, square[which])
 
         for start in starts:
-            for away in (0.0 * off, off):
+            for moved in (False, True):
                 open_ = np.flatnonzero(known & np.isnan(raised) & (-low >= start - NOTHING))
-                raised[open_[free(open_, np.full(len(open_), start), away)]] = start
+                open_ = open_[free(open_, np.full(len(open_), start), off if moved else 0.0 * off)]
+                raised[open_], stands[open_] = start, not moved
         blocked, free_at = np.full(len(rows), starts[-1]), -low
         open_ = np.flatnonzero(known & np.isnan(raised) & (free_at > blocked + NOTHING))
         open_ = open_[free(open_, free_at[open_], off)]
@@ -164,12 +168,13 @@ class Walls:
             good = free(open_, middle, off)
             free_at[open_[good]], blocked[open_[~good]] = middle[good], middle[~good]
         raised[open_] = free_at[open_]
-        return raised
+        return raised, stands
 
     def _pass(
-        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, ends: tuple[Floats, Floats], flutes: float
-    ) -> Passes:
-        """The same between ends (m,) of the wall along its ruling from each sample."""
+        self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, ends: tuple[Floats, Floats],
+        flutes: float, stands: NDArray[np.bool_],
+    ) -> Passes:  # fmt: skip
+        """The same between ends (m,) of the wall along its ruling from each sample; `stands` (m,): free at the lower one."""
         result, (low, high) = Passes.none(len(rows)), ends
         tangent = self._tangent(rows, ruling)
         # How far the wall stands out towards the flutes, mm for each mm up.
@@ -188,7 +193,10 @@ class Walls:
         # The flutes touch where the wall stands out farthest over the strip.
         point = self._probes.samples.point[rows[good]] - above[good, None] * tangent
         point += np.maximum(0.0, jut)[:, None] * square[good]
-        free = self._free(c, s, axis, rows[good], point, square[good])
+        # The lowest strip of a wall that does not stand out higher up was tested where the wall begins.
+        free = stands[good] & (number[good] == 0.0) & (jut <= 0.0)
+        open_ = np.flatnonzero(~free)
+        free[open_] = self._free(c, s, axis, rows[good[open_]], point[open_], square[good[open_]])
         # A shank as wide as the flutes may not touch the wall above them: kept off by what the surface may be off, it does not.
         # What a strip leaves already, for the wall is not quite along the flutes, counts as well.
         met, off = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, SurfaceSamples
+from cad_io.arrays import Floats, Record, SurfaceSamples, cross
 from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
@@ -134,7 +134,7 @@ def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, kinematic
 
 def rotations_of(normal: Floats, direction_max: Floats, tilt_direction: Floats) -> Floats:
     """Rotations (n,) of tilt directions (n, 3), rad from 0 to 2 pi."""
-    across = (tilt_direction * np.cross(normal, direction_max)).sum(axis=-1)
+    across = (tilt_direction * cross(normal, direction_max)).sum(axis=-1)
     return np.asarray(np.remainder(np.arctan2(across, (tilt_direction * direction_max).sum(axis=-1)), 2.0 * np.pi))
 
 

@@ -36,7 +36,7 @@ def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, cont
     """
     from plan_cutters.kernels.search.fixed_axis import LEANING
 
-    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context)[0][0] == LEANING)
+    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True)[0][0] == LEANING)
 
 
 def served_by(
@@ -58,9 +58,10 @@ def _tested(
     progress: Progress | None = None,
     *,
     directions: bool = False,
+    only_leaning: bool = False,
 ) -> tuple[NDArray[np.int8], int, Floats]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
-    asked for, its tilt directions (k, m, 3).
+    asked for, its tilt directions (k, m, 3). With `only_leaning` no other way is tried.
     """
     from plan_cutters.kernels.search.fixed_axis import served
 
@@ -72,7 +73,8 @@ def _tested(
         return way, 0, tilt_direction
     tool, solids, contacts = context.outer, conditions.obstacles.solids, contacts_of(samples)
     full_turn = conditions.postures.full_turn
-    about = max(FLAT, conditions.accuracy), conditions.tolerance if full_turn else -1.0, full_turn
+    every = full_turn and not only_leaning
+    about = max(FLAT, conditions.accuracy), conditions.tolerance if every else -1.0, every
 
     def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
@@ -154,7 +156,7 @@ def slid(
             samples, point=samples.point[at[moved]] + shift[moved], normal=normal[moved],
             direction_max=samples.direction_max[at[moved]], curvature=samples.curvature[at[moved]],
         )  # fmt: skip
-        free = moved[_tested(np.arange(len(moved)), axes[[k]], there, context)[0][0] == LEANING]
+        free = moved[_tested(np.arange(len(moved)), axes[[k]], there, context, only_leaning=True)[0][0] == LEANING]
         if len(free):
             yield k, which[free], shift[free]
 

@@ -102,7 +102,8 @@ def in_chunks(
     An interrupt or an error drops the pieces that have not begun and is raised once those under way end.
     """
     ends = np.flatnonzero(np.diff(rows // chunk)) + 1 if fixed else np.arange(chunk, len(rows), chunk)
-    pieces = [piece for piece in np.split(rows, ends) if len(piece)]
+    # Most calls are for a few rows, which `np.split` takes longer to cut than many a kernel to judge.
+    pieces = np.split(rows, ends) if len(ends) else [rows] if len(rows) else []
     if jobs == 1 or len(pieces) <= 1:  # a thread costs more than many a piece
         total = _total(map(work, pieces), len(pieces), progress)
     else:

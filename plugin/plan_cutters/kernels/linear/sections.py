@@ -257,6 +257,8 @@ def sections(point, along, normal, vertex, unit, own, least, near, gap, connecte
         connected[i] = beyond[i] = whole[i] = np.nan
         many, mine, first, nearest = 0, 0, -1, near
         for t in range(len(vertex)):
+            if t >= own and abs(dot(unit[t], normal[i])) < least:
+                continue
             if not _crossing(vertex[t], point[i], frame, pieces.ends[many]):
                 continue
             if t < own:
@@ -264,13 +266,12 @@ def sections(point, along, normal, vertex, unit, own, least, near, gap, connecte
                 if away <= nearest:
                     first, nearest = many, away
                 mine += 1
-            elif abs(dot(unit[t], normal[i])) < least:
-                continue
             many += 1
         if first < 0:
             continue
         beyond[i] = _through(pieces, many, first, gap)
-        connected[i] = length = _through(pieces, mine, first, gap)
+        length = beyond[i] if mine == many else _through(pieces, mine, first, gap)
+        connected[i] = length
         for k in range(mine):
             if not pieces.counted[k]:
                 length += _long(pieces.ends[k])
