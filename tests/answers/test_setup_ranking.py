@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Options, plan
+from plan_cutters.answers import setup_ranking
 from plan_cutters.answers.candidates import Candidates, cube, distinct, fibonacci
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.setup_ranking import holdable, ranked
@@ -160,7 +161,6 @@ def test_with_operations_the_fewest_setups_are_planned_together():
 @pytest.mark.slow("plans parts whole")
 def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     """A ranking that promises too much: its plan falls short, the next direction is tried, and the plan says which one it is."""
-    import plan_cutters.proposal as proposal
 
     def boastful(one, *how):
         made = ranked(one, *how)
@@ -169,8 +169,8 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
         made.settled.add(first)
         return made
 
-    monkeypatch.setattr(proposal, "ranked", boastful)
-    how = {**HOW, "cutters": "R2L60rc2"}
+    monkeypatch.setattr(setup_ranking, "ranked", boastful)
+    how = {**HOW, "cutters": "R2L60rc2", "cache": False}
     said = plan(box(), setup="auto", machine="tilt:30", **how).plan.setup_proposal
     assert said.held
     assert said.tried == 2
@@ -181,7 +181,7 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
         made.settled |= set(made.held)
         return made
 
-    monkeypatch.setattr(proposal, "ranked", all_boastful)
+    monkeypatch.setattr(setup_ranking, "ranked", all_boastful)
     found = plan(box(), setup="auto", machine="tilt:30", **how).plan
     said = found.setup_proposal
     assert any("does not hold" in line for line in story_of(found).proposal)

@@ -187,3 +187,21 @@ def test_what_is_undercut_is_finished_upright_by_a_t_slot_cutter(part, tmp_path)
     result.write(tmp_path, ["json", "npz"])
     answer = check(Written(tmp_path, made, words).asked(), seconds=20.0)
     assert answer.holds, "\n".join(answer.lines)
+
+
+def test_what_is_reached_and_no_step_is_worth_is_left_by_name():
+    """Two samples of a bracket at a lug that the ball alone reaches: no axis moves there to take the rest."""
+    import cadquery as cq
+
+    outline = [(0, 0), (80, 0), (80, 10), (10, 10), (10, 60), (0, 60)]
+    angle = cq.Workplane("XZ").polyline(outline).close().extrude(50).edges("|Y").fillet(2)
+    part = angle.union(cq.Workplane().box(10, 10, 10).translate((85, -25, 5))).val()
+    setups = (0, -1, 0), (0, 1, 0), (0, 0, 1)
+    how = {"cutters": ["D16L60", "D6L40rc3"], "holder": "er32", "grid": 9, "setup": setups[0], "other_setups": setups[1:]}
+    result = planned(part, "3-axis", **{**how, "operations": "fastest"})
+    made, entry = of_each(result, "fastest")
+    reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
+    missed = int((reached & (made.label < 0)).sum())
+    assert missed > 0
+    assert entry.rest.short == missed
+    assert "short_step" in [each.cause for each in result.plan.process.left]

@@ -148,6 +148,9 @@ def plan_with(
     if operations and task.ready.options.most_operations is None:
         made, short = _fewer(task, made, np.where(may, cost, np.inf)[:, order], pace[:, order], own)
     operations, number, table, moving = made
+    if own is None:
+        # Where no axis moves while it cuts, nothing takes what no fixed step is worth.
+        short = np.union1d(short, rows[number[rows] < 0])
     region = regions_of(number, edge, area)
     strip, length, link = np.full((3, n), np.nan)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
