@@ -9,6 +9,7 @@ from cad_io import read_part
 from cad_io.read.iges import FLAGS, unit_of
 from cad_io.units import UNITS
 from plan_cutters import plan
+from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.plan_file.words.text import text_of
 from plan_cutters.report.page.write import page
 from tests.support.cad_parts import box
@@ -121,8 +122,8 @@ def test_both_sizes_and_the_way_to_decide_stand_above_the_process(stated):
     assert "--unit mm" in line
     lines = " ".join(text_of(result.plan).lines)
     assert lines.startswith(line[:60])
-    assert "--unit mm takes the latter." in lines, "it is not cut"
-    assert line.replace('"', "&#34;") in page(result).decode()
+    assert "unit = mm takes the latter." in lines, "it is not cut"
+    assert as_fields(line).replace('"', "&#34;") in page(result).decode()
 
 
 @pytest.mark.parametrize(
