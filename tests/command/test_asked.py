@@ -143,7 +143,7 @@ STRANGE = {
 }  # fmt: skip
 FINE = {
     "plan": {
-        "cutters": "None, no list", "machine": "None", "faces": "None", "ignore": "None, no list", "grid": "None, three",
+        "cutters": "None, no list, no dict", "machine": "None", "faces": "None", "ignore": "None, no list", "grid": "None, three",
         "spacing": "None, three, a half", "rotation_step": "three, a half", "jobs": "None, three", "flip": "True",
         "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
         "unit": "None", "progress": "None, function", "tilt": "None",
@@ -164,7 +164,8 @@ FINE = {
     "Machine": {"name": "no text, text", "tilt_limit": "None, three, a half"},
     "PostureRange": {"tilt": "", "rotation": "", "step": "three, a half"},
     "Options": {
-        "cutters": "None, no list", "machine": "None", "setup": "", "grid": "None, three", "spacing": "None, three, a half",
+        "cutters": "None, no list, no dict", "machine": "None", "setup": "",
+        "grid": "None, three", "spacing": "None, three, a half",
         "tilt": "None", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
         "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
         "allowance": "three, a half", "holder_clearance": "three, a half",

@@ -7,6 +7,7 @@ import pytest
 from pydantic import ConfigDict, TypeAdapter
 
 from plan_cutters.command import entry, request
+from plan_cutters.command.show import ShowRequest
 from plan_cutters_agents.command import McpRequest
 from plan_cutters_batch.command import BatchRequest
 from plan_cutters_ci.changed import ChangedRequest
@@ -35,6 +36,7 @@ COMMANDS = {
     "batch": (BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
               "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1",
               "--junit", "j.xml"]),
+    "show": (ShowRequest, ["out"], ["--part", "p.step", "--formats", "html", "-v", "--quiet", "--debug"]),
     "mcp": (McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),
 }  # fmt: skip
 

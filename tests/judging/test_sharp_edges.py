@@ -183,7 +183,7 @@ def test_strips_may_be_left_and_are_told_apart():
     assert result.plan.samples.exempt == entry.exempt == result.exempt.sum() == named(result, entry.id).sum()
     assert sum(each.exempt for each in entry.faces.values()) == entry.exempt
     assert entry.area_share.not_reached == 0.0
-    assert any("Not required (--sharp-edges left)" in line for line in result.plan.text.lines)
+    assert any("Not required (sharp_edges = left)" in line for line in result.plan.text.lines)
     assert "every sample but those at sharp inside edges" in result.summary()
 
 

@@ -4,6 +4,7 @@ No safety rests on the place (`docs/operations_proof.md`, lemma K1); how deep ja
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -52,8 +53,9 @@ class Hold:
         return tuple(sorted({*self.grips, *self.rests_on}))
 
 
-#: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
-_EVEN, _TRIED = 0.05, 12
+#: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most, and
+#: of these on the same faces.
+_EVEN, _TRIED, _OF_ONE = 0.05, 12, 4
 Overlaps = Callable[[Fixture, Clamping], bool]
 
 
@@ -73,10 +75,11 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
         key=lambda each: (each.soft != "", each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above,
                           round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
-    searched = 0
+    searched = Counter[tuple[int, ...]]()
     for place in places:
         placed, names = _fixture(fixture, part, place), listed([f"F{n}" for n in place.grips], 4)
-        if searched == _TRIED or plainly(placed, place.clamping):
+        many = searched.total() == _TRIED or searched[place.grips] == _OF_ONE
+        if many or plainly(placed, place.clamping):
             refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
             continue
         if len(part.bodies) > 1 and not held_bodies(place.clamping, place.own(part.vertex), part.face, part.bodies, slack):
@@ -85,7 +88,7 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
         if not overlaps(placed, place.clamping):
             return _hold(requested, placed, part, place)
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
-        searched += 1
+        searched[place.grips] += 1
     raise _nothing(fixture, requested, part.frame[2].tolist(), min(refused, key=lambda each: each.rank).why)
 
 

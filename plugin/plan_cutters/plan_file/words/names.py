@@ -140,7 +140,7 @@ def named(plan: "Plan", text: str) -> str:
 
 #: An option of the command with what follows it, if that is its value; inside brackets all that follows it is.
 _VALUE = r"(?:[A-Z]*\d|all\b|mm\b|left\b|mend\b|fewest\b|fastest\b|thorough\b)[^\s;:\])]*?"
-_OPTION = re.compile(rf"--([a-z][a-z-]*)(?: ({_VALUE})(?=[.;:,)]?(?:\s|$)))?")
+_OPTION = re.compile(rf"--([a-z][a-z-]*)(?: ({_VALUE})(?=[.;:,)]*(?:\s|$)))?")
 _TYPED = re.compile(r"\[(?:add )?(--[^\]]*)\]")
 
 
