@@ -156,7 +156,7 @@ def test_with_several_proposed_setups_in_no_file_no_option_is_said_that_would_no
 
 
 HARD = {
-    "hard/gmsh_pump_carter_sup.stp": ("--cutter", "D16L60F32S16", "--cutter", "D6L40rc3F15S6", "--holder", "er25", "--machine",
+    "hard/gmsh_pump_carter_sup.stp": ("--cutter", "D16L60F32S16", "--holder", "er25", "--machine",
                                  "trunnion-ac", "--setup", "auto", "--spacing", "14", "--faces", "all"),
     "hard/jack_phone.igs": ("--cutter", "D8L40rc4F16S8", "--cutter", "D4L35rc2F12S6", "--holder", "er20",
                             "--machine", "trunnion-ac", "--spacing", "4"),

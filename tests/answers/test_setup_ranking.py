@@ -141,7 +141,7 @@ def test_a_proposal_stands_on_faces_and_holds_what_it_promised():
 
 @pytest.mark.slow("plans parts whole")
 def test_with_operations_the_fewest_setups_are_planned_together():
-    found = plan(box(), setup="auto", machine="trunnion-ac", operations="fewest", **HOW)
+    found = plan(box(), setup="auto", machine="trunnion-ac", operations="fewest", stock="part", **HOW)
     said = found.plan.setup_proposal
     assert len(said.setups) == 2
     assert said.held

@@ -210,3 +210,18 @@ def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, chuck):
     """A round rod that only a chuck would hold: on a fourth axis across the spindle none is proposed."""
     plans = plan(rod(20.0, 30.0), setup="auto", **{**HOW, "machine": machine}).plan
     assert any(each.clamping == "chuck" for each in plans.setup_proposal.setups) == chuck
+
+
+@pytest.mark.parametrize(("missed", "flat"), [(0.01, True), (0.05, False)])
+def test_what_needs_a_nest_anyway_is_stood_aslant_for_two_percent_alone(missed, flat):
+    """Of two directions in which nothing holds the part firmly, one along an axis and one aslant that serves more."""
+    part = cq.Workplane().sphere(10).val().wrapped
+    ranking = ranked(prepare(part, Options(**{**HOW, "grid": 25})), 1, ("table",))
+    along, aslant = (
+        int(np.flatnonzero(np.isclose(np.abs(ranking.candidates.axis).max(axis=1), top))[0]) for top in (1.0, 0.5**0.5)
+    )
+    every, less = np.ones(len(ranking.rows), bool), np.cumsum(ranking.area) > missed * ranking.area.sum()
+    table = Fixture.each_of("table")[0]
+    ranking.held = {along: Held(table, less, soft="a ball"), aslant: Held(table, every, soft="a ball")}
+    ranking.gripped = {along: False, aslant: False}
+    assert ranking.choose(1) == ((along,) if flat else (aslant,))

@@ -80,7 +80,7 @@ def test_the_seconds_of_a_command_are_nearly_all_of_it(tmp_path):
     run = json.loads((tmp_path / "out" / "plan.json").read_text())["run"]
     assert set(run["seconds"]) == {
         "start", "read", "measure", "sew", "orient", "holes", "patterns", "sample", "classify", "tessellate", "tree", "compile",
-        "bodies", "process", "R6L80", "reasons", "area", "plan", "npz", "json", "show", "html", "split", "glb", "step",
+        "bodies", "process", "R6L80", "reasons", "area", "plan", "json", "show", "html", "split", "glb", "step",
     }  # fmt: skip
     assert all(seconds >= 0 for seconds in run["seconds"].values())
     assert 0.95 * run["total"] < sum(run["seconds"].values()) <= run["total"] * (1 + 1e-9)

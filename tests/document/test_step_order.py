@@ -35,9 +35,6 @@ def test_cutters_come_from_large_to_small_and_each_once_a_setup(process):
     for _, mine in groupby(runs, key=lambda each: each[0]):
         radii = [float(cutter[1:].split("L")[0]) for _, cutter in mine]
         assert radii == sorted(radii, reverse=True)
-    # The smallest cutter has the most area: that is no order.
-    area = {cutter: sum(step.area_mm2 for step in process.steps if step.cutter == cutter) for _, cutter in used}
-    assert max(area, key=area.__getitem__) == runs[-1][1]
 
 
 def test_a_cutter_cuts_floors_then_walls_then_what_is_free_form(process):

@@ -5,7 +5,7 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.operations import choices
-from plan_cutters.plan_file.words.process import operations
+from plan_cutters.plan_file.words.operations import operations
 from tests.support.shapes import trough
 
 #: Two of its plans are enough for each run.

@@ -315,7 +315,8 @@ def test_a_step_shows_its_setup_and_its_tool_and_plays(page, planned, read):
     place = "review.tool.group.matrix.elements.slice(12, 15).join()"
     before = page.evaluate(place)
     page.get_by_role("button", name="Play").click()
-    page.locator("#status", has_text="step 1: place 3 of").wait_for()
+    # Whichever of them a slow browser shows next.
+    page.locator("#status", has_text=re.compile(r"step 1: place ([3-9]|\d\d+) of")).wait_for()
     assert page.evaluate(place) != before
     # A press in the picture ends it, and the tool is back where it was.
     page.mouse.click(*place_of(page, told["sample"]), button="right")

@@ -401,11 +401,10 @@ class Ranking:
         every = self.candidates.preferred([k for k, held in self.held.items() if held is not None and k not in without])
         steady = [k for k in every if self.steady(k)]
         firm, free = self._chosen(steady, most), self._chosen(every, most)
-        if self._together(firm) < _SOFT * self._together(free):
-            return self._worth(free)
-        chosen, least = list(self._worth(firm)), self._together(firm) - _TURNED_FOR
+        best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)
+        chosen, least = list(self._worth(best)), self._together(best) - _TURNED_FOR
         for i, k in enumerate(chosen):
-            for other in steady[: steady.index(k)]:
+            for other in among[: among.index(k)]:
                 if other not in chosen and self._together([*chosen[:i], other, *chosen[i + 1 :]]) >= least:
                     chosen[i] = other
                     break

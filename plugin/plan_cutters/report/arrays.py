@@ -50,7 +50,7 @@ def rounded(vector: Floats, tolerance: float) -> NDArray[np.float32]:
 def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
 
-    Postures are `rounded`, in 32 bits: with many cutters they are nearly all of the file.
+    Postures are `rounded`, in 32 bits, but for those of tools that slid: with many cutters they are nearly all of the file.
 
     `shift_ID`, where a flank or a flat that is not quite square serves, goes from the samples to where the tool is put down.
 
@@ -82,11 +82,13 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         arrays["exempt"] = result.exempt
     for name, verdicts in result.reaches.items():
         arrays[f"verdict_{name}"] = verdicts.verdict
-        arrays[f"axis_{name}"] = rounded(verdicts.axis, tolerance)
-        arrays[f"lean_{name}"] = rounded(verdicts.tilt_direction, tolerance)
+        # A tool that slid touches where its axis says: rounded, it would touch elsewhere.
+        slid = bool(verdicts.shift.any())
+        for word, vector in (("axis", verdicts.axis), ("lean", verdicts.tilt_direction)):
+            arrays[f"{word}_{name}"] = vector if slid else rounded(vector, tolerance)
         arrays[f"reason_{name}"] = verdicts.reason
-        if verdicts.shift.any():
-            arrays[f"shift_{name}"] = verdicts.shift.astype(np.float32)
+        if slid:
+            arrays[f"shift_{name}"] = verdicts.shift
         if result.kinematics is not None and name in machined:
             angles, taken = result.rotary(name)
             if name in result.travels:
