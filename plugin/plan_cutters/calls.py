@@ -1,15 +1,18 @@
 """The calls of a script: what each takes, without the CAD kernel and the compiler, which are loaded as it is called."""
 
+import math
 import os
 from collections.abc import Callable
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Unpack
 
-from plan_cutters.domain.checks import shown, spelled_out
+from plan_cutters.domain.checks import Angle, in_radians, numbers, radians, shown, spelled_out
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.posture import Heading, Range
+from plan_cutters.domain.posture import Heading, PostureRange, Range
+from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.errors import OptionError
-from plan_cutters.options import Options, PlanOptions, PointOptions
+from plan_cutters.options import Options, PlanOptions, PointOptions, machine_option
 
 if TYPE_CHECKING:
     from plan_cutters.judging.posture_maps import PostureMap
@@ -127,9 +130,16 @@ def posture_map(
     >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
     [[[27.6, 61.4]], []]
     """
-    from plan_cutters import point as steps
+    cutter, machine = Cutter.of(cutter), machine_option(machine)
+    place = numbers(point, "point", 3)
+    angles = in_radians({"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")})
+    if (wanted := angles["rotations"]) is None:
+        raise OptionError("give rotations, in radians, or rotations_deg, in degrees")
+    each = (wanted,) if isinstance(wanted, Real) else wanted
+    turns = [radians(turn, "rotation", 2 * math.pi) for turn in numbers(each, "rotations")]
+    if tilt is None and tilt_deg is None:
+        tilt = (0.0, largest_tilt([cutter]))
+    postures = PostureRange(tilt_deg=tilt_deg) if tilt is None else PostureRange(tilt=tilt, tilt_deg=tilt_deg)
+    from plan_cutters.point import posture_map_at
 
-    return steps.posture_map(
-        part, point=point, cutter=cutter, rotations=rotations, tilt=tilt, machine=machine, tolerance=tolerance, x=x,
-        rotations_deg=rotations_deg, tilt_deg=tilt_deg, **scene,
-    )  # fmt: skip
+    return posture_map_at(part, place, cutter, turns, postures.tilt, machine, tolerance, x, scene)

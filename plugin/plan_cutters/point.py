@@ -1,24 +1,22 @@
 """The order of the steps for one point: part and point in, posture map out."""
 
-import os
+from collections.abc import Sequence
 from dataclasses import replace
-from numbers import Real
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
 from cad_io.sample import locate
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.checks import Angle, in_radians, number, numbers, radians
+from plan_cutters.domain.checks import number
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import Heading, PostureRange, Range, complement
-from plan_cutters.domain.shapes import largest_tilt
+from plan_cutters.domain.posture import Heading, PostureRange, complement
 from plan_cutters.domain.verdicts import nominal_depth
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.posture_maps import SETTLED, PostureMap, moved, posture_map_of
-from plan_cutters.options import PointOptions, machine_option
+from plan_cutters.options import PointOptions
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
@@ -32,31 +30,12 @@ _FIRST_CHORD, _FINER, _ROUNDS = 2e-3, 0.2, 6
 _TRIANGLES = 600_000
 
 
-def posture_map(
-    part: Any,
-    *,
-    point: Range,
-    cutter: Cutter | str,
-    rotations: float | Range | None = None,
-    tilt: Range | None = None,
-    machine: Machine | str | os.PathLike[str] | None = None,
-    tolerance: float | None = None,
-    x: Heading | None = None,
-    rotations_deg: float | Range | None = None,
-    tilt_deg: Range | None = None,
-    **scene: Unpack[PointOptions],
-) -> PostureMap:
-    """`calls.posture_map`, which says what each argument is."""
-    cutter, machine = Cutter.of(cutter), machine_option(machine)
-    place = numbers(point, "point", 3)
-    angles = in_radians({"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")})
-    if (wanted := angles["rotations"]) is None:
-        raise OptionError("give rotations, in radians, or rotations_deg, in degrees")
-    each = (wanted,) if isinstance(wanted, Real) else wanted
-    turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
-    if tilt is None and tilt_deg is None:
-        tilt = (0.0, largest_tilt([cutter]))
-    low, high = (PostureRange(tilt_deg=tilt_deg) if tilt is None else PostureRange(tilt=tilt, tilt_deg=tilt_deg)).tilt
+def posture_map_at(
+    part: Any, place: Sequence[float], cutter: Cutter, turns: Sequence[float], tilt: tuple[float, float], machine: Machine,
+    tolerance: float | None, x: Heading | None, scene: PointOptions,
+) -> PostureMap:  # fmt: skip
+    """`calls.posture_map` of values that were looked at: `place` mm, `turns` and `tilt` rad."""
+    low, high = tilt
     scene, x = _placed(part, scene, x)
     wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")
     if not (wanted >= 0 and cutter.large_enough(wanted)):

@@ -115,13 +115,12 @@ def _over_setups(plan: Plan, arrays: Arrays, ready: Prepared) -> OverSetups:
 
 def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:
     axis, tilted = (arrays[f"{word}_{name}"].astype(float) for word in ("axis", "lean"))
-    samples, count = ready.samples, len(ready.options.postures.rotations)
+    samples, ends = ready.samples, ready.options.postures.rotations
     shift = arrays.get(f"shift_{name}", np.zeros_like(axis)).astype(float)
     across, along = np.linalg.norm(np.cross(samples.normal, axis), axis=1), (samples.normal * axis).sum(axis=1)
     turn = rotations_of(samples.normal, samples.direction_max, tilted)
     known = np.isfinite(turn)
-    ends = ready.options.postures.rotations
-    nearest = np.abs(np.angle(np.exp(1j * (np.where(known, turn, 0.0)[:, None] - ends)))).argmin(axis=1) if count else 0
+    nearest = np.abs(np.angle(np.exp(1j * (np.where(known, turn, 0.0)[:, None] - ends)))).argmin(axis=1) if len(ends) else 0
     rotation = np.where(known, nearest, -1).astype(np.int32)
     return Verdicts(arrays[f"verdict_{name}"], axis, tilted, np.arctan2(across, along), rotation, shift, arrays[f"reason_{name}"])
 

@@ -486,11 +486,7 @@ def _reached(
 
 
 def proposed(
-    ready: Prepared,
-    most: int,
-    words: tuple[str, ...] = (TABLE,),
-    stock: Stock | None = None,
-    progress: Progress = lambda *_: None,
+    ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None, progress: Progress = _untold
 ) -> tuple[Ranking, tuple[int, ...]]:
     """Rank the setups of a part as `ranked` does, and choose some, held as they are; what was compared before is not again."""
 
@@ -509,11 +505,7 @@ def proposed(
 
 
 def ranked(
-    ready: Prepared,
-    most: int,
-    words: tuple[str, ...] = (TABLE,),
-    stock: Stock | None = None,
-    progress: Progress = lambda *_: None,
+    ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,), stock: Stock | None = None, progress: Progress = _untold
 ) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 

@@ -117,7 +117,7 @@ def command(request: MapRequest) -> int:
         )
     from cad_io import read_part
     from cad_io.sample import locate, nearest
-    from plan_cutters.point import posture_map
+    from plan_cutters.calls import posture_map
     from plan_cutters.scene.scene import Scene
 
     tolerance = {"tolerance": request.tolerance} if request.tolerance > 0 else {}

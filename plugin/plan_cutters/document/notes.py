@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cad_io import Part
+from cad_io.arrays import rows_by_face
 from cad_io.graphs import connected
 from cad_io.part.edges import folded_faces
 from cad_io.part.part import CROSSES
@@ -127,21 +128,22 @@ def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:
 def _of_bodies(ready: Prepared) -> Iterator[Note]:
     """Name bodies with faces to machine that surely do not touch, for their boxes do not: nobody clamps these together."""
     surroundings, targets = ready.conditions.surroundings, set(ready.chosen.targets)
-    triangles = (surroundings.alone or surroundings).certain.triangles
     bodies = [each for each in material_bodies(surroundings.bodies, ready.scene.orientation.sign) if each & targets]
-    corners = [triangles.vertex[np.isin(triangles.face, list(each))].reshape(-1, 3) for each in bodies]
-    boxes = [(each.min(axis=0) - TOGETHER, each.max(axis=0) + TOGETHER) for each in corners if len(each)]
-    touching = [
-        (i, k) for k, (low, high) in enumerate(boxes) for i in range(k) if ((low <= boxes[i][1]) & (boxes[i][0] <= high)).all()
-    ]
-    if len(boxes) == len(bodies) > 1:
-        group = connected(len(bodies), np.array(touching, np.int64).reshape(-1, 2))
-        if group.max() > 0:
-            apart = [
-                ranges(sorted(frozenset[int]().union(*(bodies[i] for i in np.flatnonzero(group == k)))))
-                for k in range(group.max() + 1)
-            ]
-            yield notes.bodies_apart(apart)
+    if len(bodies) < 2:
+        return
+    triangles = (surroundings.alone or surroundings).certain.triangles
+    rows = rows_by_face(triangles.face)
+    mine = [[triangles.vertex[rows[n]].reshape(-1, 3) for n in each if n in rows] for each in bodies]
+    if not all(mine):
+        return
+    low = np.array([np.min([each.min(axis=0) for each in faces], axis=0) for faces in mine]) - TOGETHER
+    high = np.array([np.max([each.max(axis=0) for each in faces], axis=0) for faces in mine]) + TOGETHER
+    touching = [np.column_stack(np.broadcast_arrays(k, np.flatnonzero(((low <= high[k]) & (low[k] <= high)).all(axis=1))))
+                for k in range(len(bodies))]  # fmt: skip
+    group = connected(len(bodies), np.concatenate(touching))
+    if group.max() > 0:
+        faces_of = [frozenset[int]().union(*(bodies[i] for i in np.flatnonzero(group == k))) for k in range(group.max() + 1)]
+        yield notes.bodies_apart([ranges(sorted(each)) for each in faces_of])
 
 
 def _of_fixtures(ready: Prepared) -> Iterator[Note]:

@@ -74,12 +74,13 @@ class Probes:
 
     def spacious(self, rows: Rows, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Where columns that serve (rows, columns) have a margin about neck, shank and holder, too."""
-        result = serves.copy()
+        result, wide = serves.copy(), dict[tuple[int, int], Context]()
         for k, (c, s) in enumerate(zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)):
             cutter, mine = self.cutters[c], np.flatnonzero(serves[:, k])
             if cutter.stages and len(mine):
-                wide = replace(cutter, clearance=max(MARGIN, cutter.clearance or 0.0))
-                free, made = served_by(rows[mine], columns.axis[[k]], self.samples, Context.of(wide, self.setups[s]))
+                if (c, s) not in wide:
+                    wide[c, s] = Context.of(replace(cutter, clearance=max(MARGIN, cutter.clearance or 0.0)), self.setups[s])
+                free, made = served_by(rows[mine], columns.axis[[k]], self.samples, wide[c, s])
                 result[mine, k] = free[0]
                 self.made += made
         return result

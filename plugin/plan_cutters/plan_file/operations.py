@@ -301,7 +301,7 @@ class OperationsEntry(Frozen):
 UNJUDGED_CAUSE, NOT_PLANNED, SHORT_STEP = "unjudged", "not_planned", "short_step"
 #: Why a step of the planner's own leaves something: another orientation of its cutter would reach it.
 OTHER_ORIENTATION = "orientation"
-#: Neck, shank and holder keep so far from everything where a step of the plan has that at no twice the time, mm.
+#: Room about neck, shank and holder, mm: with less, a sample counts twice in the choice of its step.
 MARGIN = 1.0
 
 

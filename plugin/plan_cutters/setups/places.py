@@ -165,7 +165,7 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
         round_ |= face.shape == "cylinder" and along >= 1.0 - PARALLEL and side >= 0.0
     if requested.kind == CHUCK:
         return "" if round_ else "no outside cylinder along it"
-    widest, gaps = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2], list[float]()
+    widest, opposite = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2], False
     for i, (one, first, side) in enumerate(upright):
         for other, second, its in upright[:i]:
             turn = float(one @ other)
@@ -175,12 +175,12 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
             apart = first - way * second
             # The outer side of each looks away from the other.
             if side * apart >= -slack and its * way * apart <= slack:
-                gaps.append(abs(apart) - slack)
-    if not gaps:
-        return "no two opposite plane faces stand along it"
-    return (
-        f"its opposite plane faces are farther apart than the {mm(widest)} to which the vise opens" if min(gaps) > widest else ""
-    )
+                if abs(apart) - slack <= widest:
+                    return ""
+                opposite = True
+    if opposite:
+        return f"its opposite plane faces are farther apart than the {mm(widest)} to which the vise opens"
+    return "no two opposite plane faces stand along it"
 
 
 #: Walls that are looked at, at most, the largest of them.
