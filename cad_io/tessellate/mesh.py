@@ -24,6 +24,7 @@ from cad_io.arrays import Floats, Ints
 from cad_io.kernel import bounding, may_refuse
 from cad_io.part import Part
 from cad_io.surface import Surface
+from cad_io.tessellate.planar import upright
 from plan_cutters_base.forks import ChildDied, Ended, each, limited
 
 Taken = TypeVar("Taken")
@@ -219,14 +220,3 @@ def _filled(nodes: Ints, own: Ints) -> Ints:
     (a, b), (c, d) = (nodes[:-1], nodes[1:]), (own[:-1], own[1:])
     made = np.concatenate([np.stack([a, c, d], axis=1)[c != a], np.stack([a, d, b], axis=1)[d != b]])
     return made.astype(np.int32)
-
-
-def upright(uv: Floats, corner: Ints) -> Ints:
-    """Triangles (t, 3), each turned so that its area in the parameter plane is not negative."""
-    return np.where(folded(uv[corner])[:, None], corner[:, [0, 2, 1]], corner)
-
-
-def folded(corners: Floats) -> NDArray[np.bool_]:
-    """Which triangles (t, 3, 2) in the parameter plane run clockwise."""
-    (a, b) = (corners[:, k] - corners[:, 0] for k in (1, 2))
-    return np.asarray(a[:, 0] * b[:, 1] < a[:, 1] * b[:, 0])

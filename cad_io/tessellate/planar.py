@@ -10,7 +10,6 @@ import shapely
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from cad_io.tessellate.mesh import upright
 from plan_cutters_base.jit import entry, kernel
 
 #: A corner is in the circle of another triangle if it is so far in it, and a corner bends if it bends so much: shares of the
@@ -227,3 +226,14 @@ def _corners(region: shapely.Geometry, points: Floats) -> Ints | None:
     if (corner >= len(points)).any():
         return None
     return delaunay(points, upright(points, corner.reshape(-1, 3).astype(np.int32)))
+
+
+def upright(uv: Floats, corner: Ints) -> Ints:
+    """Triangles (t, 3), each turned so that its area in the parameter plane is not negative."""
+    return np.where(folded(uv[corner])[:, None], corner[:, [0, 2, 1]], corner)
+
+
+def folded(corners: Floats) -> NDArray[np.bool_]:
+    """Which triangles (t, 3, 2) in the parameter plane run clockwise."""
+    (a, b) = (corners[:, k] - corners[:, 0] for k in (1, 2))
+    return np.asarray(a[:, 0] * b[:, 1] < a[:, 1] * b[:, 0])

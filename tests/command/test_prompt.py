@@ -57,25 +57,21 @@ def at_prompt(folder, *words, on=lambda text: None, slow="", environment=()):
     return said.decode().replace("\r\n", "\n")
 
 
-#: The STEP file takes longer.
+#: The STEP file takes longer, whoever loads its module first.
 SLOW = """
 import sys
 class Later:
     def find_spec(self, name, path=None, target=None):
         if name == "plan_cutters.report.models":
-            sys.meta_path.remove(self)
-            import importlib, time
-            models = importlib.import_module(name)
-            write = models.write_step
-            models.write_step = lambda *words, **more: (time.sleep({seconds}), write(*words, **more))[1]
-            return importlib.machinery.ModuleSpec(name, Again(models))
-class Again:
-    def __init__(self, module):
-        self.module, self.own = module, module.__spec__
-    def create_module(self, spec):
-        return self.module
-    def exec_module(self, module):
-        module.__spec__ = self.own
+            import importlib.machinery, time
+            spec = importlib.machinery.PathFinder.find_spec(name, path)
+            load = spec.loader.exec_module
+            def loaded(module):
+                load(module)
+                write = module.write_step
+                module.write_step = lambda *words, **more: (time.sleep({seconds}), write(*words, **more))[1]
+            spec.loader.exec_module = loaded
+            return spec
 sys.meta_path.insert(0, Later())
 """
 

@@ -25,7 +25,7 @@ from cad_io.part.bodies import orient
 from cad_io.sample import sample
 from cad_io.sample.grid_lines import border_probes
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.mesh import folded, upright
+from cad_io.tessellate.planar import folded, upright
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.judging.between import between
 from plan_cutters.scene.conditions import Conditions, Context
