@@ -195,13 +195,13 @@ def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -
     if process:
         add([in_summary(plan)], 2)
         paragraphs += [[line] for line in ([process.roughing] if process.roughing else []) + process.table()]
+    add(holes(plan), 2)
     if plan.process and plan.process.plan == "fewest":
         add([named(plan, one_more(plan.operations))], 3)
     if process:
         add([*shortened(process.own), *process.remaining[: process.much]], _LEFT)
         add(process.next, 3)
         add(process.remaining[process.much :], _LEFT)
-    add(holes(plan), 2)
     add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2)
     add([process.clearance if process else ""], 1)
     add(_alone(story), _ALONE)
