@@ -41,6 +41,13 @@ def test_reading_loads_nothing_heavy(written):
     assert made.stdout.startswith("Take flat end D2 x 80.")
 
 
+def test_a_folder_is_read_as_the_plan_in_it(written, tmp_path):
+    assert load_plan(tmp_path) == load_plan(written)
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(PlanError, match="empty.plan.json: cannot be read"):
+        load_plan(tmp_path / "empty")
+
+
 def test_a_plan_without_text_is_put_into_words(written):
     """As plans of older programs are."""
     found = load_plan(written)

@@ -17,15 +17,16 @@ PLAN = "plan.json"
 
 
 def load_plan(path: str | os.PathLike[str]) -> Plan:
-    """Read a plan.json: lengths in mm, angles in degrees, part coordinates.
+    """Read a plan.json, or the one of a folder: lengths in mm, angles in degrees, part coordinates.
 
     A PlanError where it is missing, half-written, no plan, or one of another version of the format.
     """
+    file = Path(path, PLAN) if os.path.isdir(path) else Path(path)
     try:
-        content = Path(path).read_bytes()
+        content = file.read_bytes()
     except OSError as error:
-        raise PlanError(f"cannot be read ({error.strerror or error})", file=os.fspath(path)) from None
-    return plan_of(content, os.fspath(path))
+        raise PlanError(f"cannot be read ({error.strerror or error})", file=str(file)) from None
+    return plan_of(content, str(file))
 
 
 def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError) -> Plan:
