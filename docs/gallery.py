@@ -5,7 +5,8 @@ parts are made. With `-` as FOLDER nothing is planned: pictures are taken of pag
 written.
 
 Each part is planned by its command, as a reader types it. The script writes a picture, the headline, `docs/gallery.md`, and the
-review page into `build/gallery`, from where `docs/hooks/review_pages.py` takes it into the site.
+review page into `build/gallery`, from where `docs/hooks/review_pages.py` takes it into the site. The README shows one of the
+parts, with all that the command prints and a picture of the whole page: both are written, too.
 """
 
 import io
@@ -23,6 +24,8 @@ from typing import Any
 DOCS = Path(__file__).parent
 ROOT, GALLERY, PAGE = DOCS.parent, DOCS / "gallery", DOCS / "gallery.md"
 PAGES = ROOT / "build" / "gallery"
+#: The part that the README shows, and the picture of its page there.
+FRONT, FRONT_PICTURE = "impeller", DOCS / "pictures" / "process.png"
 #: Dots of a picture; a file has at most so many bytes.
 WIDTH, HEIGHT, MOST = 720, 540, 60_000
 #: Without these WebGL shows nothing where there is no graphics card.
@@ -66,7 +69,7 @@ def _plan(row: dict[str, Any], work: Path) -> None:
     name = row["name"]
     program, *words = shlex.split(row["command"])
     done = subprocess.run(
-        [str(Path(sys.executable).with_name(program)), *words, "-o", name, "--formats", "json,html", "--quiet"],
+        [str(Path(sys.executable).with_name(program)), *words, "-o", name, "--formats", "json,html"],
         cwd=work, text=True, capture_output=True, check=False, env={**os.environ, "PYTHONWARNINGS": "ignore"},
     )  # fmt: skip
     if done.returncode not in (0, 1, 4):
@@ -78,6 +81,16 @@ def _plan(row: dict[str, Any], work: Path) -> None:
     )
     PAGES.mkdir(parents=True, exist_ok=True)
     shutil.copy(work / name / "review.html", PAGES / f"{name}.html")
+    if name == FRONT:
+        readme = ROOT / "README.md"
+        before, fence, rest = readme.read_text(encoding="utf-8").partition("```text\n")
+        readme.write_text(f"{before}{fence}{printed(row['command'], done.stdout)}{rest[rest.index('```') :]}", encoding="utf-8")
+
+
+def printed(command: str, text: str) -> str:
+    """A command with what it prints, as the README shows it: without the last line, which is a path."""
+    typed = " \\\n    ".join(_lines(command, 76))
+    return f"$ {typed}\n{text.partition(chr(10) + 'Review page')[0].rstrip()}\n"
 
 
 def _picture(page: Path, row: dict[str, Any]) -> bytes:
@@ -87,6 +100,12 @@ def _picture(page: Path, row: dict[str, Any]) -> bytes:
 
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_CHROMIUM)
+        if row["name"] == FRONT:
+            tab = browser.new_page(viewport={"width": 1366, "height": 768}, color_scheme="light")
+            tab.goto(page.as_uri())
+            tab.wait_for_selector("html[data-ready]")
+            tab.wait_for_timeout(1500)
+            tab.screenshot(path=str(FRONT_PICTURE))
         # Zoomed is a piece of a larger picture: where the page zooms itself, it adds a small picture of the whole.
         zoom, x, y = row.get("zoom", (1, 0, 0))
         wide, high = round(zoom * WIDTH), round(zoom * HEIGHT)

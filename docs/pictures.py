@@ -35,7 +35,6 @@ def main() -> None:
         # The last line is a path.
         text = said[: said.index("\nReview page")]
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
-        _readme(text.splitlines())
         run("plan-cutters", "map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
             str(PICTURES / "map.png"))  # fmt: skip
         run("plan-cutters", "tools", "samples/shop.toml", "--draw", str(out / "drawings"))
@@ -62,14 +61,6 @@ def _card(page: Path, picture: Path) -> None:
         tab.wait_for_timeout(5000)
         tab.screenshot(path=str(picture))
         browser.close()
-
-
-def _readme(lines: list[str]) -> None:
-    """Write the summary into the README."""
-    shown = "\n".join(lines)
-    page = ROOT / "README.md"
-    before, fence, rest = page.read_text(encoding="utf-8").partition("```text\n")
-    page.write_text(f"{before}{fence}{shown}\n{rest[rest.index('```') :]}", encoding="utf-8")
 
 
 def _page(page: Path, picture: Path) -> None:

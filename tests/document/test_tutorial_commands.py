@@ -1,5 +1,6 @@
 """The commands of the README and of the tutorial do what their text says: run in their order, as they stand there."""
 
+import json
 import re
 import shlex
 import shutil
@@ -8,6 +9,7 @@ from typing import NamedTuple
 
 import pytest
 
+from docs import gallery
 from tests.support.forked import run
 from tests.support.places import ROOT
 
@@ -117,9 +119,15 @@ def test_commands_of_the_tutorial_run(work):
     assert len(list((work / "drawings").iterdir())) == len(tomllib.loads(read("samples/shop.toml"))["tool"])
 
 
-def test_the_readme_shows_what_the_tutorial_prints():
+def test_the_readme_shows_a_part_of_the_gallery():
+    """`docs/gallery.py` writes the command, all that it prints and the headline in one go."""
     (shown,) = [block.text for block in blocks(read("README.md")) if block.kind == "text"]
-    assert told(shown) == told(read("docs/pictures/summary.txt"))
+    (part,) = [row for row in gallery.table()["part"] if row["name"] == gallery.FRONT]
+    typed = gallery.printed(part["command"], "").rstrip()
+    assert shown.startswith(f"{typed}\n")
+    assert " ".join(shown.removeprefix(typed).split()).startswith(
+        json.loads(read(f"docs/gallery/{gallery.FRONT}.json"))["headline"]
+    )
 
 
 def spoken(page):

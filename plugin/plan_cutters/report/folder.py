@@ -158,7 +158,7 @@ def sha256(file: Path) -> str:
 PLAN = "plan.json"
 _STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
 FORMATS = ("json", *(name for name, writer in WRITERS.items() if writer.by_name))
-#: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
+#: What is written unless asked otherwise (`docs/decisions/history.md#0017-formats-on-request`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
 
