@@ -50,12 +50,12 @@ def unit_doubt(size: tuple[float, float, float], readings: tuple[UnitReading, ..
     >>> unit_doubt((40.0, 40.0, 20.0), ())
     ''
     >>> unit_doubt((40.0, 40.0, 20.0), (UnitReading("not_sure", "no flag, no name", "mm"),))
-    'its unit is in doubt (no flag, no name): taken as mm, 40 x 40 x 20 mm; give the right one with --unit (unit= in Python)'
+    'its unit is in doubt (no flag, no name): taken as mm, 40 x 40 x 20 mm; give the right one with `--unit` (unit= in Python)'
     """
     largest, texts = max(size), [each.text(size) for each in readings]
     if not LEAST_SIZE <= largest <= MOST_SIZE:
         outside = f"the part is {largest:.4g} mm long, outside {LEAST_SIZE:g} to {MOST_SIZE:g} mm: if the length unit in the file"
-        texts.append(f"{outside} is wrong, give the right one with --unit (unit= in Python)")
+        texts.append(f"{outside} is wrong, give the right one with `--unit` (unit= in Python)")
     elif texts:
-        texts.append("give the right one with --unit (unit= in Python)")
+        texts.append("give the right one with `--unit` (unit= in Python)")
     return "; ".join(texts)

@@ -245,12 +245,13 @@ def _out_of_time(task: Task) -> str:
 
 def _late(task: Task, out: Path) -> str:
     """Say in a plan that was safe before its part ran out of time what it is without; the line about the part."""
+    from plan_cutters.plan_file.words.names import typed
     from plan_cutters.report.folder import ended, file_name
     from plan_cutters.report.to_json import not_written, unfinished
 
     ended(out, f"not done within {task.timeout:g} s")
     missing = ", ".join(map(file_name, not_written(out / PLAN)))
-    text = " ".join(filter(None, (unfinished(out / PLAN), f"It is without {missing}." if missing else "")))
+    text = " ".join(filter(None, (typed(unfinished(out / PLAN)), f"It is without {missing}." if missing else "")))
     return f"{_out_of_time(task)}. Late: the plan so far is there. {text}".rstrip()
 
 

@@ -123,7 +123,7 @@ def test_a_density_that_asks_too_much_of_a_part_is_marked_in_a_batch_and_refused
         plan(GROOVE, **options)
     row = work.work(task_of(out, options)).row
     assert row.status == "planned", row.error
-    assert row.coarser.startswith(f"coarser than requested: {word} would take too many samples here; judged at ")
+    assert row.coarser.startswith(f"coarser than requested: `{word}` would take too many samples here; judged at ")
     document = json.loads(out.get("groove-plan/plan.json", 1 << 24))
     # By default, what may lie between the samples is a doubt, as it is not where somebody said how densely to sample.
     assert document["effective"]["sampled_by"] == "default"

@@ -58,7 +58,7 @@ def test_an_unusual_size_doubts_the_unit_and_is_told_once():
 def test_a_sheet_beside_a_solid_is_named_with_the_option_that_leaves_it_out():
     part = compound(box(20, 20, 20), sheet())
     line = plan(part, cutters=["D6L60"], **FEW).plan.process.doubts[-1]
-    assert line.startswith("F7 stands in no solid, as a construction sheet does: --ignore F7 ")
+    assert line.startswith("F7 stands in no solid, as a construction sheet does: `--ignore F7` ")
     ignored = plan(part, cutters=["D6L60"], ignore="F7", **FEW).plan
     assert ignored.process.doubts == []
     assert ignored.part.loose_faces == []

@@ -182,7 +182,7 @@ def test_the_option_that_asks_for_all_faces_is_named():
     document = made([face(1), face(2, target=False)], [cutter("R6L80", {"F1": verdicts()})]).model_copy(update={"scope": scope})
     asked = document.effective.model_copy(update={"faces": "sculptured"})
     (line,) = not_judged(document.model_copy(update={"effective": asked}))
-    assert line.endswith("only an obstacle: --faces all.")
+    assert line.endswith("only an obstacle: `--faces all`.")
 
 
 @pytest.mark.parametrize(("names", "across", "larger", "half", "least"), [

@@ -155,7 +155,7 @@ def test_sculptured_faces_and_blends_are_judged_by_default(mixed):
 
 def test_the_first_words_say_what_was_judged(mixed):
     assert judged(mixed).startswith("the free-form face and 2 fillets of the part, 142 x 142 x 25.91 mm (")
-    assert not_judged(mixed) == ["6 plane faces were not judged, only obstacles: --faces all."]
+    assert not_judged(mixed) == ["6 plane faces were not judged, only obstacles: `--faces all`."]
     story = story_of(mixed)
     assert "the free-form face and 2 fillets" in story.headline.title + story.headline.about
     assert story.scope[0].startswith("6 plane faces were not judged")

@@ -217,7 +217,7 @@ def test_a_body_that_no_jaw_grips_is_told():
     assert entry.grips == ["F3", "F4"]
     assert "the part rests on F5;" in entry.notes[0]
     apart = "The file has 2 bodies that do not touch: F1-6, F7-12. Each is clamped and machined by itself: plan one at a time, "
-    assert result.plan.process.doubts == [apart + "the first with --ignore F7-12.", JAWS]
+    assert result.plan.process.doubts == [apart + "the first with `--ignore F7-12`.", JAWS]
     assert "do not hold the body of F7" in " ".join(text_of(result.plan).lines[:6])
 
 

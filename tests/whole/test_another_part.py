@@ -55,7 +55,7 @@ def test_it_is_named_before_the_process_and_at_each_face(once_and_twice):
     one, two = (each.plan for each in once_and_twice)
     (line,) = [each for each in two.process.doubts if each not in one.process.doubts]
     assert line == (
-        "Body 2 (F8-14) is body 1 (F1-7) again, in the same place, and is left out; to leave out the other one: --ignore F1-7."
+        "Body 2 (F8-14) is body 1 (F1-7) again, in the same place, and is left out; to leave out the other one: `--ignore F1-7`."
     )
     assert line[:60] in " ".join(text_of(two).lines)
     assert as_fields(line) in page(once_and_twice[1]).decode()
@@ -78,7 +78,7 @@ def test_a_loose_face_twice_counts_once():
     face = next(explore(box(), TopAbs_FACE))
     one, two = planned(face), planned(compound(face, copied(face)))
     assert two.scope == one.scope
-    assert two.process.doubts[0] == "F2 is F1 again, in the same place, and left out; to leave out the other one: --ignore F1."
+    assert two.process.doubts[0] == "F2 is F1 again, in the same place, and left out; to leave out the other one: `--ignore F1`."
 
 
 def test_bodies_that_overlap_are_judged_both():
@@ -101,7 +101,7 @@ def test_a_face_that_crosses_itself_is_doubted_and_not_judged(tmp_path):
     document = planned(back)
     (line, *_) = document.process.doubts
     assert line.startswith("F7 crosses itself (its curve of revolution crosses its axis), with 745 mm²")
-    assert line.endswith("--ignore F7.")
+    assert line.endswith("`--ignore F7`.")
     assert (document.faces[6].samples, document.faces[6].area_mm2) == (0, 0.0)
     # Where it is, nothing is known: nothing is safe beyond doubt.
     assert document.cutters[0].feasible is not True

@@ -68,10 +68,11 @@ def verdicts_text(out: Path, missing: str = "") -> str:
 
     It is empty where there is another plan or none.
     """
+    from plan_cutters.plan_file.words.names import typed
     from plan_cutters.report import PLAN
     from plan_cutters.report.to_json import unfinished
 
-    if not (text := unfinished(out / PLAN)):
+    if not (text := typed(unfinished(out / PLAN))):
         return ""
     late = f" There was no time to write {missing}: plan-cutters show {out} does." if missing else ""
     return f"the plan of the verdicts is in {out / PLAN}. {text}{late}"

@@ -14,6 +14,7 @@ from plan_cutters.command.terminal import show, wrapped
 from plan_cutters.domain.figures import reporting, unit
 from plan_cutters.plan_file.model import leaves
 from plan_cutters.plan_file.words.cutters import FEASIBLE, details, scene, unjudged_share, worst_face_text
+from plan_cutters.plan_file.words.names import typed
 from plan_cutters.plan_file.words.text import MOST, Story, process_lines, story_of
 from plan_cutters_base.terminal_text import clean
 
@@ -40,7 +41,7 @@ _COLOURS = {True: "green", False: "red", None: "yellow"}
 
 def cell(text: str, style: str = "") -> Text:
     """A text from a file, for a table or a paragraph."""
-    return Text(clean(text), style)
+    return Text(clean(typed(text)), style)
 
 
 def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
@@ -138,7 +139,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
     """Tell the process; with `verbose` all that is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline
-    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, process_lines(plan, story, MOST, typed=True)))
+    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, process_lines(plan, story, MOST, typed)))
     if not verbose:
         return
     tells(

@@ -340,7 +340,7 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
         names = listed([f"F{number}" for number in surroundings.on_bodies])
         on_shell = (
             f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
-            "all others: --ignore leaves them out"
+            "all others: `--ignore` leaves them out"
         )
         warnings.append(on_shell)
     # Faces of no closed body that are neither ignored nor set aside. Those of a broken solid are not loose: they are its skin.

@@ -52,7 +52,7 @@ def noted(plan: Plan, note: Note, **more: Any) -> Plan:
 
 def noted_coarser(options: Options, plan: Plan) -> Plan:
     """The plan with a note that the density of samples in some options was not taken, for it asks too much of this part."""
-    wanted, samples = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}", plan.samples
+    wanted, samples = f"`--spacing {options.spacing:g}`" if options.grid is None else f"`--grid {options.grid}`", plan.samples
     many = count(samples.count, "sample")
     return noted(plan, note("coarser_than_requested", wanted=wanted, samples=many, most_mm=samples.max_gap_mm))
 
@@ -108,10 +108,10 @@ def _of_surfaces(scene: Scene) -> Iterator[Note]:
     if crossing := [f.number for f in faces if f.unjudged == CROSSES]:
         measured = [part.measure(n) for n in crossing]
         area = sum(each.area for each in measured if each is not None)
-        yield notes.crosses_itself(_ids(crossing), CROSSES, area, f"--ignore {ranges(crossing)}")
+        yield notes.crosses_itself(_ids(crossing), CROSSES, area, f"`--ignore {ranges(crossing)}`")
     turned = [f.number for f in faces if f.surface == "revolution" and f.unjudged is None]
     for n, other in sorted(folded_faces(part, turned).items()):
-        yield note("folds_back", f"F{n}", neighbour=f"F{other}", size_mm2=part.faces[n - 1].area, option=f"--ignore F{n}")
+        yield note("folds_back", f"F{n}", neighbour=f"F{other}", size_mm2=part.faces[n - 1].area, option=f"`--ignore F{n}`")
     for n, there in changed_by_step(part).items():
         if n not in ignored:
             yield notes.changed_by_step(f"F{n}", part.faces[n - 1].area, there)

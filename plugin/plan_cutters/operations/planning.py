@@ -185,7 +185,7 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
         notes.append(
-            f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest."
+            f"No operation is planned with what {has}: {', '.join(unpriced)}. Give `--feed MM/MIN`, or ask for the fewest."
         )
     compared = comparable(ready, least)
     if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
@@ -195,7 +195,7 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
     if options.most_operations is None and alone is not None and moving > alone:
         notes.append(
             f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
-            "--most-operations with a large number takes all."
+            "`--most-operations` with a large number takes all."
         )
     return notes
 
@@ -260,7 +260,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         return replace(best, name="fastest"), ()
     many, why = fixed - sum(each.mode == "fixed" for each in chosen.operations), "it takes less time"
     if not few_enough(task, best):
-        why = f"more than {task.ready.options.max_orientations} orientations are not recommended (--max-orientations)"
+        why = f"more than {task.ready.options.max_orientations} orientations are not recommended (`--max-orientations`)"
     words = (
         f"With fixed orientations alone, {fixed} of them, the fastest plan would take {duration(best.total)}; simultaneous "
         f"motion is recommended in place of {many}, for {why}."

@@ -18,6 +18,7 @@ from plan_cutters.files.markup import plain, template
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
+from plan_cutters.plan_file.words.names import typed
 from plan_cutters.plan_file.words.text import Story, further, of_the_plan, story_of
 from plan_cutters.plan_file.words.text import text_of as made_of
 from plan_cutters.report.page.write import page
@@ -56,7 +57,7 @@ def text_of(plan: Plan) -> str:
     lines = [text.headline, *text.lines, "", *story.inside, *of_the_plan(story), "", *_table(story), ""]
     lines += [each.left for each in story.cutters if each.left]
     lines += further(story)
-    return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
+    return "\n".join(plain(typed(line)).rstrip() for line in lines).strip() + "\n"
 
 
 def chosen_size() -> Size:
@@ -173,7 +174,7 @@ def _rendered(
     return _TEMPLATE.render(
         chip=_CHIPS[story.headline.good], headline=story.headline,
         text="\n".join((result.plan.text or made_of(result.plan)).lines),
-        told=[*story.inside, *of_the_plan(story)], columns=list(_COLUMNS.values()),
+        told=[*map(typed, (*story.inside, *of_the_plan(story)))], columns=list(_COLUMNS.values()),
         cutters=cutters[:most], unlisted=max(0, len(cutters) - most) if most else 0, kind=kind,
         taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],

@@ -386,7 +386,7 @@ def _next(plan: Plan) -> Iterator[Line]:
             yield Line("  No step was found that frees any of it.")
         if advice.uncompared:
             of = len(steps) + advice.uncompared
-            yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; --effort thorough compares more.")
+            yield Line(f"  Compared {len(steps)} of {of} changes, those that promised most; `--effort thorough` compares more.")
         if steps and (rest := "; ".join(each.why for each in steps[0].remains)):
             yield Line(f"  After step 1 stays: {rest}.")
         yield from (Line(f"  Or {step.why}.") for step in advice.steps if is_excluded(step))

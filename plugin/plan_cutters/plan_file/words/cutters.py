@@ -312,7 +312,7 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
     """
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
     if verdicts.drilled and not verdicts.reached and not verdicts.not_reached and not verdicts.unjudged:
-        return f"{face.id} is in a hole for a drill: no mill has to reach it (--drill-below)."
+        return f"{face.id} is in a hole for a drill: no mill has to reach it (`--drill-below`)."
     if not verdicts.reached and not verdicts.not_reached:
         inside = "all of it lies inside other bodies of the part" if verdicts.inside_bodies else face.unjudged
         return f"{face.id} could not be judged: {inside or 'it has no sample'}."
@@ -333,7 +333,7 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
         deep = f", up to {mm(way[0].depth_mm)} deep in the tool" if way[0].depth_mm is not None else ""
         text += f" At the best posture {called(way[0].face)} is in the way{deep}."
     if cutter.mend and (changes := helping(cutter.mend)):
-        option = f" [{changes[0].option}]" if changes[0].option else ""
+        option = f" [`{changes[0].option}`]" if changes[0].option else ""
         text += f" What would help: {changes[0].why}: {effect(changes[0])}{option}."
     else:
         text += f" What would help is not known: {unhelped}."

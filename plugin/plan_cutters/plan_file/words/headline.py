@@ -63,7 +63,7 @@ def not_judged(plan: Plan) -> list[str]:
         return []
     many = scope.not_judged > 1
     what = _listed(scope.not_judged_by_kind)
-    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."]
+    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: `--faces all`."]
 
 
 def _listed(kinds: dict[str, int]) -> str:
@@ -98,7 +98,7 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     on = f" on {widest.id}" if widest.gap_mm else ""
     return [
         f"What lies between the samples was not seen: they are up to {mm(plan.samples.max_gap_mm)} apart{on}, more than the "
-        f"radius of {names[entry.id]}, {mm(entry.radius, 4)}. --spacing {entry.radius:.4g} looks more closely."
+        f"radius of {names[entry.id]}, {mm(entry.radius, 4)}. `--spacing {entry.radius:.4g}` looks more closely."
     ]
 
 
@@ -142,9 +142,9 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     coarse = entry.undecided_by_reason.get("tolerance", 0)
     if coarse and coarse >= plan.samples.judged:
         way = (
-            "No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
+            "No smaller `--tolerance` can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
             if raised
-            else "A smaller --tolerance decides it"
+            else "A smaller `--tolerance` decides it"
         )
         yield f"The tolerance, {mm(tolerance)}, is too coarse for this cutter. {way}."
         return
@@ -165,7 +165,7 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
         )
     if coarse == entry.undecided:
         return
-    finer = f"--tolerance {tolerance / _FINER:.3g}"
+    finer = f"`--tolerance {tolerance / _FINER:.3g}`"
     if raised:
         yield f"The tolerance had to be raised to {mm(tolerance)}: what is this narrow stays undecided."
     elif loose or missing:
@@ -196,7 +196,7 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
         else:
             lines.append(
                 f"{name} {verb} {on} and covers {area} there. It stays in the way, and what lies under it is not planned. To "
-                f"plan that, as for another clamping, leave the body out (nothing is then checked against it): {body.option}."
+                f"plan that, as for another clamping, leave the body out (nothing is then checked against it): `{body.option}`."
             )
     if rest := covering_bodies[most:]:
         cover = "body covers" if len(rest) == 1 else "bodies cover"
@@ -209,7 +209,7 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
         sheets, area = entry.sheets, mm2(entry.sheets.area_mm2)
         what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
         lines.append(
-            f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. {sheets.option} leaves such sheets out."
+            f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. `{sheets.option}` leaves such sheets out."
         )
     return lines
 
@@ -593,5 +593,5 @@ def between(plan: Plan, c: CutterEntry) -> str:
     return (
         f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
         f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
-        "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
+        "the samples are too far apart. Check it in simulation, or ask for more (`--spacing`, `--area-budget`)."
     )

@@ -138,27 +138,22 @@ def named(plan: "Plan", text: str) -> str:
     return renamed(text, short_names(plan))
 
 
-#: An option of the command with what follows it, if that is its value; inside brackets all that follows it is.
-_VALUE = r"(?:[A-Z]*\d|all\b|mm\b|left\b|mend\b|fewest\b|fastest\b|thorough\b)[^\s;:\])]*?"
-_OPTION = re.compile(rf"--([a-z][a-z-]*)(?: ({_VALUE})(?=[.;:,)]*(?:\s|$)))?")
-_TYPED = re.compile(r"\[(?:add )?(--[^\]]*)\]")
+def typed(text: str) -> str:
+    """A text with its options as one types them: in it each stands in backquotes, `--faces all`, as commands do in prose."""
+    return text.replace("`", "")
 
 
 def as_fields(text: str) -> str:
-    """Write a text for those who have no shell: options as the fields of the same name, which forms and agents have.
+    """A text for those who have no shell: options as the fields of the same name, which forms and agents have.
 
-    >>> as_fields("Next: ask what would help [--answers mend]"), as_fields("2 fillets were not judged: --faces all.")
+    >>> as_fields("Next: ask what would help [`--answers mend`]"), as_fields("2 fillets were not judged: `--faces all`.")
     ('Next: ask what would help [answers = mend]', '2 fillets were not judged: faces = all.')
-    >>> as_fields("left 3 % [--cutter D3L20 --holder er32]"), as_fields("A smaller --tolerance decides it; --tolerance 0.005.")
-    ('left 3 % [cutter = D3L20, holder = er32]', 'A smaller tolerance decides it; tolerance = 0.005.')
+    >>> as_fields("left 3 % [`--cutter D3L20 --holder er32`]"), as_fields("A smaller `--tolerance` decides it.")
+    ('left 3 % [cutter = D3L20, holder = er32]', 'A smaller tolerance decides it.')
     """
 
-    def field(match: re.Match[str]) -> str:
-        name = match[1].replace("-", "_")
-        return name if match[2] is None else f"{name} = {match[2]}"
+    def fields(options: str) -> str:
+        each = (option.partition(" ") for option in options.removeprefix("--").split(" --"))
+        return ", ".join(" = ".join(filter(None, (name.replace("-", "_"), value))) for name, _, value in each)
 
-    def fields(match: re.Match[str]) -> str:
-        each = (words.strip().partition(" ") for words in f" {match[1]}".split(" --")[1:])
-        return f"[{', '.join(' = '.join(filter(None, (name.replace('-', '_'), value))) for name, _, value in each)}]"
-
-    return _OPTION.sub(field, _TYPED.sub(fields, text))
+    return "".join(fields(each) if k % 2 else each for k, each in enumerate(text.split("`")))

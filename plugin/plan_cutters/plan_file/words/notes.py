@@ -51,15 +51,15 @@ class Note(NamedTuple):
 #: Texts of notes that are filled in: `{names}` are listed, `{all}` are all of them, `{are}`, `{faces}` and `{s}` (a verb) agree
 #: with their number; what ends in `_mm`, `_mm2` and `_deg` is written as a length, an area and an angle.
 _TEXTS: dict[NoteCode, str] = {
-    "cutters_built_in": "The cutters are the built-in set, of usual metric sizes in plain holders: give your own with --cutter "
-    "or --cutters.",
+    "cutters_built_in": "The cutters are the built-in set, of usual metric sizes in plain holders: give your own with `--cutter` "
+    "or `--cutters`.",
     "no_holder": "{names} {are} judged up to the stated length, without a holder.",
-    "tilts_not_searched": "{names} can touch at larger tilts than the {most_deg} searched: --tilt asks for more.",
+    "tilts_not_searched": "{names} can touch at larger tilts than the {most_deg} searched: `--tilt` asks for more.",
     "all_length_cuts": "All of a cutter's length cuts, unless it says where its flutes end.",
     "samples_apart": "Verdicts are about samples; grid neighbours, and points of a face from its nearest sample, are at most "
     "{most_mm} apart.",
     "samples_coarser": "Samples are {times:.3g} times as far apart as curvature and the smallest cutter ask, for a default "
-    "plan takes about {budget:,}: --spacing asks for more, --faces for less.",
+    "plan takes about {budget:,}: `--spacing` asks for more, `--faces` for less.",
     # Of a part of a batch whose density is for all parts.
     "coarser_than_requested": "Coarser than requested: {wanted} would take too many samples here; judged at {samples}, up to "
     "{most_mm} apart.",
@@ -67,7 +67,7 @@ _TEXTS: dict[NoteCode, str] = {
     "plan.json says how far.",
     "not_sampled": "No verdict is about {all}: no sample could be taken there.",
     "maps_partial": "Postures of {unmapped} of {judged} samples were not mapped, for it would take too long: there every tilt "
-    "is undecided in postures.npz; sample more coarsely (--spacing), or give --map-budget.",
+    "is undecided in postures.npz; sample more coarsely (`--spacing`), or give `--map-budget`.",
     "maps_first_setup": "The posture maps are about the first setup alone: others hold the part differently.",
     "stick_out_each_setup": "With the least stick-outs each setup reaches all that it serves now; if another setup served some "
     "of it, less might do.",
@@ -83,7 +83,7 @@ _TEXTS: dict[NoteCode, str] = {
     "open_faces": "{names} enclose{s} no material: only the surface is in the way, not what may lie behind it.",
     "folds_back": "{names} folds back onto {neighbour}, with {size_mm2}: a surface of revolution that crosses its axis comes "
     "back from STEP as the rest of what was made. Give the shape in Python or as BREP, or leave it out: {option}.",
-    "faces_none_sculptured": "No face that can be judged is sculptured: all are targets ({targets}); --faces chooses among them.",
+    "faces_none_sculptured": "No face that can be judged is sculptured: all are targets ({targets}); `--faces` chooses among them.",
     "faces_ignored": "{faces} {are} ignored, neither targets nor obstacles (nothing is checked against them): {names}.",
     "faces_clamped": "{faces} {are} clamped and left for another setup: {names}.",
     "faces_clamped_there": "{all}: clamped in the setup {setup}, and to be machined in another one.",
@@ -120,24 +120,24 @@ def later_stages(
     axes of those that are not judged.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('', '', '', 'the proof between the samples', '', '--operations fewest', '')
+    ('', '', '', 'the proof between the samples', '', '`--operations fewest`', '')
     """
     return (
         f"what follows in setup {joined([axis_words(each) for each in setups])}" if setups else "",
         f"the reasons of {listed(reasons)}" if reasons else "",
         "witnesses" if witnesses else "",
         "the proof between the samples" if area else "",
-        f"--answers {','.join(answers)}" if answers else "",
-        "your steps (--process)" if process else f"--operations {operations}" if operations is not None else "",
-        "--posture-maps" if maps else "",
+        f"`--answers {','.join(answers)}`" if answers else "",
+        "your steps (`--process`)" if process else f"`--operations {operations}`" if operations is not None else "",
+        "`--posture-maps`" if maps else "",
     )
 
 
 def run_unfinished(absent: Sequence[str], work: str = "", *, unexplained: bool = False) -> Note:
     """Say what a plan is without; `work`: what the run was doing when it was interrupted; `unexplained`: reasons are missing.
 
-    >>> run_unfinished(["--answers mend", "--operations fewest"], "planning the operations").text
-    'The run was interrupted while planning the operations: this plan is without --answers mend and --operations fewest.'
+    >>> run_unfinished(["`--answers mend`", "`--operations fewest`"], "planning the operations").text
+    'The run was interrupted while planning the operations: this plan is without `--answers mend` and `--operations fewest`.'
     """
     how = f"was interrupted while {work}" if work else "was not done"
     instead = " What it names in their place forbids most tilts, and need not be what helps." if unexplained else ""
@@ -152,7 +152,7 @@ def angles_rounded(steps: Mapping[int, Mapping[str, float]]) -> Note:
 
 def side_guessed(*, loose: bool) -> Note:
     """`loose`: there are faces in no solid, which alone can be turned."""
-    return Note("side_guessed", f"Which side is material is a guess{'; --flip machines the other side' if loose else ''}.")
+    return Note("side_guessed", f"Which side is material is a guess{'; `--flip` machines the other side' if loose else ''}.")
 
 
 def all_faces_open() -> Note:
@@ -185,7 +185,7 @@ def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note
     return Note(
         "repeated_body",
         f"{name.capitalize()} ({faces}) is {other} ({stays_faces}) again, in the same place, and is left out; to leave out "
-        f"the other one: --ignore {stays_faces}.",
+        f"the other one: `--ignore {stays_faces}`.",
     )
 
 
@@ -193,7 +193,7 @@ def repeated_faces(faces: str, stay: str, count_: int) -> Note:
     are, others = ("is", "other one") if count_ == 1 else ("are", "others")
     return Note(
         "repeated_body",
-        f"{faces} {are} {stay} again, in the same place, and left out; to leave out the {others}: --ignore {stay}.",
+        f"{faces} {are} {stay} again, in the same place, and left out; to leave out the {others}: `--ignore {stay}`.",
     )
 
 
@@ -202,7 +202,7 @@ def bodies_apart(faces: Sequence[str]) -> Note:
     return Note(
         "bodies_apart",
         f"The file has {len(faces)} bodies that do not touch: {listed(faces, 4)}. Each is clamped and machined by itself: plan "
-        f"one at a time, the first with --ignore {','.join(faces[1:])}.",
+        f"one at a time, the first with `--ignore {','.join(faces[1:])}`.",
     )
 
 
@@ -228,7 +228,7 @@ def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
     if dropped:
         why.append(f"{dropped} cells were not cut up, for too little of the surface was to be gained")
     if short:
-        why.append(f"the budget was spent with {short} cells open, so a larger --area-budget may serve more")
+        why.append(f"the budget was spent with {short} cells open, so a larger `--area-budget` may serve more")
     causes = "; ".join(why) or "some of it has no samples or no closed border"
     return Note(
         "area_left",
@@ -241,7 +241,7 @@ def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
 _RAISED, _FACES = 1.001, 3
 #: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
 _LONG = 1000.0
-_WRONG = "is its unit wrong? --unit gives the right one."
+_WRONG = "is its unit wrong? `--unit` gives the right one."
 _SHEETS = "stand", "construction sheets do", "them"
 #: Notes that are doubts, in the order in which these are listed.
 _DOUBTFUL: tuple[tuple[NoteCode, ...], ...] = (
@@ -274,17 +274,17 @@ def _unit(plan: Plan) -> Iterator[str]:
     widths = [2.0 * cutter.radius for cutter in plan.cutters]
     for each in plan.part.unit_readings:
         this, other = size(plan.part.size_mm), size(plan.part.size_mm, each.times)
-        choose = f": --unit {each.unit} takes the latter" if each.unit else ""
+        choose = f": `--unit {each.unit}` takes the latter" if each.unit else ""
         if each.cause == "disagree":
             yield f"The file states two units ({each.stated}): {this} by its flag, judged so, {other} by its name{choose}."
         elif each.cause == "scale":
             yield f"The file states a model space scale of {each.stated}: {this} by it, judged so, {other} without it{choose}."
         else:
-            yield f"The file's unit is not sure ({each.stated}): it is taken in {each.taken}; --unit gives another one."
+            yield f"The file's unit is not sure ({each.stated}): it is taken in {each.taken}; `--unit` gives another one."
     if plan.part.unit_readings:
         return
     if plan.part.unit_doubt:
-        yield f"The part is {mm(longest)} long: if that is wrong, --unit gives the right unit."
+        yield f"The part is {mm(longest)} long: if that is wrong, `--unit` gives the right unit."
     elif longest < min(widths):
         yield f"The part is smaller than any cutter is wide: {_WRONG}"
     elif longest > _LONG * max(widths):
@@ -345,15 +345,15 @@ def _side(plan: Plan) -> Iterator[str]:
     # The option turns what stands in no solid.
     turned = [name for name in part.guessed_faces if not part.solids or name in part.loose_faces]
     if turned and len(turned) >= sum(not face.ignored for face in plan.faces):
-        yield "An open shell: which side is material is a guess; --flip takes the other one."
+        yield "An open shell: which side is material is a guess; `--flip` takes the other one."
     elif turned:
-        yield f"Which side of {listed(turned, _FACES)} is material is a guess; --flip takes the other one."
+        yield f"Which side of {listed(turned, _FACES)} is material is a guess; `--flip` takes the other one."
     if solid := [name for name in part.guessed_faces if name not in turned]:
         faces = listed(solid, _FACES)
         yield f"Which side of {faces} is material is a guess: a solid that is open or crosses itself does not tell it."
     if loose := part.loose_faces:
         verb, what, them = ("stands", "a construction sheet does", "it") if len(loose) == 1 else _SHEETS
-        option = f"--ignore {ranges(int(face[1:]) for face in loose)}"
+        option = f"`--ignore {ranges(int(face[1:]) for face in loose)}`"
         yield f"{listed(loose, _FACES)} {verb} in no solid, as {what}: {option} leaves {them} out."
 
 

@@ -119,7 +119,7 @@ def one_more(operations: OperationsEntry | None) -> str:
         return ""
     where = f" in setup {more.setup + 1}" if more.setup or _setups(operations) else ""
     what, saved = f"{angles_text(more.angles_deg)} with {more.cutter}{where}", duration(more.saves_seconds)
-    return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [--operations fastest]."
+    return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [`--operations fastest`]."
 
 
 def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
@@ -181,7 +181,7 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
         yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
     if operations.assumed.index_from == "assumed" and first.orientations > 1:
         guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
-        yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
+        yield f"{guess}: the machine does not say how fast its rotary axes turn; `--index-time` tells it."
 
 
 def _by_cutter(operations: OperationsEntry) -> Iterator[str]:

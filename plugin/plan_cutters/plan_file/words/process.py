@@ -144,7 +144,7 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         else ""
     )
     if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
-        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: --holder-clearance {MARGIN:g}."
+        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`."
     return ProcessStory(
         rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
@@ -285,7 +285,7 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
     if process.exempt is not None:
         where = listed(process.exempt.faces, _FACES)
-        yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
+        yield f"Not required (`--sharp-edges left`): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
 def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:
@@ -324,7 +324,7 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
 
 def _next(each: NextEntry) -> str:
     stays = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
-    bracket = f" [{shlex.join(each.argv)}]" if each.argv else ""
+    bracket = f" [`{shlex.join(each.argv)}`]" if each.argv else ""
     return f"Next: {each.words}{stays}{bracket}"
 
 

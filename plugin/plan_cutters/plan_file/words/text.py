@@ -1,6 +1,6 @@
 """A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -25,7 +25,7 @@ from plan_cutters.plan_file.words.headline import (
     unseen,
 )
 from plan_cutters.plan_file.words.holes import holes
-from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
+from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names, typed
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.operations import in_short, one_more, operations
 from plan_cutters.plan_file.words.process import ProcessStory, process_story, shortened, with_process_words, wrapped
@@ -173,20 +173,20 @@ def text_of(plan: Plan) -> TextEntry:
     )
 
 
-def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -> list[str]:
+def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], str] = as_fields) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
 
-    `typed`: for a terminal, with the options that one types; other readers have fields of these names.
+    `write`: how options are written: `typed` for a terminal; other readers have fields of these names.
     """
     process = story.process
     inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     unshown = len(story.notes) + len(story.setups) + len(story.answers)
-    where = "-v, or the review page" if typed else "see the review page"
+    where = "-v, or the review page" if write is typed else "see the review page"
     paragraphs: list[list[str]] = []
 
     def add(texts: Iterable[str], each: int) -> None:
-        paragraphs.extend(wrapped([text if typed else as_fields(text)], each) for text in texts if text)
+        paragraphs.extend(wrapped([write(text)], each) for text in texts if text)
 
     add(plan.process.doubts if plan.process else (), 2)
     add(inside, 6)

@@ -19,8 +19,8 @@ from plan_cutters.plan_file.words.text import Story
 from plan_cutters.report.page.arrays import Arrays, Stored
 from plan_cutters.report.protocol import Judged
 
-#: What stays, with its share, at the beginning of a sentence; and what one would type, at the end.
-_REMAINING, _TYPED = re.compile(r"Left(?: besides)?, ([<>]?[\d.]+ %), "), re.compile(r" \[--[^\]]*\]$")
+#: What stays, with its share, at the beginning of a sentence.
+_REMAINING = re.compile(r"Left(?: besides)?, ([<>]?[\d.]+ %), ")
 #: Patterns of steps, another one each time that the colours come round.
 PATTERNS = ("plain", "cross", "dots", "bars")
 
@@ -100,7 +100,7 @@ def process_tables(plan: Plan, story: Story) -> dict[str, Any]:
     entries = [*entry.left[: len(whole.remaining)], *[None] * len(whole.remaining)]
     remaining = [(each, *_parted(text)) for each, text in zip(entries, whole.remaining, strict=False)]
     following = [
-        (as_fields(_TYPED.sub("", text)).removeprefix("Next: "), shlex.join(each.argv))
+        (as_fields(text.removeprefix("Next: ").partition(" [`")[0]), shlex.join(each.argv))
         for text, each in zip(whole.next, entry.next, strict=False)
     ]
     return {"process": whole, "setups": setups, "remaining": remaining, "next": following}
