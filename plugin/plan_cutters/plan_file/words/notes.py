@@ -83,7 +83,8 @@ _TEXTS: dict[NoteCode, str] = {
     "open_faces": "{names} enclose{s} no material: only the surface is in the way, not what may lie behind it.",
     "folds_back": "{names} folds back onto {neighbour}, with {size_mm2}: a surface of revolution that crosses its axis comes "
     "back from STEP as the rest of what was made. Give the shape in Python or as BREP, or leave it out: {option}.",
-    "faces_none_sculptured": "No face that can be judged is sculptured: all are targets ({targets}); `--faces` chooses among them.",
+    "faces_none_sculptured": "No face that can be judged is sculptured: all are targets ({targets}); `--faces` chooses among "
+    "them.",
     "faces_ignored": "{faces} {are} ignored, neither targets nor obstacles (nothing is checked against them): {names}.",
     "faces_clamped": "{faces} {are} clamped and left for another setup: {names}.",
     "faces_clamped_there": "{all}: clamped in the setup {setup}, and to be machined in another one.",

@@ -1,6 +1,6 @@
 """A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -179,43 +179,53 @@ def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], st
     `write`: how options are written: `typed` for a terminal; other readers have fields of these names.
     """
     process = story.process
-    inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
+    inside = [f"Inside other bodies: {text}" for text in story.inside[:1]] + [" ".join(story.inside[1:])]
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     unshown = len(story.notes) + len(story.setups) + len(story.answers)
     where = "-v, or the review page" if write is typed else "see the review page"
-    paragraphs: list[list[str]] = []
+    paragraphs: list[tuple[int, list[str]]] = []
 
-    def add(texts: Iterable[str], each: int) -> None:
-        paragraphs.extend(wrapped([write(text)], each) for text in texts if text)
+    def add(texts: Iterable[str], each: int, rank: int = 2) -> None:
+        paragraphs.extend((rank, wrapped([write(text)], each)) for text in texts if text)
 
-    add(plan.process.doubts if plan.process else (), 2)
-    add(inside, 6)
-    add(_doubts(plan, story)[:_DOUBTS], 1)
-    add([judged], 3)
+    add(plan.process.doubts if plan.process else (), 2, 0)
+    add(inside[:1], _LEFT, 1)
+    add(inside[1:], 5)
+    add(_doubts(plan, story)[:_DOUBTS], 1, 1)
+    add([judged], 3, 1)
     if process:
-        add([in_summary(plan)], 2)
-        paragraphs += [[line] for line in ([process.roughing] if process.roughing else []) + process.table()]
-    add(holes(plan), 2)
+        add([in_summary(plan)], 2, 1)
+        paragraphs += [(0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table()]
+    add(holes(plan), 2, 1)
     if plan.process and plan.process.plan == "fewest":
         add([named(plan, one_more(plan.operations))], 3)
     if process:
-        add([*shortened(process.own), *process.remaining[: process.much]], _LEFT)
-        add(process.next, 3)
+        left = [*shortened(process.own), *process.remaining[: process.much]]
+        add(left[:1], _LEFT, 0)
+        add(left[1:], _LEFT)
+        add(process.next[:1], 3, 0)
+        add(process.next[1:], 3)
         add(process.remaining[process.much :], _LEFT)
-    add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2)
-    add([process.clearance if process else ""], 1)
+    add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
+    add([process.clearance if process else ""], 1, 1)
     add(_alone(story), _ALONE)
     add([story.headline.why], 2)
     add(story.between[:1], 2)
     add([f"{count(unshown, 'note')}: {where}."] if unshown else [], 1)
-    if sum(map(len, paragraphs)) <= most:
-        return [line for paragraph in paragraphs for line in paragraph]
-    lines = list[str]()
-    for paragraph in paragraphs:
-        # A sentence that is cut says something else.
-        if len(lines) + len(paragraph) < most:
-            lines += paragraph
-    return [*lines, f"More: {where}."]
+    return _fitting(paragraphs, most, f"More: {where}.")
+
+
+def _fitting(paragraphs: Sequence[tuple[int, list[str]]], most: int, more: str) -> list[str]:
+    """Lines of as many paragraphs, with their ranks, as fit: by rank, and each whole, for a sentence that is cut says
+    something else."""
+    if sum(len(lines) for _, lines in paragraphs) <= most:
+        return [line for _, lines in paragraphs for line in lines]
+    space, shown = most - 1, set[int]()
+    for k in sorted(range(len(paragraphs)), key=lambda k: paragraphs[k][0]):
+        if len(paragraphs[k][1]) <= space:
+            shown.add(k)
+            space -= len(paragraphs[k][1])
+    return [*(line for k in sorted(shown) for line in paragraphs[k][1]), more]
 
 
 def _doubts(plan: Plan, story: Story) -> list[str]:
