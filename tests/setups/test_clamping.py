@@ -221,6 +221,12 @@ def test_a_body_that_no_jaw_grips_is_told():
     assert "do not hold the body of F7" in " ".join(text_of(result.plan).lines[:6])
 
 
+def test_stock_holds_all_bodies_in_it():
+    part = compound(box(50, 30, 20), box(10, 10, 10, at=(60, 10, 0)))
+    _, vise = Scene.of(part, fixtures=("stock:box", "vise")).surround().fixtures
+    assert (vise.fixture.clamping.grip > 0.0, vise.unheld) == (True, ())
+
+
 def test_no_body_is_held_across_a_gap():
     part = compound(box(20, 30, 20), box(20, 24, 20, at=(40, 3, 0)))
     vise = "vise:46x25x65:3:{}@{},15,0"
