@@ -1,6 +1,6 @@
 """Plan every CAD file of a folder with one cutter, read the annotated STEP back, and write what became of each.
 
-`python benchmarks/real_files.py FOLDER docs/real_files.md` runs the command as a user would, one file at a time.
+`python benchmarks/real_files.py FOLDER report.md` runs the command as a user would, one file at a time.
 """
 
 import json

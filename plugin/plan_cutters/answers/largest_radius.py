@@ -1,6 +1,6 @@
 """Find the largest flat or ball end that reaches each sample, whatever cutters there are.
 
-Lemmas N3 and N4 of `docs/nested_cutters_proof.md`.
+Lemmas N3 and N4 of `docs/proofs.md`.
 """
 
 import math

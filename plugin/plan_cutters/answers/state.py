@@ -2,7 +2,7 @@
 values of a step are compared before any is judged.
 
 Samples are asked again quickly, or as a plan judges them. A quick look asks only whether samples have a posture, in any company;
-what is told of a step rests on `judge`: Lemma M1 of `docs/mending_proof.md`.
+what is told of a step rests on `judge`: Lemma R1 of `docs/proofs.md`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -2,7 +2,7 @@
 
 A stick-out is tried by the search that judges every cutter. Where a sample is not reached, the postures that it has with a longer
 one say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges
-(Lemma H3 of `docs/stick_out_proof.md`).
+(Lemma H3 of `docs/proofs.md`).
 """
 
 from dataclasses import replace

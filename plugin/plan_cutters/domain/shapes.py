@@ -198,7 +198,7 @@ def depth_along_normal(cutter: Dimensions) -> float:
     known.
 
     A corner is a ring of balls about the contact's own one; of a flat end the line leads into it, past its bottom and its wall
-    (lemma F3 of `docs/material_proof.md`).
+    (lemma F3 of `docs/proofs.md`).
     """
     if cutter.shape != "end" or cutter.taper or cutter.allowance:
         return 0.0

@@ -4,7 +4,7 @@ Two looks: a grid of cells, some of which are surely outside because a way leads
 there is nothing (whatever is open, turned or doubled); and for points elsewhere the winding number of the bodies' skins,
 summed over the tree. A straight way out, or a point near by that is known to be inside, saves the sum. Bodies may touch,
 overlap, repeat each other or hold voids: each skin counts as enclosing all that is within it, so a void is as little to
-be got into as material. Lemmas F1, F5 and F6 of `docs/material_proof.md`.
+be got into as material. Lemmas F1, F5 and F6 of `docs/proofs.md`.
 
 Source of the hierarchical sum: Barill, Dickson, Schmidt, Levin, Jacobson, *Fast winding numbers for soups and clouds* (2018).
 """
@@ -289,7 +289,7 @@ def touches(x, y, z, clear, solids, stack):
 def way_out(x, y, z, dx, dy, dz, solids, stack):
     """Whether a straight way leads from a point along a unit vector past every skin to where it is surely outside.
 
-    Lemma F5 of `docs/material_proof.md`, along a line in place of cells: from place to place it goes as far as no triangle is
+    Lemma F5 of `docs/proofs.md`, along a line in place of cells: from place to place it goes as far as no triangle is
     near, but for what skins may be off and open.
     """
     length = 0.0
@@ -328,7 +328,7 @@ def in_known_ball(x, y, z, solids, within, balls, stored):
 def keep_ball(x, y, z, number, solids, balls, stored, stack):
     """Keep a point that lies in a body, with the radius of a ball about it and the least winding number there.
 
-    Lemma F6 of `docs/material_proof.md`: past no skin the winding number of closed ones stays; that of others, harmonic and not
+    Lemma F6 of `docs/proofs.md`: past no skin the winding number of closed ones stays; that of others, harmonic and not
     below 0, keeps half of itself in a ball of a fifth of the radius of one that touches nothing.
     """
     if stored[0] != solids.key:

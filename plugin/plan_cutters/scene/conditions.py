@@ -116,7 +116,7 @@ class Context(Record):
         return cls(cutter, conditions, *tools(cutter, conditions.tolerance, conditions.obstacles.triangles.chord_error))
 
     def _proved_at(self) -> Floats:
-        """Distances that lemma F3 of `docs/material_proof.md` allows, farther than what is clear of the contact's own surface."""
+        """Distances that lemma F3 of `docs/proofs.md` allows, farther than what is clear of the contact's own surface."""
         deep = self.conditions.obstacles.depths(self.conditions.tolerance)[1]
         distance = _PROVED_AT * depth_along_normal(self.cutter)
         return np.ascontiguousarray(distance[distance > _CLEAR * deep])

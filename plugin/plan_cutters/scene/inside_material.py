@@ -3,7 +3,7 @@
 At every tilt from 0 to 90 deg the point at a small distance `d` from the contact along the normal lies in the cutter, at its
 edge: `P + d n = P - d sin(tilt) x_T + d cos(tilt) a`. If a ball of radius r about it is all material, the cutter holds points
 of that ball which are deeper in it than r / sqrt(2). So one test a contact settles all its postures
-(Lemma F3 of `docs/material_proof.md`).
+(Lemma F3 of `docs/proofs.md`).
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """Does a triangle, or do eight boxes or triangles, stay out of the body of a plain cylinder at all tilts of an interval?
 
-The sides are those of lemmas M1 to M3 of `docs/posture_map_proof.md`. A triangle's polygon has rows (x, y, z) from the contact.
+The sides are those of lemmas M1 to M3 of `docs/proofs.md`. A triangle's polygon has rows (x, y, z) from the contact.
 Eight at a time go without a branch, so that the compiler uses the lanes of the processor.
 
 An interval of tilts at a rotation is a row: the tilts between which it lies, their cosines and sines, and how far its ends may

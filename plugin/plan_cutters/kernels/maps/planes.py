@@ -1,6 +1,6 @@
 """Does a convex piece of a tool stay clear of boxes or triangles at all tilts of an interval? Eight at a time, parted by planes.
 
-Two lemmas carry all of it, M5 and M6 of `docs/posture_map_proof.md`. Points count from the centre about which the tool tilts.
+Two lemmas carry all of it, M5 and M6 of `docs/proofs.md`. Points count from the centre about which the tool tilts.
 *One plane at both ends* (M5): a plane that is fixed to the tool and touches the piece parts it from a point at both ends of an
 interval; then it does so in between, if the tilts at which it does not could not all lie between the ends. *A plane fixed in the
 part* (M6): along a direction of the part the piece goes no farther, at any tilt of an interval, than a closed form says.

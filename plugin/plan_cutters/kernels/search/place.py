@@ -150,7 +150,7 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
 
 
 class Proof(NamedTuple):
-    """This record holds how one look proves that all postures of a contact are blocked (lemma F3 of `docs/material_proof.md`).
+    """This record holds how one look proves that all postures of a contact are blocked (lemma F3 of `docs/proofs.md`).
 
     At every tilt the tool holds a part of a ball about a point over the contact, deeper than what blocks.
     """

@@ -12,7 +12,7 @@ no point of the surface is too deep.
 Of a row of tools, each within the next, the largest that finds a posture is searched from the answer at the sample before: up or
 down by 1, 2, 4 ... tools until the answer lies between two of them, then what is between is halved. A tool is asked for a posture
 at the rotation found last; where that has none, what is surely in the way is asked next, for it answers for all rotations and
-mostly ends the search: an inaccessible tool costs one search without success, not two (`docs/nested_cutters_proof.md`, lemma N4).
+mostly ends the search: an inaccessible tool costs one search without success, not two (`docs/proofs.md`, lemma N4).
 """
 
 from collections import namedtuple
@@ -71,7 +71,7 @@ def _reason(tally, bent):
 def shut_in(contacts, row, deep, solids, scratch):
     """Whether a contact may lie in a body so that every posture is blocked; `deep` as for `Mode`.
 
-    Lemma F3 of `docs/material_proof.md`, for what perhaps encloses something.
+    Lemma F3 of `docs/proofs.md`, for what perhaps encloses something.
     """
     p, n = contacts.point[row], contacts.normal[row]
     x, y, z = p[0] + AWAY * deep * n[0], p[1] + AWAY * deep * n[1], p[2] + AWAY * deep * n[2]

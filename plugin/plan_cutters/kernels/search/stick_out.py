@@ -3,7 +3,7 @@
 A holder that moves towards the spindle along its axis leaves behind every point that is lower than its outline there. Its
 outline, as `domain.stick_out.outline` makes it, is the height over its nose at which the holder first becomes wider than a
 distance from the axis: rows (v0, v1, q0, q1), the height rising from v0 at q0 to v1 at q1, level where both are the same. A point
-at height w and distance q is cleared if the nose is no lower than w - v(q): lemmas H1 and H2 of `docs/stick_out_proof.md`.
+at height w and distance q is cleared if the nose is no lower than w - v(q): lemmas H1 and H2 of `docs/proofs.md`.
 """
 
 import numpy as np
