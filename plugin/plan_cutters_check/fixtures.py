@@ -16,6 +16,8 @@ from plan_cutters_check.surface import Face, Source, Triangles
 
 #: A table reaches so much farther than the part, mm: as far as any tool.
 _TABLE = 2000.0
+#: A cylinder of stock lies along a part that is so many times as long across the setup axis as it is high and wide.
+_LONG = 2.17
 #: Sides of a cylinder; each lies within r (1 - cos(pi / sides)) of it.
 _SIDES = 720
 #: So many triangles are seen from points at a time.
@@ -76,8 +78,18 @@ class PlacedFixture:
 
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
     """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup: two corners; of a
-    cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side.
+    cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side. One about a part that is
+    long across the setup axis lies along it: of that two corners.
     """
+    size = high - low
+    along = next((k for k in (0, 1) if size[k] > _LONG * np.delete(size, k).max()), 2)
+    if len(margins) == 2 and along < 2:
+        # A bar lies: the box about what of it is below the part.
+        radius, side = 0.5 * float(np.delete(size, along).max()) + margins[0], 1 - along
+        half, least, most = math.sqrt(max(0.0, radius**2 - (0.5 * size[2]) ** 2)), low - margins[0], high + margins[0]
+        middle = 0.5 * (low + high)[side]
+        least[side], most[side], least[2], most[2] = middle - half, middle + half, 0.5 * (low + high)[2] - radius, low[2]
+        return (*least.tolist(), *most.tolist())
     if len(margins) == 2:
         middle, wide = 0.5 * (low + high)[:2], 0.5 * float((high - low)[:2].max())
         return (*middle.tolist(), wide + margins[0], float(low[2]) - margins[1], float(low[2]))

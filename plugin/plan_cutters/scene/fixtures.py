@@ -266,9 +266,9 @@ def stock_body(
 
 def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:
     """What of stock is below the part."""
-    frame, high = frame_of(np.asarray(setup, float)), np.append(blank.high[:2], blank.part_low)
-    if blank.radius is None:
-        return _solid(np.ascontiguousarray(box(blank.low, high) @ frame), 0.0)
+    frame, (low, high) = frame_of(np.asarray(setup, float)), blank.foot
+    if blank.radius is None or blank.lying:
+        return _solid(np.ascontiguousarray(box(low, high) @ frame), 0.0)
     sides = sides_of(blank.radius, chord)
     middle = np.append(0.5 * (blank.low + blank.high)[:2], blank.low[2])
     vertex = (cylinder(blank.radius, float(high[2] - blank.low[2]), sides) + middle) @ frame

@@ -29,15 +29,17 @@ from plan_cutters.setups.workpiece import (
 
 #: Jaws of a chuck are turned by so many degrees to find their best place; what they touch is told apart by one degree.
 _TURN, _BINS = 5, 360
-#: Arcs of fewer degrees do not tell their cylinder.
-_ARC = 20
+#: Arcs of fewer degrees do not tell their cylinder; one that lies in jaws is as far above the part's lowest point at most, as a
+#: share of what they grip.
+_ARC, _LOWEST = 20, 0.1
+_X, _Y, _Z = np.eye(3)
 
 
 def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
     """Where a chuck may grip, and why it may not where a cylinder is no such place."""
     places, refused = list[Place](), list[Refused]()
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
-    for wall, centre, radius in _upright_cylinders(part):
+    for wall, centre, radius in _cylinders(part, part.vertex, part.normal):
         result, why = list[Place](), short
         if 2.0 * radius > largest_gripped():
             why = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}"
@@ -53,13 +55,15 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
     return places, refused if places or refused else [Refused((True, 0.0), short)]
 
 
-def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
-    """Upright outside cylinders, the faces of one together: each with its centre (3,) and the largest radius, mm."""
+def _cylinders(part: Workpiece, vertices: Floats, normals: Floats) -> list[tuple[Wall, Floats, float]]:
+    """Outside cylinders of a part along the z of a frame, the faces of one together: each with its centre (3,) and the largest
+    radius, mm. `vertices`, `normals`: of its triangles in that frame.
+    """
     cylinders: list[tuple[Wall, Floats, float]] = []
     for number, rows in rows_by_face(part.face).items():
         if number in part.planes:
             continue
-        vertex, normal = part.vertex[rows], part.normal[rows]
+        vertex, normal = vertices[rows], normals[rows]
         if (np.abs(normal[:, 2]) > PARALLEL * np.linalg.norm(normal, axis=1)).any():
             continue
         circle = _circle(vertex, normal)
@@ -150,7 +154,7 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
     `sign` (faces,): side of each face that is out of the material. `reach`: how far the part is from the origin at most, mm.
     """
     # Planes that count as parallel may still come together so far from where they are known.
-    upright, round_, slack = list[tuple[Floats, float, float]](), False, 4.0 * PARALLEL * reach
+    upright, round_, lying, slack = list[tuple[Floats, float, float]](), False, False, 4.0 * PARALLEL * reach
     for face in faces:
         known = face.carrier
         if known is None and face.shape == "plane":
@@ -163,8 +167,11 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
         if face.shape == "plane" and along <= 2.0 * PARALLEL:
             upright.append((direction, float(direction @ known.point), side))
         round_ |= face.shape == "cylinder" and along >= 1.0 - PARALLEL and side >= 0.0
+        lying |= face.shape == "cylinder" and along <= 2.0 * PARALLEL and side >= 0.0
     if requested.kind == CHUCK:
         return "" if round_ else "no outside cylinder along it"
+    if lying:
+        return ""
     widest, opposite = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2], False
     for i, (one, first, side) in enumerate(upright):
         for other, second, its in upright[:i]:
@@ -194,7 +201,10 @@ _LONG, _LONG_SHARE, _LUG = 15.0, 1.0 / 3.0, 0.25
 
 
 def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
-    """Where a vise may grip, and why it may not where two opposite plane faces are no such place."""
+    """Where a vise may grip, and why it may not where two opposite plane faces are no such place.
+
+    Soft jaws that are bored to it hold a cylinder that lies across the setup axis on what they rest on.
+    """
     walls = _upright_planes(part, max(each[1] for each in VISES) if requested.sizes is None else requested.sizes[1])
     places, refused = list[Place](), list[Refused]()
     for i, one in enumerate(walls):
@@ -209,9 +219,65 @@ def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], lis
                 if not result:
                     low, size = max(one.low, other.low), min(area_of(one.vertex), area_of(other.vertex))
                     refused.append(Refused((low > 0.5 * requested.grip, -size), why))
+    places += _lying(part, requested)
     if not places and not refused:
         refused = [Refused((True, 0.0), "no two opposite plane faces stand along it near the bottom")]
     return places, refused
+
+
+def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
+    """Places of a vise across the outside cylinders that lie lowest, up to half of what it grips above their middle."""
+    for direction in _lying_directions(part):
+        x = np.array([direction[1], -direction[0], 0.0])
+        own = np.stack([[0.0, 0.0, 1.0], x, direction])
+        for wall, centre, radius in _cylinders(part, part.vertex @ own.T, part.normal @ own.T):
+            reach = radius + 0.5 * requested.grip
+            if abs(centre[0] - radius) > _LOWEST * requested.grip:
+                continue
+            low, high = reach - requested.grip, reach
+            middle = [clipped(*half, _X, low, high)
+                      for half in (clipped(wall.vertex, wall.face, way * _Y, way * centre[1], np.inf) for way in (1.0, -1.0))]  # fmt: skip
+            if not all(len(vertex) for vertex, _ in middle):
+                continue
+            start = max(float(vertex[..., 2].min()) for vertex, _ in middle)
+            end = min(float(vertex[..., 2].max()) for vertex, _ in middle)
+            vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, float(np.ptp(part.outline @ direction)), 0.0)
+            if vise is None or not end - start > part.flat:
+                continue
+            half = 0.5 * vise.width
+            for at in [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]:
+                vertex, face = clipped(wall.vertex, wall.face, _Z, at - half, at + half)
+                touched = min(vise.width, end - start)
+                vertex, face = clipped(vertex, face, _X, -np.inf, reach)
+                soft = ""
+                if touched < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ direction))):
+                    soft = f"they touch {mm(touched)} of its length"
+                elif not abs(part.enclosed[1] @ direction - at) < half:
+                    soft = "the middle of the part is not between them"
+                elif part.tall > TALL * min(2.0 * radius, touched):
+                    soft = _too_tall(part.tall, min(2.0 * radius, touched))
+                origin = centre[1] * x + at * direction
+                yield Place(
+                    vise, x, origin, tuple(int(n) for n in np.unique(face)), touched * requested.grip,
+                    area_of(vertex[np.isin(face, list(part.targets))]), 0.0, area_of(wall.vertex),
+                    float(np.linalg.norm((origin - part.middle)[:2])), float(np.abs((part.outline - origin) @ x).max()), soft, True,
+                )  # fmt: skip
+
+
+def _lying_directions(part: Workpiece) -> list[Floats]:
+    """Directions across the setup axis along which cylinders may lie: all normals of a face are across one of them."""
+    directions = list[Floats]()
+    for number, rows in rows_by_face(part.face).items():
+        if number in part.planes:
+            continue
+        normal = part.normal[rows] / np.maximum(1e-300, np.linalg.norm(part.normal[rows], axis=1))[:, None]
+        axis = np.linalg.eigh(normal.T @ normal)[1][:, 0]
+        if np.abs(normal @ axis).max() > PARALLEL or abs(axis[2]) > PARALLEL:
+            continue
+        flat = np.array([axis[0], axis[1], 0.0]) / np.linalg.norm(axis[:2])
+        if not any(abs(flat @ each) >= 1.0 - PARALLEL**2 for each in directions):
+            directions.append(flat)
+    return directions
 
 
 def _upright_planes(part: Workpiece, reach: float) -> list[Wall]:

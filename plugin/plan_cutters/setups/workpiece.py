@@ -161,6 +161,7 @@ class Place:
     `off`: how far its middle is from the middle of the part, seen from above, mm.
     `farthest`: how far the part reaches from its middle across the jaws, mm.
     `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
+    `bored`: soft jaws are bored to a cylinder that lies in them.
     """
 
     clamping: Clamping
@@ -174,6 +175,7 @@ class Place:
     off: float
     farthest: float
     soft: str = ""
+    bored: bool = False
 
     @property
     def rank(self) -> tuple[bool, float]:

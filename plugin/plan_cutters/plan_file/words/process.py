@@ -23,6 +23,7 @@ from plan_cutters.plan_file.operations import (
     ProcessSetup,
     ProcessStep,
     RemainingEntry,
+    StockEntry,
 )
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
@@ -226,9 +227,11 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
     if setup.grip_mm is not None:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
-        across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' else 'wide'}"
+        bored = setup.held == "vise" and _is_round(plan, setup)
+        across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
-        how = f"in a {setup.held}{what}, {across}, gripped {mm(setup.grip_mm)} high{rests}"
+        gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
+        how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
         how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
     else:
@@ -236,10 +239,25 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
     if on == "stock" and plan.process is not None and plan.process.stock is not None:
         stock = plan.process.stock
-        bar = f"a bar {mm(stock.size_mm[0])} wide and {mm(stock.size_mm[2])} long"
+        wide = stock.size_mm[2] if _lies(stock) else stock.size_mm[0]
+        long = max(stock.size_mm) if _lies(stock) else stock.size_mm[2]
+        bar = f"a bar {mm(wide)} wide and {mm(long)} long{', lying,' * _lies(stock)}"
         how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
+
+
+def _is_round(plan: Plan, setup: ProcessSetup) -> bool:
+    """Whether a vise grips what is round: no plane, or a bar that lies."""
+    if setup.stands_on == "stock":
+        stock = None if plan.process is None else plan.process.stock
+        return stock is not None and _lies(stock)
+    planes = {face.id for face in plan.faces if face.shape == "plane"}
+    return bool(setup.grips) and planes.isdisjoint(setup.grips)
+
+
+def _lies(stock: StockEntry) -> bool:
+    return stock.word.startswith("cylinder") and stock.size_mm[0] != stock.size_mm[1]
 
 
 def roughing(process: ProcessEntry) -> str:
