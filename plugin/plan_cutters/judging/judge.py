@@ -311,22 +311,17 @@ def first_look(ready: Prepared) -> FirstLook:
     """Judge all cutters at some samples of the first setup.
 
     Its verdicts are those of the plan in this setup, but for what is nothing beside the whole: copies, and cutters that
-    others decide. Its samples say how far apart they are; faces of which there is none say so.
+    others decide. There is one on each face at least, and they say how far apart they are.
     """
-    every = np.flatnonzero(ready.finished)
+    every, by_face, samples = np.flatnonzero(ready.finished), ready.samples.by_face(), ready.samples
     few = min(_LOOKED_AT, max(_LEAST, _PAIRS // len(ready.cutters)), len(every))
     rows = evenly(every, few)
-    some = some_of(ready, rows)
-    gaps, samples, mine = dict(ready.samples.face_gaps), ready.samples, some.samples.by_face()
-    for number, of_face in samples.by_face().items():
-        if number in mine and number in gaps:
-            near = cKDTree(some.samples.point[mine[number]]).query(samples.point[of_face])[0]
-            gaps[number] += float(near.max())
-    unseen = [(number, "no sample of it was looked at") for number in samples.by_face() if number not in mine]
-    gaps = {number: gap for number, gap in gaps.items() if number in mine}
-    apart = replace(
-        some.samples, face_gaps=tuple(gaps.items()), empty=(*samples.empty, *unseen),
-        max_gap=max(gaps.values(), default=samples.max_gap),
-    )  # fmt: skip
+    unseen = [mine[len(mine) // 2] for number, mine in by_face.items() if number not in np.unique(samples.face[rows])]
+    some = some_of(ready, np.unique(np.append(rows, np.array(unseen, np.int64))))
+    gaps, mine = dict(samples.face_gaps), some.samples.by_face()
+    for number, gap in gaps.items():
+        near = cKDTree(some.samples.point[mine[number]]).query(samples.point[by_face[number]])[0]
+        gaps[number] = gap + float(near.max())
+    apart = replace(some.samples, face_gaps=tuple(gaps.items()), max_gap=max(gaps.values(), default=samples.max_gap))
     some = replace(some, samples=apart)
     return FirstLook(some, {cutter: judge(some, cutter) for cutter in ready.cutters}, len(every))
