@@ -31,7 +31,7 @@ from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.holes import drilling_words
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import doubts
-from plan_cutters.plan_file.words.operations import angles_text
+from plan_cutters.plan_file.words.operations import angles_text, each_time
 
 #: Rows of mills and drills that are listed together, and so many of drills in any case.
 _ROWS, _DRILLED = 10, 4
@@ -43,6 +43,8 @@ _ROUNDING = 1e-6
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
 #: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn.
 _LITTLE = 0.005
+#: Columns for the angles of a step that is repeated.
+_ANGLES = 34
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -77,15 +79,16 @@ class StepRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps, how the part stands in each setup, and how many more steps there are; sentences on the
-    planner's own steps and on what is left, next steps, and clearance. The first `much` of those on what is left are of more than
-    a little.
+    """A process in words: rows of steps, how the part stands in each setup, how many more steps there are, and the time between
+    steps (`besides`); sentences on the planner's own steps and on what is left, next steps, and clearance. The first `much` of
+    those on what is left are of more than a little.
     """
 
     rows: tuple[StepRow, ...]
     stands: tuple[str, ...]
     roughing: str
     more: str
+    besides: str
     own: tuple[str, ...]
     remaining: tuple[str, ...]
     much: int
@@ -115,7 +118,8 @@ class ProcessStory:
         idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
         if unshown:
             lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
-        return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
+        lines += [f"  {text}" for text in (self.more, self.besides) if text]
+        return [*lines, *(idle or wrapped(list(stands.values()), 2))]
 
 
 def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> ProcessStory | None:
@@ -128,7 +132,9 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: most if len(steps) > most + 1 else None]
-    rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
+    rows = [
+        _row(k, steps[k], names, setups=setups, fixed=fixed, each=each_time(plan, steps[k], _ANGLES)) for k in sorted(largest)
+    ]
     # Steps that drill follow those of mills in their setup.
     for k, bores in enumerate(process.drilling, len(steps) + 1):
         after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
@@ -151,6 +157,7 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         stands=tuple(each.text for each in process.setups),
         roughing=roughing(process),
         more=more,
+        besides=_besides(process),
         own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
@@ -179,11 +186,11 @@ def with_process_words(plan: Plan) -> Plan:
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
-def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
+def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
     turned = ""
     if fixed:
         by = step.repeat_deg or {}
-        angles = angles_text(step.angles_deg or {}, by)
+        angles = each or angles_text(step.angles_deg or {}, by)
         turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
         if step.mode == "simultaneous":
             turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
@@ -270,6 +277,13 @@ def roughing(process: ProcessEntry) -> str:
         f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (0.001 * stock.remove_mm3, 0.001 * stock.volume_mm3)
     )
     return f"Roughing: {removed} of {whole} cm³ of stock{took}."
+
+
+def _besides(process: ProcessEntry) -> str:
+    """The time between steps, which with theirs makes that of the process; empty where there is none."""
+    spent = ("tool changes", process.change_seconds), ("turns", process.index_seconds)
+    each = [f"{what} {duration(seconds)}" for what, seconds in spent if seconds]
+    return f"Between steps: {', '.join(each)}." if each else ""
 
 
 def _is_are(setup: ProcessSetup) -> str:
