@@ -89,6 +89,20 @@ def test_a_part_is_gripped_up_to_six_times_as_high_as_its_jaws_touch_of_it(grip)
         assert held or "jaws touch no more than 10 mm of its length" in refused[0].why
 
 
+@pytest.mark.parametrize("chamfer", [0.5, 1.4, 2.0, 4.0, 8.0])
+def test_above_a_chamfer_at_the_bottom_edge_jaws_touch_what_they_touch_without_it(chamfer):
+    """A block is gripped above its chamfers, and stands on what is left of its bottom: as firmly as one without."""
+    block = cq.Workplane().box(60, 60, 60)
+    plain, part = hold_of(block.val().wrapped, "vise"), hold_of(block.edges().chamfer(chamfer).val().wrapped, "vise")
+    assert (plain.soft, part.soft) == ("", "")
+    assert len(part.grips) == 2
+    assert len(part.rests_on) == 1
+    # Of what the jaws reach over, a small chamfer takes something; above a large one they touch as much.
+    touched = 3.0 - chamfer if chamfer <= 1.5 else 3.0
+    assert part.fixture.clamping.grip == pytest.approx(3.0 if chamfer <= 1.5 else 3.0 + chamfer)
+    assert part.hidden == pytest.approx(2 * min(46.0, 60.0 - 2.0 * chamfer) * touched)
+
+
 def test_a_small_part_is_gripped_as_a_large_one():
     places, _ = vise_places(workpiece([(0, 0, 0), (0.5, 0.5, 0.8)]), requested("vise", "46x25x65:0.2", 1.0, "vise"))
     assert [each.touched for each in places] == pytest.approx([0.1, 0.1])

@@ -321,6 +321,7 @@ def _at(
     part: Workpiece, requested: Requested, walls: tuple[Wall, Wall], x: Floats, above: float, reach: float
 ) -> tuple[list[Place], str]:
     """The same where the part rests at a height over its lowest point, and the jaws reach so far above that."""
+    one, other = walls
     grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
     names = " and ".join(listed([f"F{n}" for n in wall.faces], 2) for wall in walls)
     apart = f"no two opposite plane faces lie side by side in the {mm(grip)} that the jaws grip"
@@ -339,16 +340,19 @@ def _at(
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
     tall, bearing = part.tall, part.bearing(0.0, above)
     centre = part.enclosed[1]
+    # A fillet or chamfer at the bottom edge is between the jaws, and they touch what begins above it.
+    gripped = above + reach - max(above, one.low, other.low)
     lug = (right - left) * (end - start) < _LUG * part.section
     places, why = list[Place](), apart
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
     for middle in middles:
         touched = [clipped(vertex, face, y, middle - half, middle + half) for vertex, face in strips]
         least = min(area_of(vertex) for vertex, _ in touched)
-        if least < _TOUCHED * reach * min(vise.width, end - start):
+        if least < _TOUCHED * gripped * min(vise.width, end - start):
             continue
-        if tall - above - grip > _TALL * least / grip:
-            why = f"the part stands {mm(tall)} high, and jaws touch no more than {mm(least / grip)} of its length"
+        long = least / gripped
+        if tall - above - reach > _TALL * long:
+            why = f"the part stands {mm(tall)} high, and jaws touch no more than {mm(long)} of its length"
             continue
         hidden = sum(area_of(vertex[np.isin(face, list(part.targets))]) for vertex, face in touched)
         grips = tuple(sorted({int(n) for _, face in touched for n in face}))
@@ -358,12 +362,12 @@ def _at(
             soft = "what they grip is a lug"
         elif not (left < centre @ x < right and abs(centre @ y - middle) < half):
             soft = "the middle of the part is not between them"
-        elif least / reach < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
-            soft = f"they touch {mm(least / reach)} of its length"
+        elif long < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
+            soft = f"they touch {mm(long)} of its length"
         elif not bearing.broad:
             soft = "hardly any plane of the part rests in them"
-        elif tall - above > TALL * min(right - left, least / reach):
-            soft = _too_tall(tall - above, min(right - left, least / reach))
+        elif tall - above > TALL * min(right - left, long):
+            soft = _too_tall(tall - above, min(right - left, long))
         place = Place(
             vise, x, origin, grips, least, hidden, above, size, float(np.linalg.norm((origin - part.middle)[:2])),
             float(np.abs((part.outline - origin) @ x).max()), soft,
