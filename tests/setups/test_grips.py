@@ -206,6 +206,17 @@ def test_a_shaft_that_lies_on_its_collar_needs_a_nest():
     assert scene.hold(Fixture("vise"), (1.0, 0.0, 0.0)).soft
 
 
+@pytest.mark.parametrize(("targets", "grip", "soft"), [((1,), 20.0, False), ((), 3.0, True)])
+def test_a_pin_that_nobody_machines_is_gripped_deep(targets, grip, soft):
+    """A blade of 50 mm on a pin of 30 mm: a third of the pin stays free below it. Where the pin is machined, little is hidden."""
+    part = BRepAlgoAPI_Fuse(rod(10, 30), box(6, 6, 50, at=(-3, -3, 30))).Shape()
+    faces = Scene.of(part).part.faces
+    pin = {face.number for face in faces if face.shape == "cylinder"}
+    hold = hold_of(part, "chuck", targets=[f.number for f in faces if f.number not in pin] if targets else ())
+    assert (hold.fixture.clamping.grip, bool(hold.soft)) == (pytest.approx(grip), soft)
+    assert {*hold.grips} == pin
+
+
 def test_a_shoulder_rests_in_a_chuck_and_what_is_below_hangs_in_it():
     """A boss below the bar stands on nothing: the jaws reach no higher for it."""
     part = BRepAlgoAPI_Fuse(rod(25, 40), box(6, 6, 4, at=(-3, -3, -4))).Shape()

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, rows_by_face
-from plan_cutters.domain.clamping import CHUCK, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
+from plan_cutters.domain.clamping import CHUCK, GRIP, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
 from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
@@ -32,6 +32,8 @@ _TURN, _BINS = 5, 360
 #: Arcs of fewer degrees do not tell their cylinder; one that lies in jaws is as far above the part's lowest point at most, as a
 #: share of what they grip.
 _ARC, _LOWEST = 20, 0.1
+#: Of a cylinder that is gripped deep, so much at most.
+_DEEP = 2.0 / 3.0
 _X, _Y, _Z = np.eye(3)
 
 
@@ -41,9 +43,13 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
     for wall, centre, radius in _cylinders(part, part.vertex, part.normal):
         result, why = list[Place](), short
+        grips = [requested.grip]
+        if requested.sizes is None and requested.grip == GRIP and part.targets.isdisjoint(wall.faces):
+            # A pin that nobody machines is gripped deep, and some of it stays free below the part.
+            grips.append(max(GRIP, min(2.0 * radius, _DEEP * (wall.high - wall.low))))
         if 2.0 * radius > largest_gripped():
-            why = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}"
-        for above, reach in stands(wall.low, requested.grip) if 2.0 * radius <= largest_gripped() else ():
+            why, grips = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}", []
+        for above, reach in [each for grip in grips for each in stands(wall.low, grip)]:
             chuck = chuck_about(2.0 * radius, reach)
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
@@ -114,7 +120,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
-    tall = part.tall - above
+    tall, free = part.tall - above, part.tall - above - chuck.grip
     for turn in range(0, math.ceil(360 / chuck.jaws), _TURN):
         at = start + turn + 360.0 / chuck.jaws * np.arange(chuck.jaws)
         bins = [np.floor(np.arange(each - half, each + half, 1.0) % _BINS).astype(int) % _BINS for each in at]
@@ -127,7 +133,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
             area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
-            _too_tall(tall, chuck.diameter) if tall > TALL * chuck.diameter else "",
+            _too_tall(tall, chuck.diameter) if free > TALL * chuck.diameter else "",
         )  # fmt: skip
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
@@ -227,41 +233,39 @@ def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], lis
 
 def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
     """Places of a vise across the outside cylinders that lie lowest, up to half of what it grips above their middle."""
+    grip = requested.grip
     for direction in _lying_directions(part):
         x = np.array([direction[1], -direction[0], 0.0])
-        own = np.stack([[0.0, 0.0, 1.0], x, direction])
+        own, length = np.stack([_Z, x, direction]), float(np.ptp(part.outline @ direction))
         for wall, centre, radius in _cylinders(part, part.vertex @ own.T, part.normal @ own.T):
-            reach = radius + 0.5 * requested.grip
-            if abs(centre[0] - radius) > _LOWEST * requested.grip:
+            reach = radius + 0.5 * grip
+            vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, length, 0.0)
+            if vise is None or abs(centre[0] - radius) > _LOWEST * grip:
                 continue
-            low, high = reach - requested.grip, reach
-            middle = [clipped(*half, _X, low, high)
-                      for half in (clipped(wall.vertex, wall.face, way * _Y, way * centre[1], np.inf) for way in (1.0, -1.0))]  # fmt: skip
-            if not all(len(vertex) for vertex, _ in middle):
+            halves = [clipped(wall.vertex, wall.face, way * _Y, way * centre[1], np.inf) for way in (1.0, -1.0)]
+            strips = [clipped(*half, _X, reach - grip, reach)[0][..., 2] for half in halves]
+            if not all(map(len, strips)):
                 continue
-            start = max(float(vertex[..., 2].min()) for vertex, _ in middle)
-            end = min(float(vertex[..., 2].max()) for vertex, _ in middle)
-            vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, float(np.ptp(part.outline @ direction)), 0.0)
-            if vise is None or not end - start > part.flat:
-                continue
+            start, end = max(float(each.min()) for each in strips), min(float(each.max()) for each in strips)
             half = 0.5 * vise.width
+            touched = min(vise.width, end - start)
             for at in [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]:
                 vertex, face = clipped(wall.vertex, wall.face, _Z, at - half, at + half)
-                touched = min(vise.width, end - start)
                 vertex, face = clipped(vertex, face, _X, -np.inf, reach)
-                soft = ""
-                if touched < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ direction))):
-                    soft = f"they touch {mm(touched)} of its length"
+                soft, origin = "", centre[1] * x + at * direction
+                if touched < min(_LONG, _LONG_SHARE * length):
+                    soft = f"they touch {mm(max(0.0, touched))} of its length"
                 elif not abs(part.enclosed[1] @ direction - at) < half:
                     soft = "the middle of the part is not between them"
                 elif part.tall > TALL * min(2.0 * radius, touched):
                     soft = _too_tall(part.tall, min(2.0 * radius, touched))
-                origin = centre[1] * x + at * direction
-                yield Place(
-                    vise, x, origin, tuple(int(n) for n in np.unique(face)), touched * requested.grip,
-                    area_of(vertex[np.isin(face, list(part.targets))]), 0.0, area_of(wall.vertex),
-                    float(np.linalg.norm((origin - part.middle)[:2])), float(np.abs((part.outline - origin) @ x).max()), soft, True,
-                )  # fmt: skip
+                if touched > part.flat:
+                    yield Place(
+                        vise, x, origin, tuple(int(n) for n in np.unique(face)), touched * grip,
+                        area_of(vertex[np.isin(face, list(part.targets))]), 0.0, area_of(wall.vertex),
+                        float(np.linalg.norm((origin - part.middle)[:2])), float(np.abs((part.outline - origin) @ x).max()),
+                        soft, bored=True,
+                    )  # fmt: skip
 
 
 def _lying_directions(part: Workpiece) -> list[Floats]:
