@@ -41,8 +41,8 @@ Stand = Callable[[Callable[[], Made]], None]
 
 
 class Stages(Protocol):
-    """The stages that are gone through for each proposal: read and sample a part; let a first look at it stand; judge a scene, and
-    tell how its part is made of the verdicts alone.
+    """The stages that are gone through for each proposal: read and sample a part, and let a first look at it stand; judge a
+    scene, and tell how its part is made of the verdicts alone.
     """
 
     @property

@@ -72,8 +72,8 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
     places.sort(
-        key=lambda each: (each.soft != "", each.bored, each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above,
-                          round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
+        key=lambda each: (each.soft != "", each.bored, each.thin, int((each.hidden - least) / step), -round(each.firm, 6),
+                          each.above, round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
     searched = Counter[tuple[int, ...]]()
     for place in places:

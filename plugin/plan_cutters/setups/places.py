@@ -238,6 +238,7 @@ def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
         x = np.array([direction[1], -direction[0], 0.0])
         own, length = np.stack([_Z, x, direction]), float(np.ptp(part.outline @ direction))
         for wall, centre, radius in _cylinders(part, part.vertex @ own.T, part.normal @ own.T):
+            radius = round(radius, 4)
             reach = radius + 0.5 * grip
             vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, length, 0.0)
             if vise is None or abs(centre[0] - radius) > _LOWEST * grip:
@@ -278,7 +279,8 @@ def _lying_directions(part: Workpiece) -> list[Floats]:
         axis = np.linalg.eigh(normal.T @ normal)[1][:, 0]
         if np.abs(normal @ axis).max() > PARALLEL or abs(axis[2]) > PARALLEL:
             continue
-        flat = np.array([axis[0], axis[1], 0.0]) / np.linalg.norm(axis[:2])
+        flat = np.round([axis[0], axis[1], 0.0], 6)
+        flat = flat / np.linalg.norm(flat)
         if not any(abs(flat @ each) >= 1.0 - PARALLEL**2 for each in directions):
             directions.append(flat)
     return directions
