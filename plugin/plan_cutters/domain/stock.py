@@ -110,11 +110,11 @@ class StockBody:
             margin = np.array(stock.margins[:2])
             top = high[2] + margin.min()
             return cls(np.array([*(low[:2] - margin), foot]), np.array([*(high[:2] + margin), top]), float(low[2]))
-        beside, middle, size = stock.margins[0], 0.5 * (low + high), high - low
+        middle, size = 0.5 * (low + high), high - low
         along = next((k for k in (0, 1) if size[k] > LONG * np.delete(size, k).max()), 2)
         round_ = np.delete(np.arange(3), along)
-        radius = float(np.linalg.norm((part - middle)[:, round_], axis=1).max()) + beside
-        least, most = low - beside, high + beside
+        radius = float(np.linalg.norm((part - middle)[:, round_], axis=1).max()) + stock.margins[0]
+        least, most = low - stock.margins[0], high + stock.margins[0]
         least[round_], most[round_] = middle[round_] - radius, middle[round_] + radius
         if along == 2:
             least[2] = foot

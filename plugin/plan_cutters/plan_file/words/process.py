@@ -45,6 +45,8 @@ _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
 _LITTLE = 0.005
 #: Columns for the angles of a step that is repeated.
 _ANGLES = 34
+#: An area that is left, and less than that and hardly a share, has no line of its own, mm2.
+_SMALLEST = 1.0
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -305,7 +307,7 @@ def _fitting(faces: list[str], width: int) -> str:
 
 
 def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
-    listed_causes = process.left[:_CAUSES]
+    listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
@@ -313,11 +315,16 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         some = percent(each.share, some=True, whole=False) if each.samples else percent(each.share)
         yield f"Left, {some}, {area(each.area_mm2)}, {_OTHER_CAUSES.get(each.cause) or reason(each.cause)}: {faces}{near}{needs}."
     if len(process.left) > len(listed_causes):
-        rest = process.left[len(listed_causes) :]
+        rest = [each for each in process.left if each not in listed_causes]
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
     if process.exempt is not None:
         where = listed(process.exempt.faces, _FACES)
         yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
+
+
+def _is_minor(each: RemainingEntry) -> bool:
+    """Whether an area is too small for a line, and for advice; what was not judged is none."""
+    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != UNJUDGED_CAUSE
 
 
 def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:

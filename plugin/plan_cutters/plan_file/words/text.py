@@ -1,7 +1,7 @@
 """A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, reporting, sentence
@@ -142,6 +142,8 @@ def chip(plan: Plan, story: Story) -> Chip:
 MOST = 22
 #: Doubts, and cutters, that are named.
 _DOUBTS, _CUTTERS = 4, 6
+#: Steps that are listed where there is no space for more, and then fewer.
+_FEWER = (6, 4, 2)
 #: Lines on an area that is left.
 _LEFT = 3
 #: Lines on what each cutter reaches by itself.
@@ -176,20 +178,33 @@ def text_of(plan: Plan) -> TextEntry:
 def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
 
-    `typed`: for a terminal, with the options that one types; other readers have fields of these names.
+    What is left comes before the last steps of a long table, if there is no space for both. `typed`: for a terminal, with the
+    options that one types; other readers have fields of these names.
     """
+    lines, whole = list[str](), False
+    for steps in (None, *_FEWER):
+        shorter = story if steps is None else replace(story, process=process_story(plan, story.names, steps))
+        lines, whole = _lines(plan, shorter, most, typed=typed)
+        if whole:
+            break
+    return lines
+
+
+def _lines(plan: Plan, story: Story, most: int, *, typed: bool) -> tuple[list[str], bool]:
+    """The same with all steps of a story; and whether there is space for what is left and the next step."""
     process = story.process
     inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     unshown = len(story.notes) + len(story.setups) + len(story.answers)
     where = "-v, or the review page" if typed else "see the review page"
     paragraphs: list[list[str]] = []
+    needed: list[list[str]] = []
 
     def add(texts: Iterable[str], each: int) -> None:
         paragraphs.extend(wrapped([text if typed else as_fields(text)], each) for text in texts if text)
 
     add(plan.process.doubts if plan.process else (), 2)
-    add(inside, 6)
+    add(inside, 4)
     add(_doubts(plan, story)[:_DOUBTS], 1)
     add([judged], 3)
     if process:
@@ -198,8 +213,13 @@ def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -
     if plan.process and plan.process.plan == "fewest":
         add([named(plan, one_more(plan.operations))], 3)
     if process:
-        add([*shortened(process.own), *process.remaining[: process.much]], _LEFT)
+        add(shortened(process.own), _LEFT)
+        before = len(paragraphs)
+        add(process.remaining[: process.much], _LEFT)
+        needed += paragraphs[before : before + 1]
+        before = len(paragraphs)
         add(process.next, 3)
+        needed += paragraphs[before : before + 1]
         add(process.remaining[process.much :], _LEFT)
     add(holes(plan), 2)
     add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2)
@@ -209,13 +229,15 @@ def process_lines(plan: Plan, story: Story, most: int, *, typed: bool = False) -
     add(story.between[:1], 2)
     add([f"{count(unshown, 'note')}: {where}."] if unshown else [], 1)
     if sum(map(len, paragraphs)) <= most:
-        return [line for paragraph in paragraphs for line in paragraph]
-    lines = list[str]()
+        return [line for paragraph in paragraphs for line in paragraph], True
+    lines, whole = list[str](), True
     for paragraph in paragraphs:
         # A sentence that is cut says something else.
         if len(lines) + len(paragraph) < most:
             lines += paragraph
-    return [*lines, f"More: {where}."]
+        else:
+            whole &= all(paragraph is not each for each in needed)
+    return [*lines, f"More: {where}."], whole
 
 
 def _doubts(plan: Plan, story: Story) -> list[str]:
