@@ -33,6 +33,14 @@ def test_steps_and_what_is_between_them_take_the_time_in_front(planned):
     assert f"  {story.besides}" in planned.text.lines
 
 
+def test_a_time_that_is_not_known_is_said_to_be_so(planned):
+    """At a few samples of a step no width of a pass is known: the headline has no minutes, and nobody said why."""
+    process = planned.process
+    steps = [process.steps[0].model_copy(update={"seconds": None}), *process.steps[1:]]
+    made = planned.model_copy(update={"process": process.model_copy(update={"steps": steps, "seconds": None})})
+    assert "  The time is not known: the width of a pass is not at some samples of step 1." in with_text(made).text.lines
+
+
 def test_each_angle_of_a_step_is_told_where_no_increment_leads_there(planned):
     """Three images with C at 0, 47 and 190: the row had the angles of the first one alone."""
     entry = planned.operations.plans[0]

@@ -282,7 +282,10 @@ def roughing(process: ProcessEntry) -> str:
 
 
 def _besides(process: ProcessEntry) -> str:
-    """The time between steps, which with theirs makes that of the process; empty where there is none."""
+    """The time between steps, which with theirs makes that of the process, or why that is not known; empty where there is none."""
+    if unknown := [str(k) for k, step in enumerate(process.steps, 1) if step.seconds is None and process.plan == "fastest"]:
+        steps = f"step{'s' * (len(unknown) > 1)} {listed(unknown, _FACES)}"
+        return f"The time is not known: the width of a pass is not at some samples of {steps}."
     spent = ("tool changes", process.change_seconds), ("turns", process.index_seconds)
     each = [f"{what} {duration(seconds)}" for what, seconds in spent if seconds]
     return f"Between steps: {', '.join(each)}." if each else ""
