@@ -140,8 +140,9 @@ def joined(
         in_place = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
         if held is not None:
             in_place = replace(in_place, notes=(*in_place.notes, held.words), requested=requested, hold=held)
-        # All bodies are in stock that is gripped.
-        if clamping is not None and blank is None and sign is not None and len(parts := material_bodies(surroundings.bodies, sign)) > 1:
+        # Of stock that is gripped all bodies are made.
+        parts = () if sign is None or blank is not None else material_bodies(surroundings.bodies, sign)
+        if clamping is not None and len(parts) > 1:
             known = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
             in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, known.triangles, parts))
         placed_fixtures.append(in_place)

@@ -282,7 +282,7 @@ def roughing(process: ProcessEntry) -> str:
 
 
 def _besides(process: ProcessEntry) -> str:
-    """The time between steps, which with theirs makes that of the process, or why that is not known; empty where there is none."""
+    """The time between steps, which with theirs makes that of the process, or why that is not known; empty without any."""
     if unknown := [str(k) for k, step in enumerate(process.steps, 1) if step.seconds is None and process.plan == "fastest"]:
         steps = f"step{'s' * (len(unknown) > 1)} {listed(unknown, _FACES)}"
         return f"The time is not known: the width of a pass is not at some samples of {steps}."
