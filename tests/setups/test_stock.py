@@ -16,7 +16,7 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.part_info import ProposedSetup
 from plan_cutters.report.process_file import setup_toml
 from plan_cutters.setups.files import read_setup
-from tests.support.cad_parts import box, rod, write_step
+from tests.support.cad_parts import box, compound, rod, write_step
 from tests.support.vises import block
 
 HOW = {"cutters": "R3L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
@@ -109,6 +109,14 @@ def test_with_stock_only_what_looks_down_is_left():
     assert (verdicts.reason[down] == FIXTURE).all()
     on_part = plan(box(40, 30, 20), setup="+z", fixtures="vise", **HOW)
     assert (next(iter(on_part.reaches.values())).not_reached & ~down).any()
+
+
+def test_all_bodies_are_in_stock_that_is_gripped():
+    """Two blocks that do not touch: jaws on one of them leave the other, jaws on their stock hold both."""
+    part = compound(box(20, 30, 20), box(10, 10, 20, at=(30, 10, 0)))
+    for stock, some in (("box", False), ("part", True)):
+        (vise,) = [each for each in plan(part, setup="+z", fixtures="vise", stock=stock, **HOW).plan.fixtures if each.clamping]
+        assert bool(vise.unheld) == some
 
 
 def test_how_it_stands_comes_first():
