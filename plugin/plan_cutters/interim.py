@@ -6,7 +6,7 @@ from dataclasses import replace
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.judged_part import JudgedPart, assembled, worded
-from plan_cutters.judging.judge import first_look
+from plan_cutters.judging.judge import FirstLook, first_look, worth_a_look
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import AreaEntry, Plan
 from plan_cutters.plan_file.words.headline import first_looked
@@ -39,12 +39,19 @@ class Interim:
         self._looked = self._planned = False
         self._absent: list[str] | None = None
 
-    def prepared(self, ready: Prepared) -> None:
-        """A part is ready to be judged; setups may still be compared."""
-        looks, self._looks = self._looks, None
-        if looks is not None and (look := first_look(ready)) is not None:
+    def prepared(self, ready: Prepared, made: Callable[[FirstLook], tuple[JudgedPart, Describe]]) -> None:
+        """A part is ready to be judged; setups may still be compared.
+
+        `made`: makes a part of a first look at it, as for `verdicts`: that stands until these do.
+        """
+        if self._made is not None:
+            return
+        look, looks = None, self._looks
+        if looks is not None and worth_a_look(ready):
+            look = first_look(ready)
             shares = [(called(cutter), share) for cutter, share in look.shares]
-            looks(first_looked(look.setup.tolist(), look.samples, look.of, shares, look.together))
+            looks(first_looked(ready.scene.setup, look.samples, look.of, shares, look.together))
+        self.verdicts(lambda: made(look or first_look(ready)))
 
     def verdicts(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
         """The verdicts stand: what makes the part of them, with the reasons that were found by then, and describes its plan."""
@@ -95,6 +102,8 @@ class Interim:
         options = part.ready.options
         each = later_stages(
             setups=part.later,
+            proposal=part.proposing,
+            samples=part.few,
             reasons=part.unexplained,
             witnesses=not part.witnessed,
             area=part.looks_between and not self._looked,

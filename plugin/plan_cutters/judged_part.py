@@ -79,6 +79,8 @@ class JudgedPart:
     unexplained: tuple[str, ...] = ()
     witnessed: bool = True  #: Whether each cutter has its witnesses.
     later: tuple[Axis, ...] = ()  #: Axes of setups that are judged later, and of which this part knows nothing.
+    few: tuple[int, int] | None = None  #: How many samples were looked at, of how many; None: all.
+    proposing: bool = False  #: Whether setups are still compared.
 
     @classmethod
     def of(

@@ -25,7 +25,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
-from plan_cutters.judging.judge import CachedJudge, Judge, JudgeOnce, in_setup, judge
+from plan_cutters.judging.judge import CachedJudge, FirstLook, Judge, JudgeOnce, in_setup, judge
 from plan_cutters.judging.phases import classify, regions
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, Operations
@@ -112,8 +112,20 @@ class Run:
             part, options, self.clock, read_timeout=self.read_timeout, at=self.at, compiling=self.compiling,
             excluded=self.excluded, cache=self.cache,
         )  # fmt: skip
-        self.interim.prepared(ready)
         return ready
+
+    def looked(self, ready: Prepared, options: Options) -> None:
+        """Let the first setup stand from a first look at it on, until its verdicts do; `options`: as they were requested."""
+        started, alone = datetime.datetime.now(datetime.UTC), _first_setup(ready)
+        carried = np.zeros((sum(len(each.motions) for each in ready.patterns if each.whole), 3), np.int64)
+
+        def made(look: FirstLook) -> tuple[JudgedPart, Describe]:
+            few = None if look.samples == look.of else (look.samples, look.of)
+            part = JudgedPart.of(look.ready, look.verdicts, [], dict.fromkeys(look.verdicts, 0.0), self.clock, Work(), started,
+                                 carried, {}, explain=False)  # fmt: skip
+            return replace(part, later=options.other_setups, few=few, proposing=options.propose), self.remark
+
+        self.interim.prepared(alone, made)
 
     def judge(self, part: Any, options: Options, stand: Stand[JudgedPart]) -> JudgedPart:
         """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, once these stand
@@ -121,6 +133,7 @@ class Run:
         """
         started, clock = datetime.datetime.now(datetime.UTC), self.clock
         ready = self.prepare(part, options)
+        self.looked(ready, options)
         here: dict[Cutter, Verdicts] = {}
         seconds: dict[Cutter, float] = {}
         once = JudgeOnce(self.judged, sum(len(each.motions) for each in ready.patterns if each.whole))
@@ -139,9 +152,7 @@ class Run:
             return JudgedPart.of(of, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
 
         if options.other_setups:
-            # Steps of the planner's own may be in the other setups.
-            alone = replace(ready.options, other_setups=(), other_placements=(), process=None)
-            first = replace(ready.alone(0), options=alone)
+            first = _first_setup(ready)
             stand(lambda: replace(combined(first, [], {}, explain=False), later=options.other_setups))
         others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
         reasons: dict[Cutter, ExplainedIn] = {}
@@ -202,6 +213,11 @@ class Run:
 
     def _remarked(self, proposed: Describe) -> Describe:
         return proposed if self.remark is _as_it_is else lambda plan: self.remark(proposed(plan))
+
+
+def _first_setup(ready: Prepared) -> Prepared:
+    """The first setup alone; steps of the planner's own may be in the others."""
+    return replace(ready.alone(0), options=replace(ready.options, other_setups=(), other_placements=(), process=None))
 
 
 def _operations(

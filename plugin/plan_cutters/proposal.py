@@ -41,14 +41,16 @@ Stand = Callable[[Callable[[], Made]], None]
 
 
 class Stages(Protocol):
-    """The stages that are gone through for each proposal: read and sample a part; judge a scene, and tell how its part is made of
-    the verdicts alone.
+    """The stages that are gone through for each proposal: read and sample a part, and let a first look at it stand; judge a
+    scene, and tell how its part is made of the verdicts alone.
     """
 
     @property
     def clock(self) -> Clock: ...
 
     def prepare(self, part: Any, options: Options) -> Prepared: ...
+
+    def looked(self, ready: Prepared, options: Options) -> None: ...
 
     def judge(self, part: Scene, options: Options, stand: Stand[JudgedPart]) -> JudgedPart: ...
 
@@ -89,6 +91,7 @@ def judged_proposed(
     words = _words(options)
     unproposed, stock = replace(options, propose=False, fixtures=(), stock=PART), Stock.of(options.stock)
     ready = stages.prepare(part, unproposed)
+    stages.looked(ready, options)
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with stages.clock.stage("proposal") as tell:
         ranking, chosen = proposed(ready, MOST_PROPOSED, words, stock if stock.solid else None, tell)

@@ -16,6 +16,8 @@ from plan_cutters_check.surface import Face, Source, Triangles
 
 #: A table reaches so much farther than the part, mm: as far as any tool.
 _TABLE = 2000.0
+#: A cylinder of stock lies along a part that is so many times as long across the setup axis as it is high and wide.
+_LONG = 2.17
 #: Sides of a cylinder; each lies within r (1 - cos(pi / sides)) of it.
 _SIDES = 720
 #: So many triangles are seen from points at a time.
@@ -76,8 +78,18 @@ class PlacedFixture:
 
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
     """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup: two corners; of a
-    cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side.
+    cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side. One about a part that is
+    long across the setup axis lies along it: of that two corners.
     """
+    size = high - low
+    along = next((k for k in (0, 1) if size[k] > _LONG * np.delete(size, k).max()), 2)
+    if len(margins) == 2 and along < 2:
+        # A bar lies: the box about what of it is below the part.
+        radius, side = 0.5 * float(np.delete(size, along).max()) + margins[0], 1 - along
+        half, least, most = math.sqrt(max(0.0, radius**2 - (0.5 * size[2]) ** 2)), low - margins[0], high + margins[0]
+        middle = 0.5 * (low + high)[side]
+        least[side], most[side], least[2], most[2] = middle - half, middle + half, 0.5 * (low + high)[2] - radius, low[2]
+        return (*least.tolist(), *most.tolist())
     if len(margins) == 2:
         middle, wide = 0.5 * (low + high)[:2], 0.5 * float((high - low)[:2].max())
         return (*middle.tolist(), wide + margins[0], float(low[2]) - margins[1], float(low[2]))
@@ -144,11 +156,12 @@ def faults(question: Question) -> Iterator[str]:
     """List what is wrong with where the part is held, a line each."""
     for grip in question.grips:
         points = {f.number: _local(question, grip, f.number) for f in question.part.faces if question.part.trim(f.number)}
-        # A round that runs out into what is gripped touches a jaw along a line, which holds nothing.
-        held = "plane" if grip.jaws == 2 else "cylinder"
-        touched = {n: _touched(grip, *pair) for n, pair in points.items() if question.part.faces[n - 1].shape == held}
-        touching = {number for number, jaws in touched.items() if jaws}
         stated = {int(name[1:]) for name in grip.faces if name[1:].isdecimal()}
+        # A round that runs out into what is gripped touches a jaw along a line, which holds nothing, unless the jaws are bored.
+        bored = grip.jaws == 2 and bool(stated) and all(_lies(grip, points[n][0]) for n in stated & points.keys())
+        held, touched_at = ("cylinder", _across) if bored else ("plane" if grip.jaws == 2 else "cylinder", _touched)
+        touched = {n: touched_at(grip, *pair) for n, pair in points.items() if question.part.faces[n - 1].shape == held}
+        touching = {number for number, jaws in touched.items() if jaws}
         where = f"{grip.name} in setup {grip.setup + 1}"
         free = grip.jaws - len(set[int]().union(*touched.values()))
         # A chuck grips a whole cylinder, whichever faces of it are between its jaws.
@@ -159,7 +172,7 @@ def faults(question: Question) -> Iterator[str]:
         elif other or not stated:
             names = ", ".join(f"F{n}" for n in sorted(touching))
             yield f"{where}: its jaws touch {names}, and the plan says {', '.join(grip.faces) or 'none'}"
-        yield from (f"{where}: {words}" for words in _rests(grip, np.concatenate([pair[0] for pair in points.values()])))
+        yield from (f"{where}: {words}" for words in _rests(grip, np.concatenate([pair[0] for pair in points.values()]), bored))
 
 
 def resting(question: Question) -> Question:
@@ -227,8 +240,20 @@ def _bored(grip: Grip, point: Floats, normal: Floats) -> NDArray[np.bool_]:
     return np.asarray(outward & (point[:, 2] > _AT) & (point[:, 2] < grip.grip - _AT) & (np.abs(away - 0.5 * grip.apart) <= _AT))
 
 
-def _rests(grip: Grip, point: Floats) -> Iterator[str]:
-    """Whether the lowest points lie on the ledges, or between the jaws over the body."""
+def _lies(grip: Grip, point: Floats) -> bool:
+    """Whether all of a face is on a cylinder across the jaws of a vise, which touches them and what it rests on."""
+    return bool((np.abs(np.hypot(point[:, 0], point[:, 2] - 0.5 * grip.apart) - 0.5 * grip.apart) <= _AT).all())
+
+
+def _across(grip: Grip, point: Floats, normal: Floats) -> set[int]:
+    """At which jaws of a vise such a face lies."""
+    there = (point[:, 2] < grip.grip) & (np.abs(point[:, 1]) < 0.5 * grip.width - _AT) & _lies(grip, point)
+    outward = point[:, 0] * normal[:, 0] > 0.0
+    return {k for k, way in enumerate((1.0, -1.0)) if (there & outward & (way * point[:, 0] > 0.45 * grip.apart)).any()}
+
+
+def _rests(grip: Grip, point: Floats, bored: bool) -> Iterator[str]:
+    """Whether the lowest points lie on the ledges, or in jaws that are bored, or between the jaws over the body."""
     low = float(point[:, 2].min())
     across = np.abs(point[:, 0]) if grip.jaws == 2 else np.hypot(point[:, 0], point[:, 1])
     if low > _AT:
@@ -238,5 +263,5 @@ def _rests(grip: Grip, point: Floats) -> Iterator[str]:
             yield f"the part reaches {-low - grip.below:.4g} mm into the body"
         if (across[point[:, 2] < -_AT] > 0.5 * grip.apart - grip.ledge + _AT).any():
             yield "the part reaches into the jaws below the ledges"
-    elif not (across[point[:, 2] <= low + _AT] >= 0.5 * grip.apart - grip.ledge - _AT).any():
+    elif not bored and not (across[point[:, 2] <= low + _AT] >= 0.5 * grip.apart - grip.ledge - _AT).any():
         yield "no lowest point of the part lies on the ledges"

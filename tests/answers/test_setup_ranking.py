@@ -222,7 +222,7 @@ def test_where_nothing_is_within_the_limits_it_is_one_line():
         raise AssertionError
 
     with pytest.raises(OptionError, match=r"in none of \d+ directions does machine 3-axis hold") as caught:
-        judged_proposed(SimpleNamespace(prepare=prepare, judge=never, clock=Clock()), box(), flat)
+        judged_proposed(SimpleNamespace(prepare=prepare, looked=lambda *_: None, judge=never, clock=Clock()), box(), flat)
     assert "\n" not in str(caught.value)
 
 

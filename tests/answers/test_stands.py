@@ -133,6 +133,16 @@ def test_stock_that_a_person_names_is_not_exchanged():
     assert ranking.held[chosen[0]].stock.stock.text == "box:2,2,8"
 
 
+def test_stock_that_a_person_names_is_gripped_wherever_jaws_can():
+    """A bar that lies hides half of the part between bored jaws: nobody would propose it, and here somebody asks for it."""
+    ranking, chosen = proposed(rod(15.0, 160.0), stock=Stock.of("cylinder"))
+    first, *others = (ranking.held[k] for k in chosen)
+    assert (first.kind, first.soft, first.stock.stock.text) == ("vise", "", "cylinder:1,5")
+    assert others
+    assert all(each.stock is None and not each.soft for each in others)
+    assert abs(ranking.candidates.axis[chosen[0]][2]) < 0.5
+
+
 def test_no_bar_is_stood_on_its_end():
     """160 mm on 30 mm: neither as stock, nor in a chuck, nor between the jaws of a vise on two flats."""
     flats = cq.Workplane("YZ").circle(15).extrude(160).cut(cq.Workplane().box(400, 40, 10).translate((0, 0, 17)))

@@ -26,15 +26,27 @@ WORDS = {
 @given(st.integers(3, 40), st.integers(0, 10**6), st.floats(0.0, 5.0), st.floats(0.5, 9.0))
 def test_the_known_bar_lies_within_the_true_one(count, seed, beside, below):
     points = np.random.default_rng(seed).normal(0.0, 10.0, (count, 3))
-    x, y, radius, foot, top = foot_of((beside, below), points.min(axis=0), points.max(axis=0))
+    numbers = foot_of((beside, below), points.min(axis=0), points.max(axis=0))
     true = StockBody.about(Stock("cylinder", (beside, below)), points)
+    assert (len(numbers) == 6) == true.lying
+    if true.lying:
+        low, high = true.foot
+        assert (np.array(numbers[:3]) >= low - 1e-9).all()
+        assert (np.array(numbers[3:]) <= high + 1e-9).all()
+        return
+    x, y, radius, foot, top = numbers
     middle = 0.5 * (true.low + true.high)[:2]
     assert np.linalg.norm(middle - [x, y]) + radius <= true.radius + 1e-9
     assert (foot, top) == pytest.approx((true.low[2], true.part_low))
 
 
-def test_a_plan_in_a_bar_holds(tmp_path):
-    part = str(write_step(rod(20.0, 15.0), tmp_path / "rod.step"))
-    plan(part, operations="fastest", feed=2000, area_budget=0, **WORDS).write(tmp_path, ["json", "npz"])
-    answer = check(Written(tmp_path, part, WORDS).asked(), seconds=1e6)
+LYING = {**WORDS, "setup": "+x", "fixtures": "vise"}
+
+
+@pytest.mark.parametrize("words", [WORDS, LYING, {**LYING, "stock": "part"}])
+def test_a_plan_in_a_bar_holds(tmp_path, words):
+    """Stood in a chuck; and lying across a vise in bored jaws, which grip the bar, or the part itself."""
+    part = str(write_step(rod(20.0, 15.0) if words is WORDS else rod(8.0, 60.0), tmp_path / "rod.step"))
+    plan(part, operations="fastest", feed=2000, area_budget=0, **words).write(tmp_path, ["json", "npz"])
+    answer = check(Written(tmp_path, part, words).asked(), seconds=1e6)
     assert answer.holds, "\n".join(answer.lines)

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from plan_cutters import plan
+from plan_cutters import plan, proposal
 from plan_cutters.answers import ask
 from plan_cutters.command import partial_plan
 from plan_cutters.document.clock import Clock
@@ -108,6 +108,26 @@ def test_an_interrupt_leaves_page_samples_and_models_of_the_verdicts(tmp_path, m
     assert "The run was interrupted while " in last
     assert leftovers(tmp_path) == ["out"]
     assert unfinished(tmp_path / "out", *absent, alone=False).not_written == {}
+
+
+def waits(*_, **__):
+    time.sleep(60)
+
+
+@pytest.mark.parametrize(("wait", "more", "code"), [(interrupted, (), 130), (waits, ("--timeout", "10"), 124)])
+def test_while_setups_are_compared_the_plan_of_z_is_left(tmp_path, monkeypatch, wait, more, code):
+    """Interrupted or out of time: summary, plan, samples and page, which say that setups were not compared."""
+    monkeypatch.setattr(proposal, "proposed", wait)
+    done = run(PART, "--cutter", "R6L80", "--machine", "trunnion-ac", "--setup", "auto", "--operations", "fewest", "-o", "out",
+               *more, cwd=tmp_path)  # fmt: skip
+    assert done.returncode == code
+    assert leftovers(tmp_path / "out") == WRITTEN
+    whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
+    assert (whole.effective.setup, whole.setup_proposal) == ((0.0, 0.0, 1.0), None)
+    absent = "without a setup that was chosen and what holds the part (--setup auto)"
+    assert absent in in_lines(done.stdout)
+    assert absent in done.stderr.splitlines()[-1]
+    assert "Setup 1: +Z up, nothing holds it yet" in in_lines(done.stdout)
 
 
 @pytest.mark.slow("plans and writes all files for each stage", only=("area",))

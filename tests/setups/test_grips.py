@@ -89,6 +89,20 @@ def test_a_part_is_gripped_up_to_six_times_as_high_as_its_jaws_touch_of_it(grip)
         assert held or "jaws touch no more than 10 mm of its length" in refused[0].why
 
 
+@pytest.mark.parametrize("chamfer", [0.5, 1.4, 2.0, 4.0, 8.0])
+def test_above_a_chamfer_at_the_bottom_edge_jaws_touch_what_they_touch_without_it(chamfer):
+    """A block is gripped above its chamfers, and stands on what is left of its bottom: as firmly as one without."""
+    block = cq.Workplane().box(60, 60, 60)
+    plain, part = hold_of(block.val().wrapped, "vise"), hold_of(block.edges().chamfer(chamfer).val().wrapped, "vise")
+    assert (plain.soft, part.soft) == ("", "")
+    assert len(part.grips) == 2
+    assert len(part.rests_on) == 1
+    # Of what the jaws reach over, a small chamfer takes something; above a large one they touch as much.
+    touched = 3.0 - chamfer if chamfer <= 1.5 else 3.0
+    assert part.fixture.clamping.grip == pytest.approx(3.0 if chamfer <= 1.5 else 3.0 + chamfer)
+    assert part.hidden == pytest.approx(2 * min(46.0, 60.0 - 2.0 * chamfer) * touched)
+
+
 def test_a_small_part_is_gripped_as_a_large_one():
     places, _ = vise_places(workpiece([(0, 0, 0), (0.5, 0.5, 0.8)]), requested("vise", "46x25x65:0.2", 1.0, "vise"))
     assert [each.touched for each in places] == pytest.approx([0.1, 0.1])
@@ -168,6 +182,39 @@ def test_jaws_of_a_chuck_touch_the_cylinder_over_half_of_their_width_each(jaws, 
         there.append(float((np.abs((at + 180.0) % 360.0 - 180.0) >= gap / 2).mean()))
     assert min(there) > 0.45
     assert hold.hidden == pytest.approx(sum(there) * math.radians(2 * half) * radius * reach, rel=0.04)
+
+
+@settings(max_examples=3, deadline=None)
+@given(st.floats(5.0, 20.0), st.floats(2.5, 6.0), st.floats(0.0, 360.0))
+def test_a_shaft_that_lies_is_held_across_its_diameter_in_soft_jaws(radius, slender, turn):
+    """Not end to end: up to half of what jaws grip above its middle, and none of it is in them."""
+    shaft = cq.Workplane("YZ").circle(radius).extrude(2.0 * radius * slender).rotate((0, 0, 0), (0, 0, 1), turn).val().wrapped
+    hold = hold_of(shaft, "vise")
+    vise = hold.fixture.clamping
+    assert (vise.gap, vise.grip) == pytest.approx((2.0 * radius, radius + 1.5), abs=0.01)
+    assert (hold.soft, hold.rests_on, len(hold.grips)) == ("", (), 1)
+    assert "in soft jaws bored to it" in hold.words
+    long = min(vise.width, 2.0 * radius * slender)
+    assert hold.hidden == pytest.approx(long * radius * (math.pi + 2.0 * math.asin(1.5 / radius)), rel=0.02)
+
+
+def test_a_shaft_that_lies_on_its_collar_needs_a_nest():
+    """What is lowest would be gripped alone, with the shaft beside the jaws."""
+    shaft = BRepAlgoAPI_Fuse(rod(10, 80), rod(14, 10)).Shape()
+    scene = Scene.of(shaft)
+    scene.surround()
+    assert scene.hold(Fixture("vise"), (1.0, 0.0, 0.0)).soft
+
+
+@pytest.mark.parametrize(("targets", "grip", "soft"), [((1,), 20.0, False), ((), 3.0, True)])
+def test_a_pin_that_nobody_machines_is_gripped_deep(targets, grip, soft):
+    """A blade of 50 mm on a pin of 30 mm: a third of the pin stays free below it. Where the pin is machined, little is hidden."""
+    part = BRepAlgoAPI_Fuse(rod(10, 30), box(6, 6, 50, at=(-3, -3, 30))).Shape()
+    faces = Scene.of(part).part.faces
+    pin = {face.number for face in faces if face.shape == "cylinder"}
+    hold = hold_of(part, "chuck", targets=[f.number for f in faces if f.number not in pin] if targets else ())
+    assert (hold.fixture.clamping.grip, bool(hold.soft)) == (pytest.approx(grip), soft)
+    assert {*hold.grips} == pin
 
 
 def test_a_shoulder_rests_in_a_chuck_and_what_is_below_hangs_in_it():

@@ -16,7 +16,7 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.part_info import ProposedSetup
 from plan_cutters.report.process_file import setup_toml
 from plan_cutters.setups.files import read_setup
-from tests.support.cad_parts import box, rod, write_step
+from tests.support.cad_parts import box, compound, rod, write_step
 from tests.support.vises import block
 
 HOW = {"cutters": "R3L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
@@ -51,11 +51,41 @@ def test_stock_encloses_the_part_and_ends_below_it(up, beside, below):
         body = StockBody.about(Stock.of(word), corners)
         assert (corners >= body.low - 1e-9).all()
         assert (corners <= body.high + 1e-9).all()
-        assert math.isclose(body.part_low - body.low[2], below, abs_tol=1e-9)
-        if body.radius is not None:
+        assert body.part_low - body.low[2] >= (beside if body.lying else below) - 1e-9
+        assert (corners[:, :2] >= body.foot[0][:2] - 1e-9)[corners[:, 2] < body.part_low + 1e-9].all()
+        if body.lying:
+            away = np.linalg.norm((corners - 0.5 * (body.low + body.high))[:, [1 - body.along, 2]], axis=1)
+            assert (away <= body.radius + 1e-9).all()
+        elif body.radius is not None:
             away = np.linalg.norm(corners[:, :2] - 0.5 * (body.low + body.high)[:2], axis=1)
             assert (away <= body.radius + 1e-9).all()
         assert body.volume >= 30 * 20 * 10 - 1e-6
+
+
+@pytest.mark.parametrize("along", [0, 1, 2])
+def test_a_bar_lies_along_a_part_that_is_long(along):
+    """160 mm on 30 mm: across the setup axis the bar is no puck of D165."""
+    size = np.full(3, 30.0)
+    size[along] = 160.0
+    body = StockBody.about(Stock.of("cylinder"), block((0, 0, 0), tuple(size)).reshape(-1, 3))
+    assert (body.along, body.lying) == (along, along < 2)
+    assert body.radius == pytest.approx(15.0 * math.sqrt(2.0) + 1.0)
+    assert body.volume == pytest.approx(math.pi * body.radius**2 * (162.0 if along < 2 else 166.0))
+    if along < 2:
+        low, high = body.foot
+        # A chord of the circle, where the part ends.
+        assert (high - low)[1 - along] == pytest.approx(2.0 * math.sqrt(body.radius**2 - 15.0**2))
+        assert (high - low)[2] == pytest.approx(body.radius - 15.0)
+
+
+def test_a_bar_that_lies_is_gripped_across_in_soft_jaws():
+    process = plan(rod(15, 160), setup="+x", fixtures="vise", stock="cylinder", **HOW).plan.process
+    (setup,) = process.setups
+    assert (setup.grips, setup.soft, setup.apart_mm) == ([], "", pytest.approx(32.0, abs=0.01))
+    assert setup.text == (
+        "Setup 1: +X up, a bar 32 mm wide and 162 mm long, lying, across a vise, 32 mm wide, in soft jaws bored to it, "
+        "17.5 mm high."
+    )
 
 
 def test_a_vise_on_stock_stands_below_the_part():
@@ -81,11 +111,19 @@ def test_with_stock_only_what_looks_down_is_left():
     assert (next(iter(on_part.reaches.values())).not_reached & ~down).any()
 
 
+def test_all_bodies_are_in_stock_that_is_gripped():
+    """Two blocks that do not touch: jaws on one of them leave the other, jaws on their stock hold both."""
+    part = compound(box(20, 30, 20), box(10, 10, 20, at=(30, 10, 0)))
+    for stock, some in (("box", False), ("part", True)):
+        (vise,) = [each for each in plan(part, setup="+z", fixtures="vise", stock=stock, **HOW).plan.fixtures if each.clamping]
+        assert bool(vise.unheld) == some
+
+
 def test_how_it_stands_comes_first():
     setup, stock = (lambda p: (p.setups[0], p.stock))(plan(box(40, 30, 20), fixtures="vise", stock="box", **HOW).plan.process)
     assert (setup.number, setup.up, setup.stands_on, setup.held, setup.grips) == (1, (0.0, 0.0, 1.0), "stock", "vise", [])
-    assert setup.text.startswith("Setup 1: +Z up, stock of 42 x 32 x 25 mm in a vise, 32 mm apart")
-    assert stock.remove_mm3 == pytest.approx(42 * 32 * 25 - 40 * 30 * 20, rel=1e-6)
+    assert setup.text.startswith("Setup 1: +Z up, stock of 42 x 32 x 26 mm in a vise, 32 mm apart")
+    assert stock.remove_mm3 == pytest.approx(42 * 32 * 26 - 40 * 30 * 20, rel=1e-6)
     assert stock.seconds is None
 
 

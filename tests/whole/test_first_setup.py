@@ -9,7 +9,7 @@ from plan_cutters import Options
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judging import judge as looking
-from plan_cutters.judging.judge import first_look
+from plan_cutters.judging.judge import first_look, worth_a_look
 from plan_cutters.pipeline import prepare, run
 from tests.support.cad_parts import box
 
@@ -40,11 +40,35 @@ def test_the_plan_of_the_first_setup_stands_before_others_are_judged():
     assert stood.effective.other_setups == []
 
 
+def test_while_setups_are_compared_the_plan_of_z_stands():
+    """At fewer samples, which say how far apart they are; without what holds the part, which the plan says."""
+    asked = {"cutters": CUTTERS, "grid": 21, "machine": "trunnion-ac", "faces": "all", "area_budget": 0}
+    begun = []
+
+    def tell(name, done, total):
+        if name == "proposal":
+            raise StoppedError
+
+    interim = Interim(clock := Clock(tell), begins=lambda: begun.append(True))
+    with pytest.raises(StoppedError):
+        run(box(), Options(**asked, propose=True, operations="fewest"), clock, interim=interim)
+    assert begun
+    stood = interim.interrupted("comparing setups").plan
+    assert (stood.effective.setup, stood.setup_proposal, stood.operations) == ((0.0, 0.0, 1.0), None, None)
+    assert stood.process.asked_mm2 == pytest.approx(sum(face.area_mm2 for face in stood.faces))
+    alone = run(box(), Options(**asked), Clock()).plan
+    assert stood.process.finished_share == pytest.approx(alone.process.finished_share, abs=0.03)
+    (text,) = [text for code, text in zip(stood.note_codes, stood.notes, strict=True) if code == "run_unfinished"]
+    assert "without a setup that was chosen and what holds the part (--setup auto), all but 400 of " in text
+    assert stood.process.doubts[0] == text
+
+
 def test_a_first_look_says_about_what_the_verdicts_will(monkeypatch):
     asked = {"cutters": CUTTERS, "grid": 21, "machine": "3-axis", "faces": "all", "area_budget": 0}
     ready = prepare(box(), Options(**asked))
-    assert first_look(ready) is None, "so few samples are judged as soon"
+    assert not worth_a_look(ready), "so few samples are judged as soon"
     monkeypatch.setattr(looking, "_WORTH", 0)
+    assert worth_a_look(ready)
     look = first_look(ready)
     assert (look.samples, look.of) == (400, int(ready.finished.sum()))
     result = run(box(), Options(**asked), Clock())
@@ -53,8 +77,14 @@ def test_a_first_look_says_about_what_the_verdicts_will(monkeypatch):
         reached = result.reaches[cutter.id].reached
         assert share == pytest.approx(float(area[reached].sum() / area.sum()), abs=0.05)
     assert max(share for _, share in look.shares) - 1e-12 <= look.together <= 1.0
-    assert first_look(replace(ready, cutters=ready.cutters * 10)).samples == 200
-    assert first_look(replace(ready, cutters=ready.cutters * 50)).samples == 100
+    for number, samples in ((10, 200), (50, 100)):
+        assert first_look(replace(ready, cutters=ready.cutters * number)).samples == samples
+    # How far apart they are, is so: each sample of a face is so near to one that was looked at.
+    few, gaps = look.ready.samples, dict(look.ready.samples.face_gaps)
+    for number, rows in ready.samples.by_face().items():
+        mine = few.point[few.face == number]
+        away = np.linalg.norm(ready.samples.point[rows][:, None] - mine, axis=2).min(axis=1)
+        assert away.max() <= gaps[number] <= few.max_gap
 
 
 def test_of_proposed_setups_a_first_look_is_told_before_they_are_compared_and_the_first_one_stands(monkeypatch):

@@ -11,6 +11,7 @@ from cad_io.arrays import Floats
 from cad_io.part.holes import Hole, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled, Missing, Why
+from plan_cutters.domain.fixture import STOCK
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, free_in_posture
 from plan_cutters.scene.holes import made_of
@@ -161,9 +162,10 @@ class _Maker:
         """A tool through a hole whose point goes into the stock below the part, which is cut away later."""
         conditions = self.ready.setups[way.setup]
         surroundings, up = conditions.surroundings, np.asarray(conditions.setup, float)
-        below = max((each.fixture.stock.below for each in surroundings.fixtures if each.fixture.stock is not None), default=0.0)
         point, end = task.drill.point_length, way.mouth - hole.depth * way.axis
         lowest = float(((surroundings.alone or surroundings).certain.lowest(up) @ up).min())
+        foots = [each.obstacles.triangles.vertex @ up for each in surroundings.fixtures if each.fixture.kind == STOCK]
+        below = max((lowest - float(each.min()) for each in foots), default=0.0)
         if not hole.through or way.axis @ up < _ALONG or not below > point or end @ up > lowest + conditions.tolerance:
             return None
         return self._use(task._replace(depth=hole.depth), way)

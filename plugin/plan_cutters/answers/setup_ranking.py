@@ -23,7 +23,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area, percent
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.preference import group_of
-from plan_cutters.domain.stock import Stock
+from plan_cutters.domain.stock import USUAL, Stock
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import GroundDigests
@@ -311,7 +311,9 @@ class Ranking:
         self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
-        """Grip the stock in a direction, if plain jaws can, and what is below the part keeps tools off little of it."""
+        """Grip the stock in a direction, if plain jaws can, and what is below the part keeps tools off little of it; stock that a
+        person named, wherever jaws can.
+        """
         assert self.stock is not None, "without stock the part is gripped"
         most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
         for stock in self.stock.choices(round_=self.candidates.bearing[k].round):
@@ -325,7 +327,7 @@ class Ranking:
                         best, best_share = held, share
             if best_share >= most - _TURNED_FOR:
                 break
-        if best is not None and best_share >= _GRIPPED_FOR * most:
+        if best is not None and (self.stock.kind != USUAL or best_share >= _GRIPPED_FOR * most):
             self.stocked[k], self.held[k] = self.held[k], best
             self.settled.add(k)
 

@@ -17,6 +17,9 @@ _SIDES, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
 _FORM = "box[:X,Y,Z], cylinder[:R,Z] (margins in mm), FILE (STEP or a mesh) or part"
 PART, BOX, CYLINDER, USUAL = "part", "box", "cylinder", "usual"
 _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER}|{USUAL})(?::(.*))?", re.IGNORECASE | re.DOTALL)
+#: A cylinder lies along a part that is so many times as long as it is high and wide; no ratio of round numbers, so that whoever
+#: measures the part agrees.
+LONG = 2.17
 #: Stock that is proposed reaches so far below the part where a tool does not come low enough beside less, mm.
 _DEEPER = 25.0
 
@@ -85,9 +88,10 @@ class StockBody:
     """Stock about a part in the frame of a setup, z along its axis from the part's origin, mm."""
 
     low: Floats  #: (3,) the least corner of its box; z is its foot.
-    high: Floats  #: (3,) the other one; z is the top of the part.
+    high: Floats  #: (3,) the other one; there is as much on top of the part as beside it, where that is least.
     part_low: float  #: z of the part's lowest point.
     radius: float | None = None  #: Of a cylinder about the middle of the box.
+    along: int = 2  #: Along which of the frame's axes that lies.
 
     @classmethod
     def about(cls, stock: Stock, part: Floats, body: Floats | None = None) -> "StockBody":
@@ -104,13 +108,35 @@ class StockBody:
         foot = low[2] - stock.below
         if stock.kind == BOX:
             margin = np.array(stock.margins[:2])
-            return cls(np.array([*(low[:2] - margin), foot]), np.array([*(high[:2] + margin), high[2]]), float(low[2]))
-        middle = 0.5 * (low + high)[:2]
-        radius = float(np.linalg.norm(part[:, :2] - middle, axis=1).max()) + stock.margins[0]
-        return cls(np.array([*(middle - radius), foot]), np.array([*(middle + radius), high[2]]), float(low[2]), radius)
+            top = high[2] + margin.min()
+            return cls(np.array([*(low[:2] - margin), foot]), np.array([*(high[:2] + margin), top]), float(low[2]))
+        middle, size = 0.5 * (low + high), high - low
+        along = next((k for k in (0, 1) if size[k] > LONG * np.delete(size, k).max()), 2)
+        round_ = np.delete(np.arange(3), along)
+        radius = float(np.linalg.norm((part - middle)[:, round_], axis=1).max()) + stock.margins[0]
+        least, most = low - stock.margins[0], high + stock.margins[0]
+        least[round_], most[round_] = middle[round_] - radius, middle[round_] + radius
+        if along == 2:
+            least[2] = foot
+        return cls(least, most, float(low[2]), radius, along)
 
     @property
     def volume(self) -> float:
         """In mm3."""
-        x, y, z = (self.high - self.low).tolist()
-        return float(x * y * z if self.radius is None else math.pi * self.radius**2 * z)
+        size = self.high - self.low
+        return float(size.prod() if self.radius is None else math.pi * self.radius**2 * size[self.along])
+
+    @property
+    def lying(self) -> bool:
+        """Whether it is a bar that lies across the setup axis."""
+        return self.along != 2
+
+    @property
+    def foot(self) -> tuple[Floats, Floats]:
+        """Corners (3,) of a box about what of it is below the part."""
+        low, high = self.low.copy(), np.append(self.high[:2], self.part_low)
+        if self.radius is not None and self.lying:
+            half = math.sqrt(max(0.0, self.radius**2 - (self.radius - self.part_low + self.low[2]) ** 2))
+            middle = 0.5 * (self.low + self.high)[1 - self.along]
+            low[1 - self.along], high[1 - self.along] = middle - half, middle + half
+        return low, high

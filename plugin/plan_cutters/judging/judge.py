@@ -14,6 +14,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
@@ -273,32 +274,54 @@ def in_setup(
 _LOOKED_AT, _PAIRS, _LEAST, _WORTH = 400, 4_000, 100, 40_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FirstLook:
-    """A first look has the share of area that each cutter reaches at some samples, and that they reach together."""
+    """A first look has the verdicts of all cutters at some samples of the first setup."""
 
-    setup: Floats  #: (3,) float64: the setup axis.
-    #: How many were looked at, of how many.
-    samples: int
-    of: int
-    shares: tuple[tuple[Cutter, float], ...]  #: In the order of the request.
-    together: float
+    ready: Prepared  #: With those samples alone.
+    verdicts: dict[Cutter, Verdicts]  #: In the order of the request.
+    of: int  #: How many samples there are.
+
+    @property
+    def samples(self) -> int:
+        """How many were looked at."""
+        return len(self.ready.samples)
+
+    @property
+    def shares(self) -> tuple[tuple[Cutter, float], ...]:
+        """The share of area that each cutter reaches of them."""
+        return tuple((cutter, self._share(each.reached)) for cutter, each in self.verdicts.items())
+
+    @property
+    def together(self) -> float:
+        """The share that they reach together."""
+        return self._share(np.logical_or.reduce([each.reached for each in self.verdicts.values()]))
+
+    def _share(self, reached: NDArray[np.bool_]) -> float:
+        area = np.nan_to_num(self.ready.samples.area)
+        return float(reached @ area) / max(1e-300, float(area.sum()))
 
 
-def first_look(ready: Prepared) -> FirstLook | None:
-    """Judge all cutters at some samples of the first setup; None where all samples are hardly more work.
+def worth_a_look(ready: Prepared) -> bool:
+    """Whether verdicts at some samples come much sooner than those at all."""
+    return int(ready.finished.sum()) * len(ready.cutters) >= _WORTH
+
+
+def first_look(ready: Prepared) -> FirstLook:
+    """Judge all cutters at some samples of the first setup.
 
     Its verdicts are those of the plan in this setup, but for what is nothing beside the whole: copies, and cutters that
-    others decide.
+    others decide. There is one on each face at least, and they say how far apart they are.
     """
-    every = np.flatnonzero(ready.finished)
-    if len(every) * len(ready.cutters) < _WORTH:
-        return None
+    every, by_face, samples = np.flatnonzero(ready.finished), ready.samples.by_face(), ready.samples
     few = min(_LOOKED_AT, max(_LEAST, _PAIRS // len(ready.cutters)), len(every))
     rows = evenly(every, few)
-    some = some_of(ready, rows)
-    reached = [judge(some, cutter).reached for cutter in ready.cutters]
-    area = np.nan_to_num(some.samples.area)
-    shares = np.array([*reached, np.any(reached, axis=0)]) @ area / max(1e-300, float(area.sum()))
-    alone = tuple(zip(ready.cutters, shares[:-1].tolist(), strict=True))
-    return FirstLook(np.array(ready.scene.setup), len(rows), len(every), alone, float(shares[-1]))
+    unseen = [mine[len(mine) // 2] for number, mine in by_face.items() if number not in np.unique(samples.face[rows])]
+    some = some_of(ready, np.unique(np.append(rows, np.array(unseen, np.int64))))
+    gaps, mine = dict(samples.face_gaps), some.samples.by_face()
+    for number, gap in gaps.items():
+        near = cKDTree(some.samples.point[mine[number]]).query(samples.point[by_face[number]])[0]
+        gaps[number] = gap + float(near.max())
+    apart = replace(some.samples, face_gaps=tuple(gaps.items()), max_gap=max(gaps.values(), default=samples.max_gap))
+    some = replace(some, samples=apart)
+    return FirstLook(some, {cutter: judge(some, cutter) for cutter in ready.cutters}, len(every))

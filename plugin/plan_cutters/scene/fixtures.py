@@ -140,13 +140,9 @@ def joined(
         in_place = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
         if held is not None:
             in_place = replace(in_place, notes=(*in_place.notes, held.words), requested=requested, hold=held)
-        # Jaws that grip stock hold all that is in it.
-        if (
-            clamping is not None
-            and blank is None
-            and sign is not None
-            and len(parts := material_bodies(surroundings.bodies, sign)) > 1
-        ):
+        # Of stock that is gripped all bodies are made.
+        parts = () if sign is None or blank is not None else material_bodies(surroundings.bodies, sign)
+        if clamping is not None and len(parts) > 1:
             known = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
             in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, known.triangles, parts))
         placed_fixtures.append(in_place)
@@ -272,9 +268,9 @@ def stock_body(
 
 def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:
     """What of stock is below the part."""
-    frame, high = frame_of(np.asarray(setup, float)), np.append(blank.high[:2], blank.part_low)
-    if blank.radius is None:
-        return _solid(np.ascontiguousarray(box(blank.low, high) @ frame), 0.0)
+    frame, (low, high) = frame_of(np.asarray(setup, float)), blank.foot
+    if blank.radius is None or blank.lying:
+        return _solid(np.ascontiguousarray(box(low, high) @ frame), 0.0)
     sides = sides_of(blank.radius, chord)
     middle = np.append(0.5 * (blank.low + blank.high)[:2], blank.low[2])
     vertex = (cylinder(blank.radius, float(high[2] - blank.low[2]), sides) + middle) @ frame

@@ -72,8 +72,8 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
     places.sort(
-        key=lambda each: (each.soft != "", each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above,
-                          round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
+        key=lambda each: (each.soft != "", each.bored, each.thin, int((each.hidden - least) / step), -round(each.firm, 6),
+                          each.above, round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
     searched = Counter[tuple[int, ...]]()
     for place in places:
@@ -105,7 +105,7 @@ def refuse_ungripped(fixture: Fixture, faces: Sequence[FaceInfo], sign: Floats, 
 
 
 def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides: int) -> Hold:
-    """Place a vise or chuck on stock, all below the part.
+    """Place a vise or chuck on stock: all below the part, or across a bar that lies.
 
     `fixture`: with `to_place`. `body`: in the frame of the setup. `sides`: of a cylinder as triangles. Raises NothingToGripError:
     it cannot grip that.
@@ -113,7 +113,7 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
     foot = body.part_low - float(body.low[2])
-    if requested.grip > foot:
+    if requested.grip > foot and not body.lying:
         raise NothingToGripError(
             f"{fixture}: its jaws grip {mm(requested.grip)} high, and the stock reaches {mm(foot)} below the part; give more "
             "with --stock, or grip less"
@@ -123,15 +123,17 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
         vertex, planes = box(body.low, body.high), range(1, 7)
         face = np.tile(np.arange(1, 7, dtype=np.int32), 2)
     else:
-        high = float(body.high[2] - body.low[2])
-        vertex = cylinder(body.radius, high, sides) + np.append(0.5 * (body.low + body.high)[:2], body.low[2])
+        start = 0.5 * (body.low + body.high)
+        start[body.along] = body.low[body.along]
+        long = float(body.high[body.along] - body.low[body.along])
+        vertex = np.roll(cylinder(body.radius, long, sides), body.along + 1, axis=-1) + start
         face, planes = np.repeat(np.array([1, 1, 2, 3], np.int32), sides), range(2, 4)
     piece = Workpiece.of(vertex @ across, face, np.ones(6), planes, (), setup)
     hold = held(fixture, piece, lambda placed, clamping: False, lambda placed, clamping: False)
     clamping = hold.fixture.clamping
     assert clamping is not None, "what was placed is in its place"
     what, apart = _called(clamping)
-    words = f"{what}; it grips the stock, {apart}; the jaws reach {mm(requested.grip)} above where it rests"
+    words = f"{what}; it grips the stock, {apart}; the jaws reach {mm(clamping.grip)} above where it rests"
     return Hold(hold.fixture, (), (), 0.0, words, hold.soft)
 
 
@@ -174,6 +176,7 @@ def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place)
     under += [f"F{n}" for n in rests if n in part.targets]
     left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
     what, across = _called(clamping)
+    across += ", in soft jaws bored to it" if place.bored else ""
     words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
     soft = f"; it needs soft jaws or a nest: {place.soft}" if place.soft else ""
     return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}{soft}; {left}", place.soft)

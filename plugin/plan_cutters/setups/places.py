@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, rows_by_face
-from plan_cutters.domain.clamping import CHUCK, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
+from plan_cutters.domain.clamping import CHUCK, GRIP, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
 from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
@@ -29,19 +29,27 @@ from plan_cutters.setups.workpiece import (
 
 #: Jaws of a chuck are turned by so many degrees to find their best place; what they touch is told apart by one degree.
 _TURN, _BINS = 5, 360
-#: Arcs of fewer degrees do not tell their cylinder.
-_ARC = 20
+#: Arcs of fewer degrees do not tell their cylinder; one that lies in jaws is as far above the part's lowest point at most, as a
+#: share of what they grip.
+_ARC, _LOWEST = 20, 0.1
+#: Of a cylinder that is gripped deep, so much at most.
+_DEEP = 2.0 / 3.0
+_X, _Y, _Z = np.eye(3)
 
 
 def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
     """Where a chuck may grip, and why it may not where a cylinder is no such place."""
     places, refused = list[Place](), list[Refused]()
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
-    for wall, centre, radius in _upright_cylinders(part):
+    for wall, centre, radius in _cylinders(part, part.vertex, part.normal):
         result, why = list[Place](), short
+        grips = [requested.grip]
+        if requested.sizes is None and requested.grip == GRIP and part.targets.isdisjoint(wall.faces):
+            # A pin that nobody machines is gripped deep, and some of it stays free below the part.
+            grips.append(max(GRIP, min(2.0 * radius, _DEEP * (wall.high - wall.low))))
         if 2.0 * radius > largest_gripped():
-            why = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}"
-        for above, reach in stands(wall.low, requested.grip) if 2.0 * radius <= largest_gripped() else ():
+            why, grips = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}", []
+        for above, reach in [each for grip in grips for each in stands(wall.low, grip)]:
             chuck = chuck_about(2.0 * radius, reach)
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
@@ -53,13 +61,15 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
     return places, refused if places or refused else [Refused((True, 0.0), short)]
 
 
-def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
-    """Upright outside cylinders, the faces of one together: each with its centre (3,) and the largest radius, mm."""
+def _cylinders(part: Workpiece, vertices: Floats, normals: Floats) -> list[tuple[Wall, Floats, float]]:
+    """Outside cylinders of a part along the z of a frame, the faces of one together: each with its centre (3,) and the largest
+    radius, mm. `vertices`, `normals`: of its triangles in that frame.
+    """
     cylinders: list[tuple[Wall, Floats, float]] = []
     for number, rows in rows_by_face(part.face).items():
         if number in part.planes:
             continue
-        vertex, normal = part.vertex[rows], part.normal[rows]
+        vertex, normal = vertices[rows], normals[rows]
         if (np.abs(normal[:, 2]) > PARALLEL * np.linalg.norm(normal, axis=1)).any():
             continue
         circle = _circle(vertex, normal)
@@ -110,7 +120,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
-    tall = part.tall - above
+    tall, free = part.tall - above, part.tall - above - chuck.grip
     for turn in range(0, math.ceil(360 / chuck.jaws), _TURN):
         at = start + turn + 360.0 / chuck.jaws * np.arange(chuck.jaws)
         bins = [np.floor(np.arange(each - half, each + half, 1.0) % _BINS).astype(int) % _BINS for each in at]
@@ -123,7 +133,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
             area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
-            _too_tall(tall, chuck.diameter) if tall > TALL * chuck.diameter else "",
+            _too_tall(tall, chuck.diameter) if free > TALL * chuck.diameter else "",
         )  # fmt: skip
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
@@ -150,7 +160,7 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
     `sign` (faces,): side of each face that is out of the material. `reach`: how far the part is from the origin at most, mm.
     """
     # Planes that count as parallel may still come together so far from where they are known.
-    upright, round_, slack = list[tuple[Floats, float, float]](), False, 4.0 * PARALLEL * reach
+    upright, round_, lying, slack = list[tuple[Floats, float, float]](), False, False, 4.0 * PARALLEL * reach
     for face in faces:
         known = face.carrier
         if known is None and face.shape == "plane":
@@ -163,8 +173,11 @@ def ungripped(requested: Requested, faces: Sequence[FaceInfo], sign: Floats, axi
         if face.shape == "plane" and along <= 2.0 * PARALLEL:
             upright.append((direction, float(direction @ known.point), side))
         round_ |= face.shape == "cylinder" and along >= 1.0 - PARALLEL and side >= 0.0
+        lying |= face.shape == "cylinder" and along <= 2.0 * PARALLEL and side >= 0.0
     if requested.kind == CHUCK:
         return "" if round_ else "no outside cylinder along it"
+    if lying:
+        return ""
     widest, opposite = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2], False
     for i, (one, first, side) in enumerate(upright):
         for other, second, its in upright[:i]:
@@ -194,7 +207,10 @@ _LONG, _LONG_SHARE, _LUG = 15.0, 1.0 / 3.0, 0.25
 
 
 def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
-    """Where a vise may grip, and why it may not where two opposite plane faces are no such place."""
+    """Where a vise may grip, and why it may not where two opposite plane faces are no such place.
+
+    Soft jaws that are bored to it hold a cylinder that lies across the setup axis on what they rest on.
+    """
     walls = _upright_planes(part, max(each[1] for each in VISES) if requested.sizes is None else requested.sizes[1])
     places, refused = list[Place](), list[Refused]()
     for i, one in enumerate(walls):
@@ -209,9 +225,65 @@ def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], lis
                 if not result:
                     low, size = max(one.low, other.low), min(area_of(one.vertex), area_of(other.vertex))
                     refused.append(Refused((low > 0.5 * requested.grip, -size), why))
+    places += _lying(part, requested)
     if not places and not refused:
         refused = [Refused((True, 0.0), "no two opposite plane faces stand along it near the bottom")]
     return places, refused
+
+
+def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
+    """Places of a vise across the outside cylinders that lie lowest, up to half of what it grips above their middle."""
+    grip = requested.grip
+    for direction in _lying_directions(part):
+        x = np.array([direction[1], -direction[0], 0.0])
+        own, length = np.stack([_Z, x, direction]), float(np.ptp(part.outline @ direction))
+        for wall, centre, radius in _cylinders(part, part.vertex @ own.T, part.normal @ own.T):
+            radius = round(radius, 4)
+            reach = radius + 0.5 * grip
+            vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, length, 0.0)
+            if vise is None or abs(centre[0] - radius) > _LOWEST * grip:
+                continue
+            halves = [clipped(wall.vertex, wall.face, way * _Y, way * centre[1], np.inf) for way in (1.0, -1.0)]
+            strips = [clipped(*half, _X, reach - grip, reach)[0][..., 2] for half in halves]
+            if not all(map(len, strips)):
+                continue
+            start, end = max(float(each.min()) for each in strips), min(float(each.max()) for each in strips)
+            half = 0.5 * vise.width
+            touched = min(vise.width, end - start)
+            for at in [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]:
+                vertex, face = clipped(wall.vertex, wall.face, _Z, at - half, at + half)
+                vertex, face = clipped(vertex, face, _X, -np.inf, reach)
+                soft, origin = "", centre[1] * x + at * direction
+                if touched < min(_LONG, _LONG_SHARE * length):
+                    soft = f"they touch {mm(max(0.0, touched))} of its length"
+                elif not abs(part.enclosed[1] @ direction - at) < half:
+                    soft = "the middle of the part is not between them"
+                elif part.tall > TALL * min(2.0 * radius, touched):
+                    soft = _too_tall(part.tall, min(2.0 * radius, touched))
+                if touched > part.flat:
+                    yield Place(
+                        vise, x, origin, tuple(int(n) for n in np.unique(face)), touched * grip,
+                        area_of(vertex[np.isin(face, list(part.targets))]), 0.0, area_of(wall.vertex),
+                        float(np.linalg.norm((origin - part.middle)[:2])), float(np.abs((part.outline - origin) @ x).max()),
+                        soft, bored=True,
+                    )  # fmt: skip
+
+
+def _lying_directions(part: Workpiece) -> list[Floats]:
+    """Directions across the setup axis along which cylinders may lie: all normals of a face are across one of them."""
+    directions = list[Floats]()
+    for number, rows in rows_by_face(part.face).items():
+        if number in part.planes:
+            continue
+        normal = part.normal[rows] / np.maximum(1e-300, np.linalg.norm(part.normal[rows], axis=1))[:, None]
+        axis = np.linalg.eigh(normal.T @ normal)[1][:, 0]
+        if np.abs(normal @ axis).max() > PARALLEL or abs(axis[2]) > PARALLEL:
+            continue
+        flat = np.round([axis[0], axis[1], 0.0], 6)
+        flat = flat / np.linalg.norm(flat)
+        if not any(abs(flat @ each) >= 1.0 - PARALLEL**2 for each in directions):
+            directions.append(flat)
+    return directions
 
 
 def _upright_planes(part: Workpiece, reach: float) -> list[Wall]:
@@ -255,6 +327,7 @@ def _at(
     part: Workpiece, requested: Requested, walls: tuple[Wall, Wall], x: Floats, above: float, reach: float
 ) -> tuple[list[Place], str]:
     """The same where the part rests at a height over its lowest point, and the jaws reach so far above that."""
+    one, other = walls
     grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
     names = " and ".join(listed([f"F{n}" for n in wall.faces], 2) for wall in walls)
     apart = f"no two opposite plane faces lie side by side in the {mm(grip)} that the jaws grip"
@@ -273,16 +346,19 @@ def _at(
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
     tall, bearing = part.tall, part.bearing(0.0, above)
     centre = part.enclosed[1]
+    # A fillet or chamfer at the bottom edge is between the jaws, and they touch what begins above it.
+    gripped = above + reach - max(above, one.low, other.low)
     lug = (right - left) * (end - start) < _LUG * part.section
     places, why = list[Place](), apart
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
     for middle in middles:
         touched = [clipped(vertex, face, y, middle - half, middle + half) for vertex, face in strips]
         least = min(area_of(vertex) for vertex, _ in touched)
-        if least < _TOUCHED * reach * min(vise.width, end - start):
+        if least < _TOUCHED * gripped * min(vise.width, end - start):
             continue
-        if tall - above - grip > _TALL * least / grip:
-            why = f"the part stands {mm(tall)} high, and jaws touch no more than {mm(least / grip)} of its length"
+        long = least / gripped
+        if tall - above - reach > _TALL * long:
+            why = f"the part stands {mm(tall)} high, and jaws touch no more than {mm(long)} of its length"
             continue
         hidden = sum(area_of(vertex[np.isin(face, list(part.targets))]) for vertex, face in touched)
         grips = tuple(sorted({int(n) for _, face in touched for n in face}))
@@ -292,12 +368,12 @@ def _at(
             soft = "what they grip is a lug"
         elif not (left < centre @ x < right and abs(centre @ y - middle) < half):
             soft = "the middle of the part is not between them"
-        elif least / reach < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
-            soft = f"they touch {mm(least / reach)} of its length"
+        elif long < min(_LONG, _LONG_SHARE * float(np.ptp(part.outline @ y))):
+            soft = f"they touch {mm(long)} of its length"
         elif not bearing.broad:
             soft = "hardly any plane of the part rests in them"
-        elif tall - above > TALL * min(right - left, least / reach):
-            soft = _too_tall(tall - above, min(right - left, least / reach))
+        elif tall - above > TALL * min(right - left, long):
+            soft = _too_tall(tall - above, min(right - left, long))
         place = Place(
             vise, x, origin, grips, least, hidden, above, size, float(np.linalg.norm((origin - part.middle)[:2])),
             float(np.abs((part.outline - origin) @ x).max()), soft,

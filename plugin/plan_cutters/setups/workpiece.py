@@ -24,6 +24,8 @@ from plan_cutters.setups.bearing import Bearing, enclosed
 PARALLEL = float(np.sin(np.radians(0.1)))
 #: Faces are in one plane, or on one cylinder, if they are no farther apart than this, mm.
 TOGETHER = 0.01
+#: Triangles face the jaws of a vise if their normal is that near to the way that these close: cosine of 18 deg.
+_FACING = 0.95
 #: What stands out of jaws sideways by more than so many times what is between them is held last.
 _OUT = 6.0
 
@@ -161,6 +163,7 @@ class Place:
     `off`: how far its middle is from the middle of the part, seen from above, mm.
     `farthest`: how far the part reaches from its middle across the jaws, mm.
     `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
+    `bored`: soft jaws are bored to a cylinder that lies in them.
     """
 
     clamping: Clamping
@@ -174,6 +177,7 @@ class Place:
     off: float
     farthest: float
     soft: str = ""
+    bored: bool = False
 
     @property
     def rank(self) -> tuple[bool, float]:
@@ -288,10 +292,14 @@ def on_ledges(clamping: Clamping, vertex: Floats, face: Ints, flat: float) -> fr
 
 
 def faces_in_jaws(clamping: Clamping, vertex: Floats, face: Ints, slack: float) -> frozenset[int]:
-    """Faces that jaws touch.
+    """Faces that jaws touch, and not only with an edge.
 
     `clamping`, `vertex`, `face`: as for `at_jaws`. `slack`: how far triangles may be off, mm.
     """
+    if isinstance(clamping, Vise):
+        normal = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+        facing = np.abs(normal[:, 0]) >= _FACING * np.linalg.norm(normal, axis=1)
+        vertex, face = vertex[facing], face[facing]
     inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
     each = at_jaws(clamping, vertex, face, 0.0, clamping.grip)
     return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach >= inner]))

@@ -477,7 +477,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
             if setups == 1 or alone:
                 return take(plan.selected, first_of(plan, entries[plan.selected], every(plan)))
         if plan.selected_over_setups and not others:
-            why = f"Together they reach {every(plan)}; no setup does alone."
+            why = f"It reaches {every(plan)} in {setups} setups, and in none of them alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
     best = nearest(plan.cutters)
     finished = process.finished if process else not best.not_reached

@@ -113,17 +113,20 @@ def note(code: NoteCode, *names: str, **values: Any) -> Note:
 
 def later_stages(
     *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False,
-    reasons: Sequence[str] = (), witnesses: bool = False, setups: Sequence[Sequence[float]] = (),
+    reasons: Sequence[str] = (), witnesses: bool = False, setups: Sequence[Sequence[float]] = (), proposal: bool = False,
+    samples: tuple[int, int] | None = None,
 ) -> tuple[str, ...]:  # fmt: skip
     """Name what follows the verdicts, in its order, by its options; empty for what was not requested.
 
     `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either; `setups`:
-    axes of those that are not judged.
+    axes of those that are not judged; `proposal`: setups were not compared; `samples`: so many were judged, of how many.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('', '', '', 'the proof between the samples', '', '`--operations fewest`', '')
+    ('', '', '', '', '', 'the proof between the samples', '', '`--operations fewest`', '')
     """
     return (
+        "a setup that was chosen and what holds the part (--setup auto)" if proposal else "",
+        f"all but {samples[0]:,} of {samples[1]:,} samples" if samples else "",
         f"what follows in setup {joined([axis_words(each) for each in setups])}" if setups else "",
         f"the reasons of {listed(reasons)}" if reasons else "",
         "witnesses" if witnesses else "",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, percent, some
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry, ProcessEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry, ProcessEntry, ProcessStep
 from plan_cutters.plan_file.words.names import Line, named
 
 #: The id of an operation in a text.
@@ -45,15 +45,37 @@ def operation_names(plan: Plan) -> dict[str, str]:
 def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, str]:
     """The numbers of `operation_names`."""
     names = dict[str, str]()
-    entries = [each for one in operations.plans if one.name == process.plan for each in one.operations]
-    by_id = {each.id: each for each in entries}
     for number, step in enumerate(process.steps, 1):
-        made = by_id.get(step.operation)
-        orbit = None if made is None else made.orbit
-        images = [each for each in entries if each is made or (orbit is not None and each.orbit == orbit)] if made else []
+        images = _images(operations, process, step)
         for k, each in enumerate(images, 1):
             names[each.id] = f"{number}.{k}" if len(images) > 1 else str(number)
     return names
+
+
+def _images(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
+    """The operations that a step consists of: images of each other."""
+    entries = [each for one in operations.plans if one.name == process.plan for each in one.operations]
+    made = next((each for each in entries if each.id == step.operation), None)
+    return [each for each in entries if each is made or (each.orbit is not None and each.orbit == made.orbit)] if made else []
+
+
+def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
+    """The angles of each time that a step is done, where no increment leads from one to the next: `C 0, 47, 190 · A 45`, as many
+    as go into a width; empty where one does, and where they are not known.
+    """
+    if step.repeat < 2 or step.repeat_deg or plan.operations is None or plan.process is None:
+        return ""
+    images = _images(plan.operations, plan.process, step)
+    every = sorted((each.angles_deg or {} for each in images), key=lambda angles: [angle % 360.0 for angle in angles.values()])
+    for shown in range(len(every), 1, -1):
+        words = list[str]()
+        for name in every[0]:
+            each = [f"{angles[name]:g}" for angles in every]
+            more = f" +{len(each) - shown}" if len(each) > shown else ""
+            words.append(f"{name} {each[0] if len({*each}) == 1 else ', '.join(each[:shown]) + more}")
+        if len(text := " · ".join(words)) <= width:
+            return text
+    return ""
 
 
 def stepped(plan: Plan, of: OperationPlanEntry, text: str) -> str:

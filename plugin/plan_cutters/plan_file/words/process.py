@@ -23,6 +23,7 @@ from plan_cutters.plan_file.operations import (
     ProcessSetup,
     ProcessStep,
     RemainingEntry,
+    StockEntry,
 )
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
@@ -30,7 +31,7 @@ from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.holes import drilling_words
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import doubts
-from plan_cutters.plan_file.words.operations import angles_text
+from plan_cutters.plan_file.words.operations import angles_text, each_time
 
 #: Rows of mills and drills that are listed together, and so many of drills in any case.
 _ROWS, _DRILLED = 10, 4
@@ -42,6 +43,10 @@ _ROUNDING = 1e-6
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
 #: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn.
 _LITTLE = 0.005
+#: Columns for the angles of a step that is repeated.
+_ANGLES = 34
+#: An area that is left, and less than that and hardly a share, has no line of its own, mm2.
+_SMALLEST = 1.0
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -76,15 +81,16 @@ class StepRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps, how the part stands in each setup, and how many more steps there are; sentences on the
-    planner's own steps and on what is left, next steps, and clearance. The first `much` of those on what is left are of more than
-    a little.
+    """A process in words: rows of steps, how the part stands in each setup, how many more steps there are, and the time between
+    steps (`besides`); sentences on the planner's own steps and on what is left, next steps, and clearance. The first `much` of
+    those on what is left are of more than a little.
     """
 
     rows: tuple[StepRow, ...]
     stands: tuple[str, ...]
     roughing: str
     more: str
+    besides: str
     own: tuple[str, ...]
     remaining: tuple[str, ...]
     much: int
@@ -114,7 +120,8 @@ class ProcessStory:
         idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
         if unshown:
             lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
-        return [*lines, *([f"  {self.more}"] if self.more else []), *(idle or wrapped(list(stands.values()), 2))]
+        lines += [f"  {text}" for text in (self.more, self.besides) if text]
+        return [*lines, *(idle or wrapped(list(stands.values()), 2))]
 
 
 def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> ProcessStory | None:
@@ -127,7 +134,9 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     steps = dict(enumerate(process.steps, 1))
     # The largest ones where there is no space for all, in the order of the process.
     largest = sorted(steps, key=lambda k: -steps[k].share)[: most if len(steps) > most + 1 else None]
-    rows = [_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest)]
+    rows = [
+        _row(k, steps[k], names, setups=setups, fixed=fixed, each=each_time(plan, steps[k], _ANGLES)) for k in sorted(largest)
+    ]
     # Steps that drill follow those of mills in their setup.
     for k, bores in enumerate(process.drilling, len(steps) + 1):
         after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
@@ -150,6 +159,7 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         stands=tuple(each.text for each in process.setups),
         roughing=roughing(process),
         more=more,
+        besides=_besides(process),
         own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
@@ -178,11 +188,11 @@ def with_process_words(plan: Plan) -> Plan:
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
-def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
+def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
     turned = ""
     if fixed:
         by = step.repeat_deg or {}
-        angles = angles_text(step.angles_deg or {}, by)
+        angles = each or angles_text(step.angles_deg or {}, by)
         turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
         if step.mode == "simultaneous":
             turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
@@ -226,9 +236,11 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
     if setup.grip_mm is not None:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
-        across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' else 'wide'}"
+        bored = setup.held == "vise" and _is_round(plan, setup)
+        across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
-        how = f"in a {setup.held}{what}, {across}, gripped {mm(setup.grip_mm)} high{rests}"
+        gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
+        how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
         how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
     else:
@@ -236,10 +248,25 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
     if on == "stock" and plan.process is not None and plan.process.stock is not None:
         stock = plan.process.stock
-        bar = f"a bar {mm(stock.size_mm[0])} wide and {mm(stock.size_mm[2])} long"
+        wide = stock.size_mm[2] if _lies(stock) else stock.size_mm[0]
+        long = max(stock.size_mm) if _lies(stock) else stock.size_mm[2]
+        bar = f"a bar {mm(wide)} wide and {mm(long)} long{', lying,' * _lies(stock)}"
         how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
+
+
+def _is_round(plan: Plan, setup: ProcessSetup) -> bool:
+    """Whether a vise grips what is round: no plane, or a bar that lies."""
+    if setup.stands_on == "stock":
+        stock = None if plan.process is None else plan.process.stock
+        return stock is not None and _lies(stock)
+    planes = {face.id for face in plan.faces if face.shape == "plane"}
+    return bool(setup.grips) and planes.isdisjoint(setup.grips)
+
+
+def _lies(stock: StockEntry) -> bool:
+    return stock.word.startswith("cylinder") and stock.size_mm[0] != stock.size_mm[1]
 
 
 def roughing(process: ProcessEntry) -> str:
@@ -252,6 +279,16 @@ def roughing(process: ProcessEntry) -> str:
         f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (0.001 * stock.remove_mm3, 0.001 * stock.volume_mm3)
     )
     return f"Roughing: {removed} of {whole} cm³ of stock{took}."
+
+
+def _besides(process: ProcessEntry) -> str:
+    """The time between steps, which with theirs makes that of the process, or why that is not known; empty without any."""
+    if unknown := [str(k) for k, step in enumerate(process.steps, 1) if step.seconds is None and process.plan == "fastest"]:
+        steps = f"step{'s' * (len(unknown) > 1)} {listed(unknown, _FACES)}"
+        return f"The time is not known: the width of a pass is not at some samples of {steps}."
+    spent = ("tool changes", process.change_seconds), ("turns", process.index_seconds)
+    each = [f"{what} {duration(seconds)}" for what, seconds in spent if seconds]
+    return f"Between steps: {', '.join(each)}." if each else ""
 
 
 def _is_are(setup: ProcessSetup) -> str:
@@ -273,7 +310,7 @@ def _fitting(faces: list[str], width: int) -> str:
 
 
 def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
-    listed_causes = process.left[:_CAUSES]
+    listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
@@ -281,11 +318,16 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         some = percent(each.share, some=True, whole=False) if each.samples else percent(each.share)
         yield f"Left, {some}, {area(each.area_mm2)}, {_OTHER_CAUSES.get(each.cause) or reason(each.cause)}: {faces}{near}{needs}."
     if len(process.left) > len(listed_causes):
-        rest = process.left[len(listed_causes) :]
+        rest = [each for each in process.left if each not in listed_causes]
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
     if process.exempt is not None:
         where = listed(process.exempt.faces, _FACES)
         yield f"Not required (`--sharp-edges left`): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
+
+
+def _is_minor(each: RemainingEntry) -> bool:
+    """Whether an area is too small for a line, and for advice; what was not judged is none."""
+    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != UNJUDGED_CAUSE
 
 
 def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:

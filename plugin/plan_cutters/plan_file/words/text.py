@@ -1,7 +1,7 @@
 """A plan put into words, once, and the text that stands in its file: every reader lays these out."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, reporting, sentence
@@ -142,6 +142,8 @@ def chip(plan: Plan, story: Story) -> Chip:
 MOST = 22
 #: Doubts, and cutters, that are named.
 _DOUBTS, _CUTTERS = 4, 6
+#: Steps that are listed where there is no space for more, and then fewer.
+_FEWER = (6, 4, 2)
 #: Lines on an area that is left.
 _LEFT = 3
 #: Lines on what each cutter reaches by itself.
@@ -176,56 +178,65 @@ def text_of(plan: Plan) -> TextEntry:
 def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], str] = as_fields) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
 
-    `write`: how options are written: `typed` for a terminal; other readers have fields of these names.
+    What is left comes before the last steps of a long table, if there is no space for both. `write`: how options are written:
+    `typed` for a terminal; other readers have fields of these names.
     """
+    more = "-v, or the review page" if write is typed else "see the review page"
+    lines = list[str]()
+    for steps in (None, *_FEWER):
+        shorter = story if steps is None else replace(story, process=process_story(plan, story.names, steps))
+        lines, whole = _fitting(list(_paragraphs(plan, shorter, write, more)), most, f"More: {more}.")
+        if whole:
+            break
+    return lines
+
+
+def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str) -> Iterator[tuple[int, list[str]]]:
+    """Lines of each sentence, with its rank: those of rank 0 are in every text."""
     process = story.process
-    inside = [f"Inside other bodies: {text}" for text in story.inside[:1]] + [" ".join(story.inside[1:])]
-    judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
-    unshown = len(story.notes) + len(story.setups) + len(story.answers)
-    where = "-v, or the review page" if write is typed else "see the review page"
-    paragraphs: list[tuple[int, list[str]]] = []
 
-    def add(texts: Iterable[str], each: int, rank: int = 2) -> None:
-        paragraphs.extend((rank, wrapped([write(text)], each)) for text in texts if text)
+    def each(texts: Iterable[str], most: int, rank: int = 2) -> list[tuple[int, list[str]]]:
+        return [(rank, wrapped([write(text)], most)) for text in texts if text]
 
-    add(plan.process.doubts if plan.process else (), 2, 0)
-    add(inside[:1], _LEFT, 1)
-    add(inside[1:], 5)
-    add(_doubts(plan, story)[:_DOUBTS], 1, 1)
-    add([judged], 3, 1)
+    yield from each(plan.process.doubts if plan.process else (), 2, 0)
+    yield from each([f"Inside other bodies: {text}" for text in story.inside[:1]], _LEFT, 1)
+    yield from each([" ".join(story.inside[1:])], 5)
+    yield from each(_doubts(plan, story)[:_DOUBTS], 1, 1)
+    yield from each([" ".join(filter(None, (story.headline.about, *not_judged(plan))))], 3, 1)
     if process:
-        add([in_summary(plan)], 2, 1)
-        paragraphs += [(0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table()]
-    add(holes(plan), 2, 1)
+        yield from each([in_summary(plan)], 2, 1)
+        yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
+    yield from each(holes(plan), 2, 1)
     if plan.process and plan.process.plan == "fewest":
-        add([named(plan, one_more(plan.operations))], 3)
+        yield from each([named(plan, one_more(plan.operations))], 3)
     if process:
         left = [*shortened(process.own), *process.remaining[: process.much]]
-        add(left[:1], _LEFT, 0)
-        add(left[1:], _LEFT)
-        add(process.next[:1], 3, 0)
-        add(process.next[1:], 3)
-        add(process.remaining[process.much :], _LEFT)
-    add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
-    add([process.clearance if process else ""], 1, 1)
-    add(_alone(story), _ALONE)
-    add([story.headline.why], 2)
-    add(story.between[:1], 2)
-    add([f"{count(unshown, 'note')}: {where}."] if unshown else [], 1)
-    return _fitting(paragraphs, most, f"More: {where}.")
+        yield from each(left[:1], _LEFT, 0)
+        yield from each(left[1:], _LEFT)
+        yield from each(process.next[:1], 3, 0)
+        yield from each(process.next[1:], 3)
+        yield from each(process.remaining[process.much :], _LEFT)
+    yield from each([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
+    yield from each([process.clearance if process else ""], 1, 1)
+    yield from each(_alone(story), _ALONE)
+    yield from each([story.headline.why], 2)
+    yield from each(story.between[:1], 2)
+    unshown = len(story.notes) + len(story.setups) + len(story.answers)
+    yield from each([f"{count(unshown, 'note')}: {more}."] if unshown else [], 1)
 
 
-def _fitting(paragraphs: Sequence[tuple[int, list[str]]], most: int, more: str) -> list[str]:
-    """Lines of as many paragraphs, with their ranks, as fit: by rank, and each whole, for a sentence that is cut says
-    something else."""
+def _fitting(paragraphs: Sequence[tuple[int, list[str]]], most: int, more: str) -> tuple[list[str], bool]:
+    """Lines of as many paragraphs as fit, by their rank, each whole, for a sentence that is cut says something else; and whether
+    those of rank 0 are among them."""
     if sum(len(lines) for _, lines in paragraphs) <= most:
-        return [line for _, lines in paragraphs for line in lines]
+        return [line for _, lines in paragraphs for line in lines], True
     space, shown = most - 1, set[int]()
     for k in sorted(range(len(paragraphs)), key=lambda k: paragraphs[k][0]):
         if len(paragraphs[k][1]) <= space:
             shown.add(k)
             space -= len(paragraphs[k][1])
-    return [*(line for k in sorted(shown) for line in paragraphs[k][1]), more]
+    whole = all(k in shown for k, (rank, _) in enumerate(paragraphs) if rank == 0)
+    return [*(line for k in sorted(shown) for line in paragraphs[k][1]), more], whole
 
 
 def _doubts(plan: Plan, story: Story) -> list[str]:

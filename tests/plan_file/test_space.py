@@ -1,0 +1,31 @@
+"""What is left and the next step have their lines where there is no space for all steps."""
+
+import re
+
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.plan_file.words.text import process_lines, story_of, with_text
+from tests.support.cad_parts import box
+
+
+@pytest.fixture(scope="module")
+def planned():
+    words = {"cutters": "D10L40F25S10", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
+    return plan(box(40, 30, 20), operations="fastest", feed=1500, fixtures="vise", setup="+z", **words).plan
+
+
+def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
+    process = planned.process
+    steps = [process.steps[0].model_copy(update={"share": 0.01 * (k + 1)}) for k in range(9)]
+    long = with_text(planned.model_copy(update={"process": process.model_copy(update={"steps": steps})}))
+    assert process.left
+    assert long.process.next
+    for most in (30, 22, 18, 16):
+        lines = process_lines(long, story_of(long), most)
+        assert len(lines) <= most
+        rows = sum(re.match(r" +\d+  ", line) is not None for line in lines)
+        assert any(line.startswith("Left, ") for line in lines)
+        assert any(line.startswith("Next: ") for line in lines)
+        assert rows == 9 if most == 30 else rows < 9 or most > 16
+        assert rows == 9 or any("smaller steps for " in line for line in lines)
