@@ -21,11 +21,11 @@ def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
     long = with_text(planned.model_copy(update={"process": process.model_copy(update={"steps": steps})}))
     assert process.left
     assert long.process.next
-    for most in (30, 22, 18, 16):
+    for most in (30, 22, 16, 13):
         lines = process_lines(long, story_of(long), most)
         assert len(lines) <= most
         rows = sum(re.match(r" +\d+  ", line) is not None for line in lines)
         assert any(line.startswith("Left, ") for line in lines)
         assert any(line.startswith("Next: ") for line in lines)
-        assert rows == 9 if most == 30 else rows < 9 or most > 16
+        assert rows == 9 if most == 30 else rows < 9 or most > 13
         assert rows == 9 or any("smaller steps for " in line for line in lines)
