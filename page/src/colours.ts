@@ -3,7 +3,7 @@
 import type { Arrays } from "./decode.ts";
 import type { Meta, OperationPlan, Pattern, Process, Scalar } from "./meta.ts";
 import { NO_REASON, UNJUDGED } from "./meta.ts";
-import { modeOf, planOf, plansOf, PROCESS, stepOf, takenBy, titleOf } from "./operations.ts";
+import { modeOf, othersOf, planOf, PROCESS, stepOf, takenBy, titleOf } from "./plans.ts";
 import type { Samples } from "./samples.ts";
 
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
@@ -64,7 +64,7 @@ export function modesOf(meta: Meta): Mode[] {
   return [
     ...(meta.process ? [{ key: PROCESS, label: "Step" }] : []),
     { key: "verdict", label: "Verdict" },
-    ...plansOf(meta).filter((plan) => modeOf(meta, plan) !== PROCESS).map((plan) => ({ key: modeOf(meta, plan), label: titleOf(plan) })),
+    ...othersOf(meta).map((plan) => ({ key: modeOf(meta, plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },

@@ -1,9 +1,9 @@
 // The legend of the picture: colour and pattern of what is seen, or the scale with its numbers.
 
-import type { App } from "./app.ts";
 import { colourOf, type Ramp, ramp, spoken } from "./colours.ts";
 import { el, figure, percent, svg } from "./dom.ts";
 import { swatch } from "./patterns.ts";
+import type { PageState } from "./state.ts";
 
 /** As in the style sheet: the picture stands above what is to be read. */
 export const NARROW = matchMedia("(max-width: 999.98px)");
@@ -12,23 +12,22 @@ export const NARROW = matchMedia("(max-width: 999.98px)");
 const LOW = matchMedia("(max-height: 699.98px)");
 
 /** It stands below the picture, never over it, and is folded where that has little room. */
-export function legend(app: App): HTMLElement {
+export function legend(state: PageState): HTMLElement {
   const body = el("div", {});
   const title = el("summary", {}, "Legend");
   const folded = el("details", {}, title, body);
   const fold = (): void => void (folded.open = !NARROW.matches && !LOW.matches);
   for (const each of [NARROW, LOW]) each.addEventListener("change", fold);
   fold();
-  app.on("look", () => {
-    title.textContent = app.look?.title ?? "Legend";
-    body.replaceChildren(...legendOf(app, false));
+  state.on("look", () => {
+    title.textContent = state.look.title;
+    body.replaceChildren(...legendOf(state, false));
   });
   return el("aside", { id: "legend", "aria-label": "Legend" }, folded);
 }
 
 /** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. */
-export function legendOf({ look, meta }: App, titled = true): HTMLElement[] {
-  if (!look) return [];
+export function legendOf({ look, meta }: PageState, titled = true): HTMLElement[] {
   const rows = look.entries.map((entry) =>
     el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
   );
