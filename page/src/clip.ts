@@ -98,6 +98,7 @@ export class Clip {
   private update(): void {
     const { low, high } = this.state.meta.part;
     for (const each of this.root.querySelectorAll<HTMLElement>("input, output, button, .hint")) each.hidden = !this.on;
+    this.root.classList.toggle("on", this.on);
     const plane = shared.plane.value;
     if (!this.on) {
       plane.set(0, 0, 0, 1);

@@ -3,6 +3,7 @@
 import { colourOf, type Ramp, ramp, spoken } from "./colours.ts";
 import { el, figure, percent, svg } from "./dom.ts";
 import { swatch } from "./patterns.ts";
+import { PROCESS } from "./plans.ts";
 import type { PageState } from "./state.ts";
 
 /** As in the style sheet: the picture stands above what is to be read. */
@@ -26,15 +27,16 @@ export function legend(state: PageState): HTMLElement {
   return el("aside", { id: "legend", "aria-label": "Legend" }, folded);
 }
 
-/** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. */
-export function legendOf({ look, meta }: PageState, titled = true): HTMLElement[] {
-  const rows = look.entries.map((entry) =>
+/** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. On paper the table of the process shows the steps. */
+export function legendOf({ look, meta, mode }: PageState, printed = true): HTMLElement[] {
+  const listed = printed && mode === PROCESS ? meta.process!.steps.map(({ label }) => label) : [];
+  const rows = look.entries.filter(({ label }) => !listed.includes(label)).map((entry) =>
     el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
   );
   const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(meta, word)));
   if (meta.faces.some((face) => !face.target)) also("check");
   if (meta.fixtures.length) also("fixture");
-  const found: HTMLElement[] = titled ? [el("h2", {}, look.title)] : [];
+  const found: HTMLElement[] = printed && !listed.length ? [el("h2", {}, look.title)] : [];
   if (look.ramp) found.push(scale(look.ramp));
   const inside = look.entries.some((entry) => entry.label === spoken(meta, "inside_bodies"));
   const hint = `share of the sampled area${inside ? " that lies inside no other body" : ""}`;

@@ -77,7 +77,8 @@ export function enhanceCutters(state: PageState): void {
       row.classList.toggle("shown", shown);
       moreOf(row)?.classList.toggle("shown", shown);
       buttons.get(row)!.setAttribute("aria-pressed", String(shown));
-      open(row, shown);
+      // While the process is shown, no cutter is the subject.
+      open(row, shown && state.mode !== PROCESS);
       if (!shown || row.previousElementSibling === null) continue;
       // A row that is moved loses the focus.
       const focused = row.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
@@ -86,11 +87,15 @@ export function enhanceCutters(state: PageState): void {
       focused?.focus({ preventScroll: true });
     }
     for (const more of document.querySelectorAll<HTMLDetailsElement>("#cutters details[data-cutter]")) {
-      more.open = more.dataset.cutter === state.cutter.id;
-      more.hidden = !more.open;
+      more.open = more.dataset.cutter === state.cutter.id && state.mode !== PROCESS;
+      more.hidden = more.dataset.cutter !== state.cutter.id;
     }
   };
   state.on("cutter", mark);
+  let ofProcess = state.mode === PROCESS;
+  state.on("look", () => {
+    if (ofProcess !== (ofProcess = state.mode === PROCESS)) mark();
+  });
   mark();
   if (table && rows.length > 1) sortable(table, is);
   if (!table || rows.length < MANY) return;

@@ -103,7 +103,7 @@ async function start(): Promise<void> {
   if (meta.process) new ProcessTable(picture, meta.process);
   // What one would type is copied by a button: nobody types on the page.
   for (const place of document.querySelectorAll<HTMLElement>("[data-typed]")) {
-    place.append(copyButton("Copy", () => place.dataset.typed!, say, "Copy what is added to the command for this"));
+    place.append(copyButton("Copy options", () => place.dataset.typed!, say, "Copy options: what is added to the command for this"));
   }
   const pressed = { lost: bar.lost, link: links.button, glass, tool: shown };
   listenKeys(picture, { spots, measure, help, selection, alone, pressed });

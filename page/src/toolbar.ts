@@ -123,10 +123,13 @@ export function toolbar(picture: Picture, alone: Alone, help: HTMLDialogElement,
     { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
     subjectSwitch(state),
     lost,
-    el("label", {}, "Colour by ", colouring(state)),
+    button("Fit", () => stage.table.fit(), { title: "Fit the part into the picture (f)" }),
     eyes.root,
     alone.button,
-    menu("more", "More", "Views, measuring, a link, colours of the page", el("label", {}, "View ", viewSelect(() => stage.table)), ...more, schemeSwitch(recolour)),
+    menu(
+      "more", "More", "Colours, views, measuring, a link",
+      el("label", {}, "Colour by ", colouring(state)), el("label", {}, "View ", viewSelect(() => stage.table)), ...more, schemeSwitch(recolour),
+    ),
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
   );
   return { root, lost };

@@ -280,7 +280,7 @@ def test_an_entry_turns_the_part_and_puts_its_tool_there(page, planned, read):
             tool, back = page.evaluate("[review.tool.group.matrix.elements.slice(4, 7), review.stage.table.frame().back]")
             assert np.allclose(tool, one["axis"], atol=1e-3)
             assert np.allclose(back, one["axis"], atol=1e-9)
-            assert page.evaluate("[review.state.state, review.state.certified, review.tool.group.visible]") == [
+            assert page.evaluate("[review.judged.state, review.judged.certified, review.tool.group.visible]") == [
                 "free", True, True,
             ]  # fmt: skip
             assert one["label"] in page.inner_text("#posture-line")
