@@ -30,10 +30,7 @@ export class Clip {
   private sign = 1;
   private built = false;
 
-  constructor(
-    private readonly state: PageState,
-    private readonly stage: Stage,
-  ) {
+  constructor(private readonly state: PageState, private readonly stage: Stage) {
     const choices = [["", "Clip: off"], ["0", "across X"], ["1", "across Y"], ["2", "across Z"]];
     for (const [value, label] of choices) {
       this.axis.append(el("option", { value }, label));

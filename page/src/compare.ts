@@ -64,11 +64,7 @@ class Compared {
   private mode = FACES;
   private at = -1;
 
-  constructor(
-    private readonly told: Told,
-    readonly sides: Side[],
-    viewer: HTMLElement,
-  ) {
+  constructor(private readonly told: Told, readonly sides: Side[], viewer: HTMLElement) {
     this.again = { old: new Map(told.pairs), new: new Map(told.pairs.map(([was, now]) => [now, was])) };
     this.camera = new OneCamera(sides);
     const shut = matchMedia("(max-width: 700px)").matches;

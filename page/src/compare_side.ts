@@ -117,11 +117,7 @@ export class Side {
   private stage_: Stage | null = null;
   private picker: Picker | null = null;
 
-  constructor(
-    readonly word: Word,
-    readonly meta: Meta,
-    readonly arrays: Arrays,
-  ) {
+  constructor(readonly word: Word, readonly meta: Meta, readonly arrays: Arrays) {
     this.drawn = new DrawnFaces(meta, arrays);
     const index = Int32Array.from({ length: LINE * this.drawn.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
     this.faces = new PartView(this.drawn, { get: () => ({ rows: index.length, columns: 1, values: index }) }, this.material());

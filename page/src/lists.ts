@@ -241,10 +241,7 @@ export class Selection {
   private readonly words = el("output", {});
   private readonly boxes = new Map<Owner, HTMLInputElement>();
 
-  constructor(
-    private readonly state: PageState,
-    private readonly stage: Stage,
-  ) {
+  constructor(private readonly state: PageState, private readonly stage: Stage) {
     this.root.append(
       el("span", {}, "Selected: "),
       this.words,

@@ -108,10 +108,7 @@ export class Notes {
   private readonly withdraw = button("Withdraw", () => this.decide(null), { id: "withdraw" });
 
   /** `pristine` is the page as it was loaded, before anything in it came alive. */
-  constructor(
-    private readonly picture: Picture,
-    private readonly pristine: HTMLElement,
-  ) {
+  constructor(private readonly picture: Picture, private readonly pristine: HTMLElement) {
     const section = document.getElementById(SECTION);
     const parts = [
       el("h2", {}, "Review"),

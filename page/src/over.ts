@@ -90,10 +90,7 @@ export class Inset {
   private readonly marks = svg("svg", { "aria-hidden": "true" });
   private readonly camera = new OrthographicCamera();
 
-  constructor(
-    private readonly state: PageState,
-    private readonly stage: Stage,
-  ) {
+  constructor(private readonly state: PageState, private readonly stage: Stage) {
     this.root.append(this.marks as unknown as Node);
     this.root.addEventListener("click", () => stage.table.fit());
     stage.afterDraw(() => this.draw());
@@ -166,10 +163,7 @@ export class Marks {
   readonly root = svg("svg", { class: "marks", "aria-hidden": "true" });
   private readonly from: (() => Mark[])[] = [];
 
-  constructor(
-    state: PageState,
-    private readonly stage: Stage,
-  ) {
+  constructor(state: PageState, private readonly stage: Stage) {
     stage.beforeDraw(() => this.draw());
     this.add(() => {
       const { sample } = state;
@@ -223,11 +217,7 @@ export class Measure {
   on = false;
   private points: Vec[] = [];
 
-  constructor(
-    private readonly state: PageState,
-    marks: Marks,
-    private readonly redraw: () => void,
-  ) {
+  constructor(private readonly state: PageState, marks: Marks, private readonly redraw: () => void) {
     this.root = button("Measure", () => this.toggle(), { "aria-pressed": "false", title: "Measure between two points (m)" });
     marks.add(() => this.marks());
     state.on("sample", () => {

@@ -27,11 +27,7 @@ export class PartView {
   /** Of a fixture that is seen through. */
   private readonly faded: ShaderMaterial;
 
-  constructor(
-    private readonly drawn: Drawn,
-    arrays: Pick<Arrays, "get">,
-    readonly material: ShaderMaterial,
-  ) {
+  constructor(private readonly drawn: Drawn, arrays: Pick<Arrays, "get">, readonly material: ShaderMaterial) {
     [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);
@@ -205,10 +201,7 @@ export class Outline {
   private readonly contour = contourMaterial();
   private readonly geometries = new Map<Owner, BufferGeometry>();
 
-  constructor(
-    private readonly stage: Stage,
-    private readonly drawn: Drawn,
-  ) {
+  constructor(private readonly stage: Stage, private readonly drawn: Drawn) {
     this.contour.uniforms.mask.value = this.mask.texture;
     const quad = new Mesh(new PlaneGeometry(2, 2), this.contour);
     quad.frustumCulled = false;

@@ -22,11 +22,7 @@ export class Picture {
   private borders: Borders | null = null;
   private hot: Owner | null = null;
 
-  constructor(
-    readonly state: PageState,
-    readonly stage: Stage,
-    material: ShaderMaterial,
-  ) {
+  constructor(readonly state: PageState, readonly stage: Stage, material: ShaderMaterial) {
     const { arrays, drawn } = state;
     this.part = new PartView(drawn, arrays, material);
     stage.add(this.part.group, this.tool.group);

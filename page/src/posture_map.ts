@@ -49,13 +49,7 @@ export class PosturePanel {
       "details",
       {},
       el("summary", {}, "The same as a table"),
-      el(
-        "table",
-        { id: "intervals" },
-        this.caption,
-        el("thead", {}, el("tr", {}, ...head)),
-        this.rows,
-      ),
+      el("table", { id: "intervals" }, this.caption, el("thead", {}, el("tr", {}, ...head)), this.rows),
     );
     this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.differs, this.intervals);
     const leave = button("\u00d7", () => state.select(null), { class: "leave", title: "Leave the sample (Escape)", "aria-label": "Leave the sample" });

@@ -17,10 +17,7 @@ export class Stills {
   private readonly key = el("div", { class: "key" });
   private readonly dated = el("p", { id: "printed" });
 
-  constructor(
-    private readonly state: PageState,
-    private readonly stage: Stage,
-  ) {
+  constructor(private readonly state: PageState, private readonly stage: Stage) {
     this.pictures.forEach((picture, i) => picture.setAttribute("aria-label", `Still ${i + 1} of the part`));
     for (const picture of this.pictures) picture.setAttribute("role", "img");
     this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."), this.key);

@@ -20,10 +20,7 @@ export class ProcessTable {
   private readonly rows = new Map<Step, { made: HTMLElement; both: HTMLElement[] }>();
   private timer = 0;
 
-  constructor(
-    private readonly picture: Picture,
-    private readonly process: Process,
-  ) {
+  constructor(private readonly picture: Picture, private readonly process: Process) {
     const { state } = picture;
     const of = stepOf(state.arrays);
     for (const row of document.querySelectorAll<HTMLElement>("#process tr[data-step]")) {

@@ -46,10 +46,7 @@ export class PageState {
   private readonly liveTools = new Map<string, LiveTool>();
   private readonly listeners = new Map<Change, (() => void)[]>();
 
-  constructor(
-    readonly meta: Meta,
-    readonly arrays: Arrays,
-  ) {
+  constructor(readonly meta: Meta, readonly arrays: Arrays) {
     this.samples = new Samples(meta, arrays);
     this.drawn = new Drawn(meta, arrays);
     this.machine = new Machine(meta);

@@ -4,7 +4,7 @@ They show one cutter: the selected one or, where none is feasible, the one that 
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -135,7 +135,7 @@ def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:
 
 
 def styles(result: Judged, plan: OperationPlanEntry | None = None) -> Callable[[Any], Style]:
-    """Name and colour of a piece: those of its step or operation, else of its verdict; faces that are no target keep their colour."""
+    """Name and colour of a piece: of its step or operation, else of its verdict; faces that are no target keep their colour."""
     faces, operations = result.part.faces, plan.operations if plan else []
     # As everywhere, `step3` is the third step of the process; operations of other plans have their ids.
     called = [stepped(result.plan, plan, each.id).replace(" ", "") for each in operations] if plan else []
@@ -152,9 +152,7 @@ def styles(result: Judged, plan: OperationPlanEntry | None = None) -> Callable[[
     return style
 
 
-def write_step(
-    result: Judged, split: Any, path: Path, *, schema: str = "ap242", plan: OperationPlanEntry | None = None
-) -> None:
+def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242", plan: OperationPlanEntry | None = None) -> None:
     """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`.
 
     Beside it stand the fixtures that are CAD files, vises and chucks.
@@ -271,7 +269,7 @@ def _operations(result: Judged, name: str | None) -> OperationPlanEntry:
 
 
 def write_operations_step(result: Judged, split: Any, path: Path, *, name: str | None = None, schema: str = "ap242") -> None:
-    """Write `operations.step`: as `annotated.step`, but with a face named `F<number>_step<number>` for each piece, or by its operation."""
+    """Write `operations.step`: as `annotated.step`, but each piece is named `F<number>_step<number>`, or by its operation."""
     write_step(result, split, path, schema=schema, plan=_operations(result, name))
 
 
