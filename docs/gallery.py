@@ -30,9 +30,10 @@ FRONT, FRONT_PICTURE = "impeller", DOCS / "pictures" / "process.png"
 WIDTH, HEIGHT, MOST = 720, 540, 60_000
 #: Without these WebGL shows nothing where there is no graphics card.
 _CHROMIUM = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-#: Only the picture is shown, on the whole window: no controls, no legend.
+#: Only the picture is shown, on the whole window, by verdicts: no controls, no legend.
 _ALONE = """view => {
     const { stage } = review, { canvas, table } = stage;
+    review.setMode("verdict");
     for (let at = canvas; at !== document.body; at = at.parentElement) {
         for (const other of at.parentElement.children) if (other !== at) other.style.display = "none";
         at.style.cssText += "position:fixed;inset:0;width:100vw;height:100vh;max-width:none;max-height:none";

@@ -3,6 +3,7 @@ import { readFileSync, writeFileSync, existsSync, readdirSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { circle, importsOf } from "./circles.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const rooms = join(here, "..", "plugin", "plan_cutters");
@@ -38,6 +39,9 @@ function bundled(inputs) {
     return { name, version, text: readFileSync(join(folder, file), "utf8").trim().replaceAll("\r", "") };
   });
 }
+
+const around = circle(importsOf(join(here, "src")));
+if (around.length) throw new Error(`these files import each other in a circle: ${around.join(", ")}`);
 
 const files = new Map();
 for (const { script, style, global, into, name } of pages) {

@@ -1,4 +1,4 @@
-// Runs the tests of the page's mathematics: bundles test/*.test.ts, and hands them to node.
+// Runs the tests of the page's mathematics and of its files: bundles test/*.test.ts, and hands them to node.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -22,7 +22,7 @@ try {
     logLevel: "warning",
   });
   const made = tests.map((name) => join(outdir, name.replace(/\.ts$/, ".mjs")));
-  const done = spawnSync(process.execPath, ["--enable-source-maps", "--test", ...made], { stdio: "inherit" });
+  const done = spawnSync(process.execPath, ["--enable-source-maps", "--test", ...made], { stdio: "inherit", cwd: here });
   process.exitCode = done.status ?? 1;
 } finally {
   rmSync(outdir, { recursive: true, force: true });

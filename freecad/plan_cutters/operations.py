@@ -19,7 +19,7 @@ def add(document, group, result: results.Result) -> None:
         before = {each.Name for each in document.Objects}
         try:
             macro = host.operations_macro()
-            shape, faces, names = macro.pieces(result.paths[word])
+            shape, faces, names = macro.pieces(result.paths[word], macro.called(result.plan, plan))
             part, _, _ = macro.show(document, result.plan, plan, shape, faces, names)
         except Exception as error:  # also what the macro and the kernel raise
             host.warn(tr("the {plan} plan of operations is not shown: {error}").format(plan=plan["name"], error=error))
@@ -84,7 +84,7 @@ def make_job(group, word: str = MODELS[0]):
     macro = host.operations_macro()
     with objects.step(document, tr("Job of a plan")):
         try:
-            shape, _, names = macro.pieces(result.paths[word])
+            shape, _, names = macro.pieces(result.paths[word], macro.called(result.plan, plan))
             part = document.addObject("Part::Feature", "Part")
             part.Label = result.plan["part"]["file"]
             part.Shape = macro.body(shape, names)

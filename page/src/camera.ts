@@ -83,24 +83,26 @@ export class Turntable {
       if (y < bottom) bottom = y;
       if (y > top) top = y;
     }
-    const shift = (along: Vec, to: number): Vec => scaled(along, to - dot(this.centre, along));
-    const middle = plus(plus(this.centre, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
-    const half = 0.53 * Math.max(top - bottom, (most - left) / aspect, 1e-3 * this.radius);
-    return { target: middle, turn, rise, half };
+    return this.around(turn, rise, [[left, most], [bottom, top]], aspect, 0.53);
   }
 
   /** Rings and balls, just within the picture. */
   holding(turn: number, rise: number, rings: readonly Ring[]): Aim {
     const { up, right } = this.frame({ target: this.centre, turn, rise, half: 1 });
-    const [[left, most], [bottom, top]] = [right, up].map((way) => {
+    const ends = [right, up].map((way): [number, number] => {
       const wide = ({ radius, axis }: Ring): number => radius * (axis ? Math.sqrt(Math.max(0, 1 - dot(axis, way) ** 2)) : 1);
-      const ends = rings.flatMap((ring) => [-1, 1].map((sign) => dot(ring.centre, way) + sign * wide(ring)));
-      return [Math.min(...ends), Math.max(...ends)];
+      const both = rings.flatMap((ring) => [-1, 1].map((sign) => dot(ring.centre, way) + sign * wide(ring)));
+      return [Math.min(...both), Math.max(...both)];
     });
-    const target = rings[0].centre;
-    const shift = (way: Vec, to: number): Vec => scaled(way, to - dot(target, way));
-    const middle = plus(plus(target, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
-    return { target: middle, turn, rise, half: 0.54 * Math.max(top - bottom, (most - left) / this.aspect, 1e-3 * this.radius) };
+    return this.around(turn, rise, ends, this.aspect, 0.54, rings[0].centre);
+  }
+
+  /** A view of what lies between ends across and along the picture; `share` of it, with some room, is the half that is seen. */
+  private around(turn: number, rise: number, [[left, most], [bottom, top]]: number[][], aspect: number, share: number, near = this.centre): Aim {
+    const { up, right } = this.frame({ target: near, turn, rise, half: 1 });
+    const shift = (along: Vec, to: number): Vec => scaled(along, to - dot(near, along));
+    const target = plus(plus(near, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
+    return { target, turn, rise, half: share * Math.max(top - bottom, (most - left) / aspect, 1e-3 * this.radius) };
   }
 
   resize(aspect: number): void {

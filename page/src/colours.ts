@@ -2,8 +2,8 @@
 
 import type { Arrays } from "./decode.ts";
 import type { Meta, OperationPlan, Pattern, Process, Scalar } from "./meta.ts";
-import { NO_REASON, UNJUDGED } from "./meta.ts";
-import { modeOf, planOf, plansOf, PROCESS, stepOf, takenBy, titleOf } from "./operations.ts";
+import { NO_REASON } from "./meta.ts";
+import { modeOf, othersOf, planOf, PROCESS, stepOf, takenBy, titleOf } from "./plans.ts";
 import type { Samples } from "./samples.ts";
 
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
@@ -64,7 +64,7 @@ export function modesOf(meta: Meta): Mode[] {
   return [
     ...(meta.process ? [{ key: PROCESS, label: "Step" }] : []),
     { key: "verdict", label: "Verdict" },
-    ...plansOf(meta).filter((plan) => modeOf(meta, plan) !== PROCESS).map((plan) => ({ key: modeOf(meta, plan), label: titleOf(plan) })),
+    ...othersOf(meta).map((plan) => ({ key: modeOf(meta, plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
@@ -91,6 +91,10 @@ export function patternOf(verdict: string): Pattern {
 
 const plain = (meta: Meta, word: string): Entry => ({ colour: colourOf(meta, word), pattern: "plain", label: spoken(meta, word) });
 
+/** What no cutter has to reach: nobody judged it, it waits for a drill, or lies within a body. */
+const OTHERS = ["unjudged", "drilled", "inside_bodies"];
+const otherEntries = (meta: Meta): Entry[] => OTHERS.map((word) => plain(meta, word));
+
 const VERDICTS = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "drilled", "inside_bodies"];
 
 const verdictEntries = (meta: Meta): Entry[] =>
@@ -110,12 +114,11 @@ const DRILLED: Entry = { colour: "#b9a3d6", pattern: "dots", label: "for drills"
 function processLook(meta: Meta, arrays: Arrays, samples: Samples, process: Process, cutter: string): Look {
   const { steps } = process;
   const number = stepOf(arrays);
-  const others = ["unjudged", "drilled", "inside_bodies"];
-  const entries: Entry[] = [...steps.map(({ colour, pattern, label }) => ({ colour, pattern, label })), STAYS, ...others.map((word) => (word === "drilled" ? DRILLED : plain(meta, word)))];
+  const others = OTHERS.map((word) => (word === "drilled" ? DRILLED : plain(meta, word)));
+  const entries: Entry[] = [...steps.map(({ colour, pattern, label }) => ({ colour, pattern, label })), STAYS, ...others];
   const look = painted(meta, "Process, by step", entries, samples, (i) => {
     const k = number(i);
-    const other = k ? -1 : others.indexOf(samples.verdict(cutter, i));
-    return k ? k - 1 : steps.length + 1 + other;
+    return k ? k - 1 : steps.length + 1 + OTHERS.indexOf(samples.verdict(cutter, i));
   });
   const share = (label: string): number | undefined => (label === STAYS.label ? process.left_share : steps.find((each) => each.label === label)?.share);
   return { ...look, entries: look.entries.map((each) => ({ ...each, share: share(each.label) ?? each.share ?? 0 })) };
@@ -134,21 +137,13 @@ function operationLook(meta: Meta, arrays: Arrays, samples: Samples, plan: Opera
 function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
   const verdict = samples.verdicts(cutter).values;
   const reason = samples.reasons(cutter).values;
-  const entries: Entry[] = meta.reasons.map((word) => {
-    return { colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(meta, word) };
-  });
-  const undecided = entries.map((each) => ({ ...each, pattern: "dots" as Pattern, label: `${each.label}, undecided` }));
-  const rest: Entry[] = [
-    { colour: "#d9e4dd", pattern: "plain", label: "reached" },
-    plain(meta, "unjudged"),
-    plain(meta, "inside_bodies"),
-    plain(meta, "drilled"),
-  ];
+  const entries = meta.reasons.map((word): Entry => ({ colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(meta, word) }));
+  const undecided = entries.map((each): Entry => ({ ...each, pattern: "dots", label: `${each.label}, undecided` }));
+  const reached: Entry = { colour: "#d9e4dd", pattern: "plain", label: "reached" };
   const count = entries.length;
-  return painted(meta, "Reason", [...entries, ...undecided, ...rest], samples, (i) => {
-    if (samples.inside(i)) return 2 * count + 2;
-    if (verdict[i] === UNJUDGED) return 2 * count + 1;
-    if (samples.verdict(cutter, i) === "drilled") return 2 * count + 3;
+  return painted(meta, "Reason", [...entries, ...undecided, reached, ...otherEntries(meta)], samples, (i) => {
+    const other = OTHERS.indexOf(samples.verdict(cutter, i));
+    if (other >= 0) return 2 * count + 1 + other;
     if (reason[i] === NO_REASON) return 2 * count;
     return reason[i] + (meta.verdicts[String(verdict[i])] === "undecided" ? count : 0);
   });
@@ -157,22 +152,14 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
 /** Which setup serves each sample: a colour of the scale for each. */
 function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
   const count = meta.setups.length;
-  const entries: Entry[] = meta.setups.map(({ z }, k) => {
-    const colour = ramp(count > 1 ? k / (count - 1) : 0);
-    return { colour, pattern: "plain", label: `setup ${k + 1}: ${z.map((x) => Number(x.toFixed(4))).join(", ")}` };
+  const entries = meta.setups.map(({ z }, k): Entry => {
+    const label = `setup ${k + 1}: ${z.map((x) => Number(x.toFixed(4))).join(", ")}`;
+    return { colour: ramp(count > 1 ? k / (count - 1) : 0), pattern: "plain", label };
   });
-  entries.push(
-    { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" },
-    plain(meta, "unjudged"),
-    plain(meta, "inside_bodies"),
-    plain(meta, "drilled"),
-  );
-  return painted(meta, "Setup that serves", entries, samples, (i) => {
-    const verdict = samples.verdict(cutter, i);
-    if (verdict === "drilled") return count + 3;
-    if (verdict === "inside_bodies") return count + 2;
-    if (verdict === "unjudged") return count + 1;
-    return samples.setup(cutter, i) ?? count;
+  const none: Entry = { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" };
+  return painted(meta, "Setup that serves", [...entries, none, ...otherEntries(meta)], samples, (i) => {
+    const other = OTHERS.indexOf(samples.verdict(cutter, i));
+    return other >= 0 ? count + 1 + other : (samples.setup(cutter, i) ?? count);
   });
 }
 

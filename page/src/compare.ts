@@ -1,22 +1,58 @@
 // The page of two plans: both parts under one camera, and the tables of what changed between them.
 
-import { VIEWS } from "./camera.ts";
 import type { Look } from "./colours.ts";
-import { listenKeys, OneCamera } from "./compare_camera.ts";
-import { steer, zoomButtons } from "./controls.ts";
-import { facesLook, verdictLook } from "./compare_looks.ts";
-import { readTold, type Told, type Word, WORDS } from "./compare_meta.ts";
-import { Side } from "./compare_side.ts";
+import { facesLook, readTold, Side, type Told, verdictLook, type Word, WORDS } from "./compare_side.ts";
+import { pictureKey, steer, viewSelect, zoomButtons } from "./controls.ts";
 import { readArrays } from "./decode.ts";
 import { button, el, percent } from "./dom.ts";
 import type { Meta } from "./meta.ts";
 import { swatch } from "./patterns.ts";
-import { Scale } from "./scale.ts";
+import { Scale } from "./over.ts";
 import { schemeSwitch } from "./scheme.ts";
 import { press } from "./tables.ts";
 
 const FACES = "faces";
 const ANY = "any";
+
+/** One camera for several pictures: whichever is turned leads, and the others are drawn with it. */
+class OneCamera {
+  private leader: Side;
+
+  constructor(private readonly sides: Side[]) {
+    this.leader = sides[0];
+    for (const side of sides) {
+      side.stage.beforeDraw(() => side === this.leader && this.follow());
+      for (const event of ["pointerdown", "wheel", "keydown"] as const) {
+        side.stage.canvas.addEventListener(event, () => this.lead(side), { capture: true, passive: true });
+      }
+    }
+  }
+
+  get table(): Side["stage"]["table"] {
+    return this.leader.stage.table;
+  }
+
+  /** Let a side lead from where all look now. */
+  lead(side: Side): void {
+    if (side === this.leader) return;
+    // A flight ends where it is, and what was not drawn yet is not lost.
+    this.table.set({});
+    this.follow();
+    this.leader = side;
+  }
+
+  /** In the same frame, so that no eye sees two views. */
+  private follow(): void {
+    const { aim } = this.table;
+    for (const { stage } of this.sides) {
+      if (stage === this.leader.stage || stage.table.aim === aim) continue;
+      const { target, turn, rise, half } = stage.table.aim;
+      if (turn === aim.turn && rise === aim.rise && half === aim.half && target.every((x, k) => x === aim.target[k])) continue;
+      stage.table.set(aim);
+      stage.draw();
+    }
+  }
+}
 
 class Compared {
   readonly camera: OneCamera;
@@ -28,11 +64,7 @@ class Compared {
   private mode = FACES;
   private at = -1;
 
-  constructor(
-    private readonly told: Told,
-    readonly sides: Side[],
-    viewer: HTMLElement,
-  ) {
+  constructor(private readonly told: Told, readonly sides: Side[], viewer: HTMLElement) {
     this.again = { old: new Map(told.pairs), new: new Map(told.pairs.map(([was, now]) => [now, was])) };
     this.camera = new OneCamera(sides);
     const shut = matchMedia("(max-width: 700px)").matches;
@@ -46,7 +78,12 @@ class Compared {
       row.addEventListener("pointerenter", () => this.light(facesOf(row)));
       row.addEventListener("pointerleave", () => this.light(this.chosen()));
     });
-    listenKeys(this.camera, (by) => this.step(by), () => this.leave());
+    const works: Record<string, () => void> = { n: () => this.step(1), p: () => this.step(-1), Escape: () => this.leave() };
+    document.addEventListener("keydown", (event) => {
+      const where = event.target as HTMLElement;
+      if (event.defaultPrevented || event.altKey || event.metaKey || where.closest("input, select, textarea")) return;
+      if (!pictureKey(event, this.camera.table, where instanceof HTMLCanvasElement) && !event.ctrlKey) works[event.key]?.();
+    });
     this.paint();
   }
 
@@ -62,12 +99,6 @@ class Compared {
       this.mode = colour.value;
       this.paint();
     });
-    const view = el("select", { id: "views" }, one("", "choose"), one("f", "fit"), ...Object.entries(VIEWS).map(([key, [name]]) => one(key, name)));
-    view.addEventListener("change", () => {
-      const [, turn, rise] = VIEWS[view.value] ?? [];
-      this.camera.fit(turn, rise);
-      view.value = "";
-    });
     const steps = [
       button("Previous", () => this.step(-1), { title: "Previous change (p)" }),
       button("Next", () => this.step(1), { title: "Next change (n)" }),
@@ -76,7 +107,7 @@ class Compared {
       "div",
       { id: "toolbar", role: "toolbar", "aria-label": "Pictures" },
       el("label", {}, "Colour by ", colour),
-      el("label", {}, "View ", view),
+      el("label", {}, "View ", viewSelect(() => this.camera.table)),
       this.rows.length ? el("span", { class: "group" }, "Changes ", ...steps) : null,
       schemeSwitch(() => undefined),
     );
@@ -258,7 +289,7 @@ async function start(): Promise<void> {
   for (const side of sides) side.stage.begin(() => undefined);
   page.first();
   const last = sides[sides.length - 1];
-  last.frame.append(new Scale(last).root);
+  last.frame.append(new Scale(last.stage).root);
   for (const side of sides) {
     setTimeout(() => side.outline(), 0);
     // A canvas is empty on paper.

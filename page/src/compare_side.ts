@@ -1,21 +1,94 @@
-// One of two plans: its picture, coloured by face or by sample.
+// Two plans: the form of their data, as plan_cutters_ci.review writes it; what their parts are coloured by; and the picture of one.
 
 import type { ShaderMaterial } from "./three";
-import type { Aim } from "./camera.ts";
-import { colourOf, type Look } from "./colours.ts";
-import type { Shown } from "./compare_looks.ts";
-import type { Word } from "./compare_meta.ts";
-import type { Arrays } from "./decode.ts";
+import type { Aim, View } from "./camera.ts";
+import { colourOf, type Entry, type Look, lookOf, painted, PATTERNS, patternOf, rgb, spoken } from "./colours.ts";
+import { type Arrays, text } from "./decode.ts";
 import { el } from "./dom.ts";
-import { Borders } from "./edges.ts";
 import { Drawn, type Owner } from "./mesh.ts";
-import type { Meta, Vec } from "./meta.ts";
-import { PartView } from "./part.ts";
+import type { Meta, Pattern, Vec } from "./meta.ts";
+import { Borders, PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
 import { Samples } from "./samples.ts";
 import { partMaterial } from "./shading.ts";
 import { Stage } from "./stage.ts";
 import { cross, dot, minus, plus, scaled, unit } from "./vectors.ts";
+
+export const WORDS = ["old", "new"] as const;
+export type Word = (typeof WORDS)[number];
+
+export interface Mark {
+  label: string;
+  colour: string;
+  pattern: Pattern;
+}
+
+export interface Pair {
+  name: string;
+  /** Ids; null: it is not among the cutters of that plan. */
+  old: string | null;
+  new: string | null;
+}
+
+export interface Told {
+  /** What can become of a face, in the order of the legend. */
+  marks: Record<string, Mark>;
+  /** What became of each face: a word of `marks` by its id. */
+  states: Record<Word, Record<string, string>>;
+  /** Ids of the faces that were known again, old and new. */
+  pairs: [string, string][];
+  cutters: Pair[];
+  /** Null: there is no picture of that plan. */
+  old: Meta | null;
+  new: Meta | null;
+}
+
+export function readTold(): Told {
+  const told = JSON.parse(text("meta")) as Told;
+  for (const word of WORDS) {
+    const format = told[word]?.format ?? 1;
+    if (format !== 1) throw new Error(`the data have format ${format}, this page reads 1`);
+  }
+  return told;
+}
+
+/** From worst to best: a sample is shown as the best cutter reaches it. */
+const RANK = ["unjudged", "inaccessible", "undecided", "accessible", "interference_free"];
+const ABSENT: Entry = { colour: "#9a9a9a", pattern: "back", label: "not among the cutters of this plan" };
+
+/** A colour for each face, by its place in `meta.faces`. */
+export function facesLook(told: Told, { word, meta }: Side): Look {
+  const words = Object.keys(told.marks);
+  const state = meta.faces.map(({ id }) => words.indexOf(told.states[word][id] ?? "not asked"));
+  const bytes = new Uint8Array(4 * meta.faces.length);
+  const marks = Object.values(told.marks);
+  const table = marks.map((each) => [...rgb(each.colour), PATTERNS.indexOf(each.pattern)]);
+  state.forEach((k, i) => bytes.set(table[k], 4 * i));
+  const count = marks.map((_, k) => state.filter((each) => each === k).length);
+  return { title: "Faces", entries: marks.map((each, k) => ({ ...each, share: count[k] })).filter((each) => each.share), ramp: null, bytes };
+}
+
+/** A colour for each sample: verdicts of a cutter, or the best ones of all where `pair` is null. */
+export function verdictLook(told: Told, side: Side, number: number | null): Look {
+  const { word, meta, arrays, samples } = side;
+  if (number !== null) {
+    const id = told.cutters[number]?.[word] ?? null;
+    return id === null ? painted(meta, "", [ABSENT], samples, () => 0) : lookOf(meta, arrays, samples, "verdict", id);
+  }
+  const entries = [...RANK, "inside_bodies", "drilled"].map((each) => ({
+    colour: colourOf(meta, each),
+    pattern: patternOf(each),
+    label: spoken(meta, each),
+  }));
+  const best = new Uint8Array(samples.count);
+  for (const { id } of meta.cutters) {
+    const { values } = samples.verdicts(id);
+    const rank = Array.from({ length: 256 }, (_, code) => Math.max(0, RANK.indexOf(meta.verdicts[String(code)] ?? "")));
+    for (let i = 0; i < best.length; i++) best[i] = Math.max(best[i], rank[values[i]]);
+  }
+  const drilled = (i: number): boolean => samples.verdict(meta.cutters[0].id, i) === "drilled";
+  return painted(meta, "", entries, samples, (i) => (samples.inside(i) ? RANK.length : drilled(i) ? RANK.length + 1 : best[i]));
+}
 
 /** Texels in a line of the atlas of faces: every device has that many. */
 const LINE = 1024;
@@ -33,7 +106,7 @@ class DrawnFaces extends Drawn {
   }
 }
 
-export class Side implements Shown {
+export class Side {
   readonly frame = el("div", { class: "frame" });
   readonly under = el("p", { class: "under" });
   readonly drawn: Drawn;
@@ -44,11 +117,7 @@ export class Side implements Shown {
   private stage_: Stage | null = null;
   private picker: Picker | null = null;
 
-  constructor(
-    readonly word: Word,
-    readonly meta: Meta,
-    readonly arrays: Arrays,
-  ) {
+  constructor(readonly word: Word, readonly meta: Meta, readonly arrays: Arrays) {
     this.drawn = new DrawnFaces(meta, arrays);
     const index = Int32Array.from({ length: LINE * this.drawn.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
     this.faces = new PartView(this.drawn, { get: () => ({ rows: index.length, columns: 1, values: index }) }, this.material());
@@ -147,9 +216,9 @@ export class Side implements Shown {
   }
 
   /** A view from which nothing hides a point of the surface, as near as can be to one. */
-  private open(point: Vec, normal: Vec, ideal: { turn: number; rise: number }): { turn: number; rise: number } {
+  private open(point: Vec, normal: Vec, ideal: View): View {
     const { table } = this.stage;
-    const back = (view: { turn: number; rise: number }): Vec => table.frame({ ...table.aim, ...view }).back;
+    const back = (view: View): Vec => table.frame({ ...table.aim, ...view }).back;
     const every = [ideal];
     for (let turn = 0; turn < 360; turn += 20) for (let rise = -70; rise <= 80; rise += 15) every.push({ turn, rise });
     const near = every.filter((view) => dot(back(view), normal) > 0);

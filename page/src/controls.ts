@@ -1,7 +1,7 @@
 // Mouse, fingers and wheel turn, shift and zoom a picture: three's own controls move a camera of theirs, and the turntable follows it.
 
 import { MathUtils, OrbitControls, OrthographicCamera, TOUCH, MOUSE, Vector3 } from "./three";
-import { type Aim, quiet, type Turntable } from "./camera.ts";
+import { type Aim, quiet, type Turntable, VIEWS } from "./camera.ts";
 import { button, el } from "./dom.ts";
 import type { Stage } from "./stage.ts";
 import type { Vec } from "./meta.ts";
@@ -64,6 +64,41 @@ export function zoomButtons(table: () => Turntable): HTMLElement {
     zoom("\u2212", "Zoom out (-)", () => table().fly({ half: table().zoomed(1 / 1.5) })),
     zoom("\u2922", "Fit the part (f)", () => table().fit()),
   );
+}
+
+/** A choice of standard views. */
+export function viewSelect(table: () => Turntable): HTMLSelectElement {
+  const select = el("select", { id: "views" }, el("option", { value: "" }, "choose"), el("option", { value: "f" }, "fit"));
+  for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
+  select.addEventListener("change", () => {
+    const [, turn, rise] = VIEWS[select.value] ?? [];
+    select.value = "";
+    table().fit(turn, rise);
+  });
+  return select;
+}
+
+/**
+ * What a key does to a picture, and whether it does anything: arrows turn and shift it where it has the focus, for elsewhere they scroll;
+ * others zoom, fit, or choose a view.
+ */
+export function pictureKey(event: KeyboardEvent, table: Turntable, focused: boolean): boolean {
+  const arrows: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+  const arrow = focused ? arrows[event.key] : undefined;
+  if (arrow) {
+    event.preventDefault();
+    const [x, y] = arrow;
+    if (event.ctrlKey) table.pan(-0.08 * x, 0.08 * y);
+    else table.orbit(8 * x, 8 * y);
+    return true;
+  }
+  if (event.ctrlKey) return false;
+  const [, turn, rise] = VIEWS[event.key] ?? [];
+  const zoom = { "+": 1.25, "=": 1.25, "-": 0.8 }[event.key];
+  if (zoom) table.zoom(zoom);
+  else if (turn !== undefined || event.key === "f") table.fit(turn, rise);
+  else return false;
+  return true;
 }
 
 /** A camera that three's controls move, and a turntable that goes with it. */

@@ -16,10 +16,7 @@ export interface Table {
 export class Arrays {
   private readonly done = new Map<string, Table>();
 
-  constructor(
-    private readonly bytes: Uint8Array,
-    private readonly entries: Meta["arrays"],
-  ) {}
+  constructor(private readonly bytes: Uint8Array, private readonly entries: Meta["arrays"]) {}
 
   has(name: string): boolean {
     return name in this.entries;

@@ -64,3 +64,48 @@ export function percent(share: number): string {
   const text = (100 * share).toFixed(1);
   return text === "0.0" ? HARDLY_ANY : text === "100.0" ? ALL_BUT : `${Number(text)} %`;
 }
+
+/** A button that copies a text; the status line says what was copied, or the text itself where nothing can be. */
+export function copyButton(label: string, text: () => string, say: (words: string) => void, named: string): HTMLButtonElement {
+  return button(
+    label,
+    async () => {
+      const copied = text();
+      say((await copy(copied)) ? `Copied: ${copied}` : `This browser does not let the page copy. Copy it by hand: ${copied}`);
+    },
+    { class: "copy", title: named, "aria-label": named },
+  );
+}
+
+async function copy(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    // An older browser, or a page that is not trusted: by a selection.
+    const box = el("textarea", { class: "aside", "aria-hidden": "true", tabindex: -1 });
+    const focused = document.activeElement as HTMLElement | null;
+    box.value = text;
+    document.body.append(box);
+    box.select();
+    const copied = document.execCommand("copy");
+    box.remove();
+    focused?.focus();
+    return copied;
+  }
+}
+
+/** What opens at a press and closes at Escape, or at a press elsewhere. */
+export function menu(id: string, label: string, title: string, ...children: Child[]): HTMLDetailsElement {
+  const made = el("details", { id, class: "menu" }, el("summary", { title }, label), el("ul", {}, ...children.map((child) => child && el("li", {}, child))));
+  made.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !made.open) return;
+    event.preventDefault();
+    made.open = false;
+    made.querySelector("summary")!.focus();
+  });
+  document.addEventListener("pointerdown", (event) => {
+    if (!made.contains(event.target as Node)) made.open = false;
+  });
+  return made;
+}

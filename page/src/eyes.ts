@@ -1,11 +1,11 @@
 // Eyes: what of the part and around it is in the picture. What is hidden still stands in the way of tools.
 
-import type { App } from "./app.ts";
 import { colourOf } from "./colours.ts";
-import { el } from "./dom.ts";
+import { el, menu } from "./dom.ts";
 import type { Owner } from "./mesh.ts";
 import type { Meta } from "./meta.ts";
 import { swatch } from "./patterns.ts";
+import type { PageState } from "./state.ts";
 
 export interface Body {
   key: string;
@@ -42,12 +42,8 @@ export class Eyes {
   private readonly hidden = new Set<string>();
   private readonly faded = new Set<string>();
 
-  /** `changed`: called when something else is in the picture. */
-  constructor(
-    private readonly app: App,
-    private readonly changed: () => void,
-  ) {
-    this.bodies = bodiesOf(app.meta);
+  constructor(private readonly state: PageState) {
+    this.bodies = bodiesOf(state.meta);
     this.root = this.bodies.length ? this.menu() : null;
   }
 
@@ -58,19 +54,9 @@ export class Eyes {
       box.addEventListener("change", () => this.show(body.key, box.checked));
       this.boxes.set(body.key, { box, said });
       const word = body.key === "check" || body.key.startsWith("fixture:") ? body.key.split(":")[0] : null;
-      return el("li", {}, el("label", {}, box, word ? swatch(colourOf(this.app.meta, word), "plain") : null, el("span", {}, body.name), said));
+      return el("label", {}, box, word ? swatch(colourOf(this.state.meta, word), "plain") : null, el("span", {}, body.name), said);
     });
-    const menu = el("details", { id: "eyes" }, el("summary", { title: "Show or hide fixtures and bodies (b)" }, "Bodies"), el("ul", {}, ...rows));
-    menu.addEventListener("keydown", (event) => {
-      if (event.key !== "Escape" || !menu.open) return;
-      event.preventDefault();
-      menu.open = false;
-      menu.querySelector("summary")!.focus();
-    });
-    document.addEventListener("pointerdown", (event) => {
-      if (!menu.contains(event.target as Node)) menu.open = false;
-    });
-    return menu;
+    return menu("eyes", "Bodies", "Show or hide fixtures and bodies (b)", ...rows);
   }
 
   private show(key: string, shown: boolean): void {
@@ -78,13 +64,13 @@ export class Eyes {
     if (shown) this.hidden.delete(key);
     else this.hidden.add(key);
     this.update();
-    this.app.say(`${this.bodies.find((each) => each.key === key)?.name}: ${shown ? "shown" : "hidden, but still in the way of the tool"}`);
+    this.state.say(`${this.bodies.find((each) => each.key === key)?.name}: ${shown ? "shown" : "hidden, but still in the way of the tool"}`);
   }
 
   /** All but the part: hidden if one is seen, else shown. */
   toggle(): void {
     const around = this.bodies.filter(({ key }) => !key.startsWith("component:"));
-    if (!around.length) return this.app.say("Nothing but the part is there");
+    if (!around.length) return this.state.say("Nothing but the part is there");
     const hide = around.some(({ key }) => !this.hidden.has(key));
     this.faded.clear();
     for (const { key } of around) {
@@ -92,7 +78,7 @@ export class Eyes {
       else this.hidden.delete(key);
     }
     this.update();
-    this.app.say(hide ? "Only the part is shown; the rest is still in the way of the tool" : "All is shown");
+    this.state.say(hide ? "Only the part is shown; the rest is still in the way of the tool" : "All is shown");
   }
 
   /** Let one see through the bodies that some owners are of; their names. */
@@ -104,16 +90,12 @@ export class Eyes {
   }
 
   private update(): void {
-    const { drawn } = this.app;
-    drawn.hiding.clear();
-    drawn.fading.clear();
-    for (const { key, owners } of this.bodies) {
-      const into = this.hidden.has(key) ? drawn.hiding : this.faded.has(key) ? drawn.fading : null;
-      if (into) for (const owner of owners) into.add(owner);
-      const { box, said } = this.boxes.get(key)!;
+    const owners = (keys: ReadonlySet<string>): Owner[] => this.bodies.flatMap((body) => (keys.has(body.key) ? body.owners : []));
+    for (const key of this.hidden) this.faded.delete(key);
+    for (const [key, { box, said }] of this.boxes) {
       box.checked = !this.hidden.has(key);
-      said.textContent = this.faded.has(key) && box.checked ? "seen through" : "";
+      said.textContent = this.faded.has(key) ? "seen through" : "";
     }
-    this.changed();
+    this.state.veil(owners(this.hidden), owners(this.faded));
   }
 }

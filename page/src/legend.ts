@@ -1,9 +1,10 @@
 // The legend of the picture: colour and pattern of what is seen, or the scale with its numbers.
 
-import type { App } from "./app.ts";
 import { colourOf, type Ramp, ramp, spoken } from "./colours.ts";
 import { el, figure, percent, svg } from "./dom.ts";
 import { swatch } from "./patterns.ts";
+import { PROCESS } from "./plans.ts";
+import type { PageState } from "./state.ts";
 
 /** As in the style sheet: the picture stands above what is to be read. */
 export const NARROW = matchMedia("(max-width: 999.98px)");
@@ -12,30 +13,30 @@ export const NARROW = matchMedia("(max-width: 999.98px)");
 const LOW = matchMedia("(max-height: 699.98px)");
 
 /** It stands below the picture, never over it, and is folded where that has little room. */
-export function legend(app: App): HTMLElement {
+export function legend(state: PageState): HTMLElement {
   const body = el("div", {});
   const title = el("summary", {}, "Legend");
   const folded = el("details", {}, title, body);
   const fold = (): void => void (folded.open = !NARROW.matches && !LOW.matches);
   for (const each of [NARROW, LOW]) each.addEventListener("change", fold);
   fold();
-  app.on("look", () => {
-    title.textContent = app.look?.title ?? "Legend";
-    body.replaceChildren(...legendOf(app, false));
+  state.on("look", () => {
+    title.textContent = state.look.title;
+    body.replaceChildren(...legendOf(state, false));
   });
   return el("aside", { id: "legend", "aria-label": "Legend" }, folded);
 }
 
-/** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. */
-export function legendOf({ look, meta }: App, titled = true): HTMLElement[] {
-  if (!look) return [];
-  const rows = look.entries.map((entry) =>
+/** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. On paper the table of the process shows the steps. */
+export function legendOf({ look, meta, mode }: PageState, printed = true): HTMLElement[] {
+  const listed = printed && mode === PROCESS ? meta.process!.steps.map(({ label }) => label) : [];
+  const rows = look.entries.filter(({ label }) => !listed.includes(label)).map((entry) =>
     el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
   );
   const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(meta, word)));
   if (meta.faces.some((face) => !face.target)) also("check");
   if (meta.fixtures.length) also("fixture");
-  const found: HTMLElement[] = titled ? [el("h2", {}, look.title)] : [];
+  const found: HTMLElement[] = printed && !listed.length ? [el("h2", {}, look.title)] : [];
   if (look.ramp) found.push(scale(look.ramp));
   const inside = look.entries.some((entry) => entry.label === spoken(meta, "inside_bodies"));
   const hint = `share of the sampled area${inside ? " that lies inside no other body" : ""}`;

@@ -1,14 +1,14 @@
 // Links by `#`: a place, a cutter and a view, so that "look at F61" in a mail leads there.
 
-import type { App } from "./app.ts";
 import type { Aim } from "./camera.ts";
 import { modesOf } from "./colours.ts";
-import { copyButton } from "./copy.ts";
+import { copyButton } from "./dom.ts";
 import type { Vec } from "./meta.ts";
-import { firstMode } from "./operations.ts";
+import type { Picture } from "./picture.ts";
+import { firstMode } from "./plans.ts";
 import { alike, type Posture } from "./samples.ts";
 import { distance, mixed, turned } from "./vectors.ts";
-import { flyTo, showFace } from "./view.ts";
+import { flyTo, showFace } from "./views.ts";
 
 /** What is written of a face alone, as people type it. */
 const FACE = /^F\d+$/i;
@@ -23,8 +23,8 @@ export class Links {
   /** What this page wrote into the address itself: that needs no jump. */
   private mine = "";
 
-  constructor(private readonly app: App) {
-    this.button = copyButton("Copy link", () => this.keep(), app.say, "Copy link to what is shown: cutter, sample and view (y)");
+  constructor(private readonly picture: Picture) {
+    this.button = copyButton("Copy link", () => this.keep(), picture.state.say, "Copy link to what is shown: cutter, sample and view (y)");
     window.addEventListener("hashchange", () => {
       if (location.hash === this.mine) return;
       this.mine = "";
@@ -46,13 +46,14 @@ export class Links {
 
   /** What is shown, as the part of an address from `#` on. */
   text(): string {
-    const { cutter, sample, posture, mode, stage, meta } = this.app;
+    const { stage, state } = this.picture;
+    const { cutter, sample, posture, mode, meta } = state;
     const { target, half, turn, rise } = stage.table.aim;
     const fine = FINE * stage.table.radius;
     const short = (length: number): number => Number((Math.round(length / fine) * fine).toPrecision(8));
     const words: [string, string][] = [["cutter", cutter.id]];
-    if (sample) words.push(["face", meta.faces[this.app.faceShown()!]?.id ?? ""], ["sample", String(sample.row)]);
-    if (sample && posture && !same(posture, this.app.startPosture(sample.row))) words.push(["posture", [posture.tilt, posture.rotation].map((angle) => Number(angle.toFixed(ANGLE))).join()]);
+    if (sample) words.push(["face", meta.faces[state.faceShown()!]?.id ?? ""], ["sample", String(sample.row)]);
+    if (sample && posture && !same(posture, state.startPosture(sample.row))) words.push(["posture", [posture.tilt, posture.rotation].map((angle) => Number(angle.toFixed(ANGLE))).join()]);
     if (mode !== firstMode(meta)) words.push(["colours", mode]);
     words.push(["view", [Number(turn.toFixed(ANGLE)), Number(rise.toFixed(ANGLE)), ...[half, ...target].map(short)].join()]);
     return `#${words.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&")}`;
@@ -60,8 +61,8 @@ export class Links {
 
   /** Show what the address asks for; what is not in this plan is reported and left out. Whether it asked for something. */
   follow(): boolean {
-    const { app } = this;
-    const { faces, cutters } = app.meta;
+    const { picture, picture: { state } } = this;
+    const { faces, cutters } = state.meta;
     let text = location.hash.slice(1);
     try {
       text = decodeURIComponent(text);
@@ -70,25 +71,25 @@ export class Links {
     }
     if (FACE.test(text)) {
       const owner = faces.findIndex((each) => each.id.toLowerCase() === text.toLowerCase());
-      if (owner < 0) app.say(`The link names ${text}, which is not in this plan`);
-      else showFace(app, owner);
+      if (owner < 0) state.say(`The link names ${text}, which is not in this plan`);
+      else showFace(picture, owner);
       return owner >= 0;
     }
     const words = new URLSearchParams(location.hash.slice(1));
     if (!KEYS.some((key) => words.has(key))) {
       // An id of the page is a link of its browser.
-      if (text && !document.getElementById(text)) app.say(`The link is not understood: #${text.slice(0, 40)}`);
+      if (text && !document.getElementById(text)) state.say(`The link is not understood: #${text.slice(0, 40)}`);
       return false;
     }
     const missing: string[] = [];
     const cutter = words.get("cutter");
     if (cutter !== null) {
       if (!cutters.some(({ id }) => id === cutter)) missing.push(`cutter ${cutter}`);
-      else if (cutter !== app.cutter.id) app.setCutter(cutter);
+      else if (cutter !== state.cutter.id) state.setCutter(cutter);
     }
     const mode = words.get("colours");
     if (mode !== null) {
-      if (modesOf(app.meta).some(({ key }) => key === mode)) app.setMode(mode);
+      if (modesOf(state.meta).some(({ key }) => key === mode)) state.setMode(mode);
       else missing.push("its colours");
     }
     const named = words.get("face")?.toUpperCase() ?? null;
@@ -96,25 +97,25 @@ export class Links {
     const digits = words.get("sample");
     if (digits !== null) {
       const row = /^\d+$/.test(digits) ? Number(digits) : Number.NaN;
-      const face = row < app.samples.count ? faces.find(({ number }) => number === app.samples.face.values[row]) : undefined;
+      const face = row < state.samples.count ? faces.find(({ number }) => number === state.samples.face.values[row]) : undefined;
       // Samples of another plan have other numbers: the face tells.
       if (!face || (named !== null && named !== face.id.toUpperCase())) missing.push(`sample ${words.get("sample")} of ${words.get("face") ?? "a face"}`);
       else {
-        app.select(row);
-        flyTo(app, app.samples.point(row) as Vec, app.samples.normal(row));
-        const [low, high] = app.meta.tilt_deg;
+        state.select(row);
+        flyTo(picture, state.samples.point(row) as Vec, state.samples.normal(row));
+        const [low, high] = state.meta.tilt_deg;
         const [tilt, rotation] = numbersOf(words.get("posture"), 2) ?? [];
-        if (tilt >= low && tilt <= high) app.setPosture({ tilt, rotation: turned(rotation) });
+        if (tilt >= low && tilt <= high) state.setPosture({ tilt, rotation: turned(rotation) });
         else if (words.has("posture")) missing.push("its posture");
       }
     } else if (named !== null) {
       if (owner < 0) missing.push(named);
-      else showFace(app, owner);
+      else showFace(picture, owner);
     }
     const view = this.viewOf(words.get("view"));
-    if (view) app.stage.table.fly(view);
+    if (view) picture.stage.table.fly(view);
     else if (words.has("view")) missing.push("its view");
-    app.say(missing.length ? `Not in this plan: ${missing.join(", ")}. The link may be of another plan of this part.` : "The link's place is shown");
+    state.say(missing.length ? `Not in this plan: ${missing.join(", ")}. The link may be of another plan of this part.` : "The link's place is shown");
     return true;
   }
 
@@ -122,8 +123,8 @@ export class Links {
     const found = numbersOf(text, 6);
     if (!found) return null;
     const [turn, rise, half, ...target] = found;
-    const [least, most] = this.app.stage.table.halves;
-    const { low, high } = this.app.meta.part;
+    const [least, most] = this.picture.stage.table.halves;
+    const { low, high } = this.picture.state.meta.part;
     const far = distance(target as Vec, mixed(low, 0.5, high, 0.5));
     if (Math.abs(turn) > MOST_TURN || Math.abs(rise) > 90 || half < least || half > most || far > 2 * most) return null;
     return { turn, rise, half, target: target as Vec };

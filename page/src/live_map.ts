@@ -31,10 +31,7 @@ export class LiveTool {
   /** Depths up to this, mm, are overlooked. */
   readonly spared: number;
 
-  constructor(
-    readonly cutter: Cutter,
-    meta: Meta,
-  ) {
+  constructor(readonly cutter: Cutter, meta: Meta) {
     const spared = meta.overlooked_mm;
     this.spared = spared;
     this.solids = cutter.outline.map((outline) =>
@@ -52,11 +49,7 @@ export class Probe {
   /** For each part, the triangle that was in the way last: it often is again. */
   private readonly last = new Map<string, number>();
 
-  constructor(
-    private readonly drawn: Drawn,
-    meta: Meta,
-    readonly machine: Machine,
-  ) {
+  constructor(private readonly drawn: Drawn, meta: Meta, readonly machine: Machine) {
     this.index = drawn.tree.geometry.index!.array;
     this.ignored = meta.faces.map((face) => face.ignored);
   }

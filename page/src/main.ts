@@ -1,40 +1,24 @@
 // The review page: the data are read, the picture is made, the tables come alive.
 
-import { Alone } from "./alone.ts";
-import { App } from "./app.ts";
-import { VIEWS } from "./camera.ts";
-import { Clip } from "./clip.ts";
 import { zoomButtons } from "./controls.ts";
-import { colourOf, modesOf } from "./colours.ts";
+import { colourOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
-import { button, el } from "./dom.ts";
-import { Borders } from "./edges.ts";
-import { Eyes } from "./eyes.ts";
-import { firstView, LostViews } from "./first_view.ts";
-import { helpDialog, listenKeys } from "./keys.ts";
-import { Inset } from "./inset.ts";
+import { button, copyButton, el } from "./dom.ts";
+import { helpDialog, listenKeys, listenPointer } from "./input.ts";
 import { legend } from "./legend.ts";
 import { Links } from "./links.ts";
-import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
-import { Marks } from "./marks.ts";
-import { Measure } from "./measure.ts";
+import { enhanceCutters, FaceTable, Selection, SpotList } from "./lists.ts";
 import { Notes } from "./notes.ts";
-import { firstMode, OperationTables, subjectSwitch } from "./operations.ts";
-import { Drawn } from "./mesh.ts";
-import { Outline } from "./outline.ts";
-import { PartView } from "./part.ts";
-import { Picker } from "./pick.ts";
-import { listen } from "./pointer.ts";
+import { Inset, Marks, Measure, Scale } from "./over.ts";
+import { Picture } from "./picture.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
-import { copyTyped, ProcessTable } from "./process.ts";
-import { Samples } from "./samples.ts";
-import { Scale } from "./scale.ts";
+import { OperationTables, ProcessTable } from "./process.ts";
 import { partMaterial } from "./shading.ts";
-import { schemeSwitch } from "./scheme.ts";
-import { Selection } from "./selection.ts";
 import { Stage } from "./stage.ts";
-import { ToolView } from "./tool.ts";
+import { PageState } from "./state.ts";
+import { Alone, toolbar, toolSwitches } from "./toolbar.ts";
+import { firstView } from "./views.ts";
 
 const NONE = new Float32Array();
 
@@ -56,24 +40,21 @@ async function start(): Promise<void> {
   });
   frame.append(canvas);
   viewer.append(frame, status);
-  const say = (text: string): void => {
-    status.textContent = text;
-  };
 
   const meta = readMeta();
   // They are inflated while the browser makes ready to draw.
   const reading = readArrays(meta);
   reading.catch(() => undefined);
   let stage: Stage;
-  let drawn: Drawn | null = null;
+  let state: PageState | null = null;
   try {
-    stage = new Stage(canvas, meta, () => drawn?.shownVertices ?? NONE);
+    stage = new Stage(canvas, meta, () => state?.drawn.shownVertices ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");
     // Without a picture there is nothing that the tables would have to stand beside.
     document.documentElement.classList.remove("app");
-    say("This browser shows no 3D here (WebGL is missing or switched off). The tables say all that the picture would.");
+    status.textContent = "This browser shows no 3D here (WebGL is missing or switched off). The tables say all that the picture would.";
     document.documentElement.dataset.ready = "without";
     return;
   }
@@ -81,139 +62,63 @@ async function start(): Promise<void> {
   stage.warm(material);
   const arrays = await reading;
   performance.mark("decoded");
-  const samples = new Samples(meta, arrays);
-  drawn = new Drawn(meta, arrays);
-  const part = new PartView(drawn, arrays, material);
-  const tool = new ToolView();
-  stage.add(part.group, tool.group);
-  const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
-
-  let lines: Borders | null = null;
-  app.eyes = new Eyes(app, () => {
-    part.stand();
-    lines?.look();
-    app.clip?.stand();
-    stage.request();
-  });
-  app.on("setup", () => lines?.look());
-  app.outline = new Outline(stage, drawn);
-  const inset = new Inset(app);
-  const scale = new Scale(app);
-  const marks = new Marks(app);
-  const panel = new PosturePanel(app);
-  const measure = new Measure(app, marks);
-  const clip = (app.clip = new Clip(app));
+  state = new PageState(meta, arrays);
+  const { say } = state;
+  state.on("said", () => (status.textContent = state.said));
+  const picture = new Picture(state, stage, material);
+  const inset = new Inset(state, stage);
+  const scale = new Scale(stage);
+  const marks = new Marks(state, stage);
+  const panel = new PosturePanel(state);
+  // With a panel, or without one, the picture has another room: views are chosen for it.
+  state.on("sample", () => stage.refit());
+  const measure = new Measure(state, marks, () => stage.request());
   const help = helpDialog();
-  const stills = new Stills(app);
-  const selection = new Selection(app);
-  const notes = new Notes(app, pristine);
-  const links = new Links(app);
-  panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
-  document.querySelector("#summary .first")?.append(
-    el("div", { class: "tools", id: "page-tools" }, ...notes.buttons()),
-  );
+  const stills = new Stills(state, stage);
+  const selection = new Selection(state, stage);
+  const notes = new Notes(picture, pristine);
+  const links = new Links(picture);
   const alone = new Alone(say);
-  const sides = new Map<string, LostViews>();
-  /** Sides that show what stays of the process, or what the cutter shown loses. */
-  const lost = (): LostViews => {
-    const subject = app.mode === firstMode(meta) ? app.mode : app.cutter.id;
-    const found = sides.get(subject) ?? new LostViews(app);
-    sides.set(subject, found);
-    return found;
-  };
-  const stays = button("What stays", () => nextLost(), { id: "stays", title: "Look at what stays, side by side (l)" });
-  const nextLost = (): void => {
-    const found = lost();
-    found.next();
-    stays.textContent = found.views.length ? `What stays, ${found.at + 1} of ${found.views.length}` : "Nothing stays";
-  };
-  const glass = button("See through", () => setGlass(), { "aria-pressed": "true", class: "of-tool", title: "See through the tool (g)" });
-  const setGlass = (): void => {
-    tool.seeThrough(!tool.transparent);
-    glass.setAttribute("aria-pressed", String(tool.transparent));
-    stage.request();
-  };
-  const shown = button("Tool", () => setTool(), { "aria-pressed": "true", class: "of-tool", title: "Show or hide the tool (t)" });
-  const setTool = (): void => {
-    app.showTool(!app.toolShown);
-    shown.setAttribute("aria-pressed", String(app.toolShown));
-  };
-  const toolbar = el(
-    "div",
-    { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
-    subjectSwitch(app),
-    stays,
-    button("Fit", () => stage.table.fit(), { title: "Fit the part into the picture (f)" }),
-    el("label", {}, "View ", views(app)),
-    el("label", {}, "Colour by ", colouring(app)),
-    el("span", { class: "group" }, shown, glass, measure.root),
-    app.eyes.root,
-    alone.button,
-    links.button,
-    button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
-    clip.root,
-    schemeSwitch(() => panel.draw()),
+  const { shown, glass } = toolSwitches(picture);
+  panel.tools.append(
+    button("Select face", () => selection.toggle(state.faceShown()), { title: "Select the face of this sample (s)" }),
+    notes.here, shown, glass,
   );
-  frame.append(marks.root as unknown as Node, scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
-  viewer.append(legend(app), selection.root);
-  viewer.prepend(toolbar);
-  viewer.append(panel.root);
-  viewer.append(stills.root, help);
-  app.repaint();
-  stage.begin(() => firstView(app));
+  document.querySelector("#summary .first")?.append(el("div", { class: "tools", id: "page-tools" }, ...notes.buttons()));
+  const bar = toolbar(picture, alone, help, () => panel.draw(), [measure.root, links.button]);
+  const svgs = [marks.root, scale.root] as unknown as Node[];
+  frame.append(...svgs, inset.root, measure.output, under, picture.clip.root, zoomButtons(() => stage.table));
+  viewer.prepend(bar.root);
+  viewer.append(legend(state), selection.root, panel.root, stills.root, help);
+  state.repaint();
+  stage.begin(() => firstView(picture));
   performance.mark("drawn");
 
-  listen(app, measure, selection, (text) => {
-    under.textContent = text;
-  });
-  enhanceCutters(app);
-  const spots = new SpotList(app);
-  new FaceTable(app);
+  listenPointer(picture, measure, selection, (text) => (under.textContent = text));
+  enhanceCutters(state);
+  const spots = new SpotList(picture);
+  new FaceTable(picture);
   selection.tabled();
-  new OperationTables(app);
-  if (meta.process) new ProcessTable(app, meta.process);
-  copyTyped(say);
-  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: nextLost, link: () => links.button.click(), glass: setGlass, tool: setTool });
+  new OperationTables(picture);
+  if (meta.process) new ProcessTable(picture, meta.process);
+  // What one would type is copied by a button: nobody types on the page.
+  for (const place of document.querySelectorAll<HTMLElement>("[data-typed]")) {
+    place.append(copyButton("Copy options", () => place.dataset.typed!, say, "Copy options: what is added to the command for this"));
+  }
+  const pressed = { lost: bar.lost, link: links.button, glass, tool: shown };
+  listenKeys(picture, { spots, measure, help, selection, alone, pressed });
   // The tree over the triangles is what a click needs: once it is there the page answers.
-  void app.drawn.tree;
+  void state.drawn.tree;
   links.follow();
   performance.mark("interactive");
   setTimeout(() => {
-    lines = new Borders(app.drawn);
-    stage.add(lines.lines);
+    picture.border();
     performance.mark("borders");
-    stage.request();
   }, 0);
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
-  Object.assign(window, { review: app });
-}
-
-function colouring(app: App): HTMLSelectElement {
-  const select = el("select", { id: "colouring" });
-  const fill = (): void => {
-    const modes = modesOf(app.meta);
-    if (!modes.some((each) => each.key === app.mode)) app.mode = firstMode(app.meta);
-    select.replaceChildren(...modes.map(({ key, label }) => el("option", { value: key, selected: key === app.mode }, label)));
-  };
-  select.addEventListener("change", () => app.setMode(select.value));
-  app.on("cutter", fill);
-  app.on("look", () => {
-    select.value = app.mode;
-  });
-  fill();
-  return select;
-}
-
-function views(app: App): HTMLSelectElement {
-  const select = el("select", { id: "views" }, el("option", { value: "" }, "choose"));
-  for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
-  select.addEventListener("change", () => {
-    const [, turn, rise] = VIEWS[select.value] ?? [];
-    select.value = "";
-    app.stage.table.fit(turn, rise);
-  });
-  return select;
+  const { part, picker, tool } = picture;
+  Object.assign(window, { review: Object.assign(state, { stage, part, picker, tool }) });
 }
 
 start().catch((error: unknown) => {

@@ -1,7 +1,7 @@
 // The drawn triangles: those of the faces in order, then those of the fixtures; and the tree over them.
 
 import { BufferAttribute, BufferGeometry, MeshBVH } from "./three";
-import type { Arrays } from "./decode.ts";
+import type { Arrays, Table } from "./decode.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { octahedral } from "./vectors.ts";
 
@@ -9,6 +9,12 @@ import { octahedral } from "./vectors.ts";
 export type Owner = number;
 /** No place in the atlas: the surface there has no samples. */
 export const NO_TEXEL = 65535;
+
+/** The columns of a table beside each other, each value as it is meant. */
+function beside<T extends Float32Array | Uint32Array>({ rows, values }: Table, columns: number, meant: (value: number, column: number) => number, into: T): T {
+  for (let k = 0; k < columns; k++) for (let i = 0; i < rows; i++) into[columns * i + k] = meant(values[k * rows + i], k);
+  return into;
+}
 
 export class Drawn {
   readonly position: Float32Array;
@@ -26,18 +32,12 @@ export class Drawn {
   setup = 0;
   private made: MeshBVH | null = null;
 
-  constructor(
-    readonly meta: Meta,
-    arrays: Arrays,
-  ) {
+  constructor(readonly meta: Meta, arrays: Arrays) {
     const { low, high } = meta.part;
     const place = arrays.get("mesh.position");
     const count = place.rows;
-    this.position = new Float32Array(3 * count);
-    for (let k = 0; k < 3; k++) {
-      const step = (high[k] - low[k]) / 65535;
-      for (let i = 0; i < count; i++) this.position[3 * i + k] = low[k] + step * place.values[k * count + i];
-    }
+    const step = [0, 1, 2].map((k) => (high[k] - low[k]) / 65535);
+    this.position = beside(place, 3, (value, k) => low[k] + step[k] * value, new Float32Array(3 * count));
     this.cell = new Float64Array(count);
     for (let i = 0; i < count; i++) {
       this.cell[i] = place.values[i] + 65536 * (place.values[count + i] + 65536 * place.values[2 * count + i]);
@@ -49,17 +49,10 @@ export class Drawn {
       for (let k = 0; k < 3; k++) this.normal[4 * i + k] = Math.round(127 * n[k]);
     }
     const texel = arrays.get("mesh.texel");
-    this.texel = new Float32Array(2 * count);
-    for (let i = 0; i < count; i++) {
-      const none = texel.values[i] === NO_TEXEL;
-      this.texel[2 * i] = none ? -1 : texel.values[i] / 16;
-      this.texel[2 * i + 1] = none ? -1 : texel.values[count + i] / 16;
-    }
+    this.texel = beside(texel, 2, (value) => value / 16, new Float32Array(2 * count));
+    for (let i = 0; i < count; i++) if (texel.values[i] === NO_TEXEL) this.texel.fill(-1, 2 * i, 2 * i + 2);
     const corner = arrays.get("mesh.triangle");
-    this.triangle = new Uint32Array(3 * corner.rows);
-    for (let k = 0; k < 3; k++) {
-      for (let i = 0; i < corner.rows; i++) this.triangle[3 * i + k] = corner.values[k * corner.rows + i];
-    }
+    this.triangle = beside(corner, 3, (value) => value, new Uint32Array(3 * corner.rows));
     this.owner = new Float32Array(count);
     this.ofFaces = meta.faces.reduce((most, face) => Math.max(most, face.start + face.count), 0);
     this.sheet = new Uint16Array(4 * count);
@@ -144,11 +137,8 @@ export class Drawn {
   /** Triangles from the first one on, as geometry that shares the vertices. */
   geometry(first: number, count: number): BufferGeometry {
     const geometry = new BufferGeometry();
-    geometry.setAttribute("position", this.shared("position", this.position, 3));
-    geometry.setAttribute("normal", this.shared("normal", this.normal, 4));
-    geometry.setAttribute("texel", this.shared("texel", this.texel, 2));
-    geometry.setAttribute("sheet", this.shared("sheet", this.sheet, 4));
-    geometry.setAttribute("owner", this.shared("owner", this.owner, 1));
+    const sizes = { position: 3, normal: 4, texel: 2, sheet: 4, owner: 1 } as const;
+    for (const name of Object.keys(sizes) as (keyof typeof sizes)[]) geometry.setAttribute(name, this.shared(name, this[name], sizes[name]));
     geometry.setIndex(new BufferAttribute(this.triangle.subarray(3 * first, 3 * (first + count)), 1));
     return geometry;
   }
@@ -156,11 +146,8 @@ export class Drawn {
   private readonly attributes = new Map<string, BufferAttribute>();
 
   private shared(name: string, values: Float32Array | Uint16Array | Int8Array, size: number): BufferAttribute {
-    let attribute = this.attributes.get(name);
-    if (!attribute) {
-      attribute = new BufferAttribute(values, size, values instanceof Int8Array);
-      this.attributes.set(name, attribute);
-    }
+    const attribute = this.attributes.get(name) ?? new BufferAttribute(values, size, values instanceof Int8Array);
+    this.attributes.set(name, attribute);
     return attribute;
   }
 

@@ -178,6 +178,5 @@ export interface Meta {
   arrays: Record<string, ArrayEntry>;
 }
 
-export const UNJUDGED = 255;
 export const NO_REASON = 255;
 export const NO_SETUP = 255;

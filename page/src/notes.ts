@@ -1,11 +1,91 @@
-// What a reviewer writes: notes, each at a sample or of the whole, open or done, and whether the plan is approved; all of it is
-// kept in the copy of the page that is saved.
+// What a reviewer writes: notes, each at a sample or of the whole, open or done, and whether the plan is approved, each with a name and
+// a date; all of it is kept in the copy of the page that is saved.
 
-import type { App } from "./app.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
-import { copyName, type Decision, moment, type Note, read, type Review, signed, STATES, written } from "./review_data.ts";
-import { flyTo } from "./view.ts";
+import type { Picture } from "./picture.ts";
+import { flyTo } from "./views.ts";
+
+export interface Note {
+  text: string;
+  face: string | null;
+  sample: number | null;
+  cutter: string | null;
+  /** Who wrote it, and when; empty in copies of older pages. */
+  name: string;
+  date: string;
+  done: boolean;
+}
+
+export const STATES = { approved: "Approved", rejected: "Rejected" } as const;
+
+export interface Decision {
+  state: keyof typeof STATES;
+  name: string;
+  date: string;
+}
+
+export interface Review {
+  notes: Note[];
+  decision: Decision | null;
+}
+
+/** Scripts of a page must not end where a note says so. */
+const ESCAPED: Record<string, string> = { "<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029" };
+
+/** The text of a review, as it stands within a page. */
+export function written(review: Review): string {
+  return JSON.stringify(review).replace(/[<>&\u2028\u2029]/g, (sign) => ESCAPED[sign]);
+}
+
+/** The review in a saved copy; older copies have notes alone. What is no note, or no decision, is left out; null: it is no JSON. */
+export function read(text: string): Review | null {
+  let found: unknown;
+  try {
+    found = JSON.parse(text || "[]");
+  } catch {
+    return null;
+  }
+  const { notes, decision } = (Array.isArray(found) ? { notes: found } : (found ?? {})) as { notes?: unknown; decision?: Partial<Decision> };
+  const kept = (Array.isArray(notes) ? notes : []).filter((each) => typeof each?.text === "string");
+  return {
+    notes: kept.map(({ text, face, sample, cutter, name, date, done }) => ({
+      text,
+      face: worded(face) || null,
+      sample: Number.isInteger(sample) ? sample : null,
+      cutter: worded(cutter) || null,
+      name: worded(name),
+      date: worded(date),
+      done: done === true,
+    })),
+    // A decision that nobody made is none.
+    decision: typeof decision?.state === "string" && Object.hasOwn(STATES, decision.state) && worded(decision.name)
+      ? { state: decision.state, name: worded(decision.name), date: worded(decision.date) }
+      : null,
+  };
+}
+
+const worded = (value: unknown): string => (typeof value === "string" ? value : "");
+
+/** Who and when, as far as they are known. */
+export const signed = ({ name, date }: { name: string; date: string }): string => [name, date].filter(Boolean).join(", ");
+
+/** A moment in local time, such as 2026-11-27 18:40. */
+export function moment(date: Date): string {
+  const two = (number: number): string => String(number).padStart(2, "0");
+  return `${date.getFullYear()}-${two(date.getMonth() + 1)}-${two(date.getDate())} ${two(date.getHours())}:${two(date.getMinutes())}`;
+}
+
+/** A name that does not take the place of the page itself: the next plan writes over that. */
+export function copyName(path: string): string {
+  let name = path.split("/").pop() ?? "";
+  try {
+    name = decodeURIComponent(name);
+  } catch {
+    // A name with a stray percent sign stays as it is.
+  }
+  return `${name.replace(/\.html?$/i, "").replace(/-notes$/, "") || "review"}-notes.html`;
+}
 
 type Place = Pick<Note, "face" | "sample" | "cutter">;
 
@@ -28,10 +108,7 @@ export class Notes {
   private readonly withdraw = button("Withdraw", () => this.decide(null), { id: "withdraw" });
 
   /** `pristine` is the page as it was loaded, before anything in it came alive. */
-  constructor(
-    private readonly app: App,
-    private readonly pristine: HTMLElement,
-  ) {
+  constructor(private readonly picture: Picture, private readonly pristine: HTMLElement) {
     const section = document.getElementById(SECTION);
     const parts = [
       el("h2", {}, "Review"),
@@ -54,7 +131,7 @@ export class Notes {
     this.name.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && this.wanted) this.decide(this.wanted);
     });
-    app.on("sample", () => this.where());
+    picture.state.on("sample", () => this.where());
     this.where();
     this.show();
     window.addEventListener("beforeunload", (event) => {
@@ -79,7 +156,7 @@ export class Notes {
   readonly here = button("Note here", () => this.moveHere(), { id: "note-here", title: "Write a note on this sample" });
 
   private current(): Place {
-    const { sample, cutter } = this.app;
+    const { sample, cutter } = this.picture.state;
     return { face: sample && this.face(sample.face), sample: sample && sample.row, cutter: sample && cutter.id };
   }
 
@@ -98,7 +175,7 @@ export class Notes {
   }
 
   private face(number: number): string {
-    return this.app.meta.faces.find((each) => each.number === number)?.id ?? `F${number}`;
+    return this.picture.state.meta.faces.find((each) => each.number === number)?.id ?? `F${number}`;
   }
 
   private stamp(): { name: string; date: string } {
@@ -108,7 +185,7 @@ export class Notes {
   private decide(state: Decision["state"] | null): void {
     const stamp = this.stamp();
     if (state && !stamp.name) {
-      this.app.say("Write your name first: a decision needs one. Enter takes it.");
+      this.picture.state.say("Write your name first: a decision needs one. Enter takes it.");
       this.wanted = state;
       this.asked.hidden = false;
       this.name.focus();
@@ -124,7 +201,7 @@ export class Notes {
   private add(): void {
     const text = this.box.value.trim();
     if (!text) {
-      this.app.say("The note is empty");
+      this.picture.state.say("The note is empty");
       this.box.focus();
       return;
     }
@@ -150,7 +227,7 @@ export class Notes {
   private changed(words: string): void {
     this.saved = false;
     this.show();
-    this.app.say(words);
+    this.picture.state.say(words);
   }
 
   private show(): void {
@@ -177,16 +254,16 @@ export class Notes {
   }
 
   private go({ sample, cutter }: Note): void {
-    const { app } = this;
+    const { picture, picture: { state } } = this;
     // A copy is of one plan; still, a note that was edited by hand must not end the page.
-    if (sample === null || !(sample >= 0 && sample < app.samples.count)) return app.say("The sample of this note is not in the plan");
-    if (cutter && cutter !== app.cutter.id && app.meta.cutters.some((each) => each.id === cutter)) app.setCutter(cutter);
-    app.select(sample);
-    flyTo(app, app.samples.point(sample) as Vec, app.samples.normal(sample));
+    if (sample === null || !(sample >= 0 && sample < state.samples.count)) return state.say("The sample of this note is not in the plan");
+    if (cutter && cutter !== state.cutter.id && state.meta.cutters.some((each) => each.id === cutter)) state.setCutter(cutter);
+    state.select(sample);
+    flyTo(picture, state.samples.point(sample) as Vec, state.samples.normal(sample));
   }
 
   private about({ face, sample, cutter }: Note): string {
-    const shown = this.app.meta.cutters.find((each) => each.id === cutter);
+    const shown = this.picture.state.meta.cutters.find((each) => each.id === cutter);
     return `${face ?? "?"}, sample ${sample}${shown ? `, ${shown.name || shown.id}` : ""}`;
   }
 
@@ -217,7 +294,7 @@ export class Notes {
     setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
     this.saved = true;
     this.show();
-    this.app.say(`Saved as ${link.download}, where this browser keeps downloads`);
+    this.picture.state.say(`Saved as ${link.download}, where this browser keeps downloads`);
   }
 }
 

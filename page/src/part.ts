@@ -1,11 +1,14 @@
-// The part and its fixtures in 3D, coloured sample by sample through the atlas.
+// The part and its fixtures in 3D, coloured sample by sample through the atlas; borders of faces; the outline of what is in the way.
 
-import { type DataTexture, DoubleSide, Group, Mesh, type ShaderMaterial } from "./three";
+import {
+  BufferAttribute, BufferGeometry, type DataTexture, DoubleSide, Group, LineSegments, Mesh, PlaneGeometry, Scene, type ShaderMaterial, Vector2,
+  WebGLRenderTarget,
+} from "./three";
 import { colourOf, type Look, rgb } from "./colours.ts";
 import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";
-import { showRuns } from "./edges.ts";
-import { atlasTexture, NOBODY, plainMaterial } from "./shading.ts";
+import { atlasTexture, contourMaterial, maskMaterial, NOBODY, plainMaterial } from "./shading.ts";
+import type { Stage } from "./stage.ts";
 
 /** Added to the pattern of a sample that is faded, so that others stand out. */
 const FADED = 64;
@@ -24,11 +27,7 @@ export class PartView {
   /** Of a fixture that is seen through. */
   private readonly faded: ShaderMaterial;
 
-  constructor(
-    private readonly drawn: Drawn,
-    arrays: Pick<Arrays, "get">,
-    readonly material: ShaderMaterial,
-  ) {
+  constructor(private readonly drawn: Drawn, arrays: Pick<Arrays, "get">, readonly material: ShaderMaterial) {
     [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);
@@ -115,5 +114,127 @@ export class PartView {
   light(hot: Owner | null, held: Owner | null): void {
     this.material.uniforms.hot.value = hot ?? NOBODY;
     this.material.uniforms.held.value = held ?? NOBODY;
+  }
+}
+
+/** The borders of faces as thin lines, with which a part reads better; those of what is hidden are not drawn. */
+export class Borders {
+  readonly lines: LineSegments;
+  /** Runs of line ends by owner, in order. */
+  private readonly runs: [Owner, number, number][] = [];
+
+  constructor(private readonly drawn: Drawn) {
+    const { position, owner } = drawn;
+    const ends = borderEnds(drawn);
+    ends.forEach((end, i) => {
+      const last = this.runs[this.runs.length - 1];
+      if (last?.[0] === owner[end]) last[2] = i + 1 - last[1];
+      else this.runs.push([owner[end], i, 1]);
+    });
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(position, 3));
+    geometry.setIndex(ends);
+    this.lines = new LineSegments(geometry, [plainMaterial("0.09, 0.11, 0.13, 0.75", { transparent: true })]);
+    this.lines.renderOrder = 0.5;
+    this.look();
+  }
+
+  /** Draw the lines of what is seen now. */
+  look(): void {
+    showRuns(this.lines.geometry, this.runs, (owner) => this.drawn.seen(owner));
+  }
+}
+
+/** Let a geometry draw those of its runs (owner, first index, count) that are wanted; what follows each other in one go. */
+export function showRuns(geometry: BufferGeometry, runs: readonly [Owner, number, number][], wanted: (owner: Owner) => boolean): void {
+  const groups: { start: number; count: number }[] = [];
+  for (const [owner, start, count] of runs) {
+    if (!count || !wanted(owner)) continue;
+    const last = groups[groups.length - 1];
+    if (last && last.start + last.count === start) last.count += count;
+    else groups.push({ start, count });
+  }
+  geometry.clearGroups();
+  for (const { start, count } of groups) geometry.addGroup(start, count, 0);
+}
+
+/** Ends of the edges of triangles that no other triangle of the same face shares, two a line. */
+function borderEnds(drawn: Drawn): number[] {
+  const { triangle, position } = drawn;
+  const seen = new Map<number, number>();
+  const count = position.length / 3;
+  const same = coincident(drawn);
+  for (let t = 0; t < triangle.length; t += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = same[triangle[t + k]];
+      const b = same[triangle[t + ((k + 1) % 3)]];
+      if (a === b) continue;
+      const key = Math.min(a, b) * count + Math.max(a, b);
+      seen.set(key, (seen.get(key) ?? 0) + 1);
+    }
+  }
+  const ends: number[] = [];
+  for (const [key, times] of seen) if (times === 1) ends.push(Math.floor(key / count), key % count);
+  return ends;
+}
+
+/** Of each vertex the first one of its face at the same place: triangles of some faces share no vertices. */
+function coincident({ cell, owner }: Drawn): Int32Array {
+  const same = new Int32Array(owner.length);
+  let [of, first] = [Number.NaN, new Map<number, number>()];
+  for (let i = 0; i < owner.length; i++) {
+    // Vertices of a face follow each other.
+    if (owner[i] !== of) [of, first] = [owner[i], new Map()];
+    const known = first.get(cell[i]);
+    same[i] = known ?? i;
+    if (known === undefined) first.set(cell[i], i);
+  }
+  return same;
+}
+
+/** The outline of what is in the way: a mask of it, whole whatever lies before it, and a line along the borders of the mask. */
+export class Outline {
+  private owner: Owner | null = null;
+  private readonly of = new Scene();
+  private readonly over = new Scene();
+  private readonly mask = new WebGLRenderTarget(1, 1, { depthBuffer: false });
+  private readonly contour = contourMaterial();
+  private readonly geometries = new Map<Owner, BufferGeometry>();
+
+  constructor(private readonly stage: Stage, private readonly drawn: Drawn) {
+    this.contour.uniforms.mask.value = this.mask.texture;
+    const quad = new Mesh(new PlaneGeometry(2, 2), this.contour);
+    quad.frustumCulled = false;
+    this.over.add(quad);
+    stage.afterDraw(() => this.draw());
+  }
+
+  /** Outline a face or a fixture; null: nothing. */
+  show(owner: Owner | null): void {
+    if (owner === this.owner) return;
+    this.owner = owner;
+    this.of.clear();
+    const range = owner === null ? null : this.drawn.rangeOf(owner);
+    if (owner === null || !range) return;
+    let geometry = this.geometries.get(owner);
+    if (!geometry) this.geometries.set(owner, (geometry = this.drawn.geometry(range.start, range.count)));
+    const mesh = new Mesh(geometry, this.material);
+    mesh.frustumCulled = false;
+    this.of.add(mesh);
+  }
+
+  private readonly material = maskMaterial();
+
+  private draw(): void {
+    if (this.owner === null || !this.of.children.length) return;
+    const { renderer, table } = this.stage;
+    const size = renderer.getDrawingBufferSize(new Vector2());
+    this.mask.setSize(size.x, size.y);
+    renderer.setRenderTarget(this.mask);
+    renderer.render(this.of, table.camera);
+    renderer.setRenderTarget(null);
+    renderer.autoClear = false;
+    renderer.render(this.over, table.camera);
+    renderer.autoClear = true;
   }
 }

@@ -17,11 +17,7 @@ export interface Picked {
 export class Picker {
   private readonly caster = new Raycaster();
 
-  constructor(
-    private readonly stage: Stage,
-    private readonly drawn: Drawn,
-    private readonly part: PartView,
-  ) {}
+  constructor(private readonly stage: Stage, private readonly drawn: Drawn, private readonly part: PartView) {}
 
   /** What is seen at a place of the picture, -1 to 1 each way; null where nothing is. */
   at(x: number, y: number): Picked | null {

@@ -1,21 +1,19 @@
-// The panel of one sample: tilt against rotation, what is free, what forbids the rest, and the posture shown.
+// The panel of one sample: tilt against rotation, what is free, what forbids the rest, the posture shown, and the angles that hold it.
 
-import { Angles } from "./angles.ts";
-import type { App } from "./app.ts";
-import { OUTERMOST, STATES } from "./codes.ts";
+import { OUTERMOST, SINGULAR, STATES } from "./codes.ts";
 import { causeOf, OPEN, spoken } from "./colours.ts";
-import { button, coordinate, degrees, el, figure, percent } from "./dom.ts";
+import { button, coordinate, copyButton, degrees, el, figure, percent } from "./dom.ts";
 import type { State } from "./live_map.ts";
+import type { Position } from "./machine.ts";
 import { swatch, tile } from "./patterns.ts";
-import { SampleMap, wording } from "./posture_states.ts";
+import type { Judged, SampleMap } from "./sample_map.ts";
 import { alike } from "./samples.ts";
 import { styled } from "./scheme.ts";
-import { turned } from "./vectors.ts";
+import type { PageState } from "./state.ts";
+import { cross, DEG, norm, turned } from "./vectors.ts";
 
-const LEFT = 30;
-const BOTTOM = 30;
-const TOP = 10;
-const RIGHT = 10;
+/** Room around the map for its axes, pixels. */
+const [LEFT, BOTTOM, TOP, RIGHT] = [30, 30, 10, 10];
 /** What a posture meets, in place of what cannot be held or decided. */
 const COLLISIONS: readonly State[] = OUTERMOST;
 /** A larger radius of curvature, mm, is flat to whoever finishes it. */
@@ -41,35 +39,27 @@ export class PosturePanel {
   /** What can be done at the sample; others add to it. */
   readonly tools = el("p", { class: "tools" }, this.start);
   private readonly body = el("div", { class: "posture-body" });
-  private map: SampleMap | null = null;
   private width = 320;
   private timer = 0;
 
-  constructor(private readonly app: App) {
-    this.angles = new Angles(app);
+  constructor(private readonly state: PageState) {
+    this.angles = new Angles(state);
     const head = ["rotation, °", "free tilts, °", "else in the way"].map((text) => el("th", { scope: "col" }, text));
     this.intervals = el(
       "details",
       {},
       el("summary", {}, "The same as a table"),
-      el(
-        "table",
-        { id: "intervals" },
-        this.caption,
-        el("thead", {}, el("tr", {}, ...head)),
-        this.rows,
-      ),
+      el("table", { id: "intervals" }, this.caption, el("thead", {}, el("tr", {}, ...head)), this.rows),
     );
     this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.differs, this.intervals);
-    const leave = button("\u00d7", () => app.select(null), { class: "leave", title: "Leave the sample (Escape)", "aria-label": "Leave the sample" });
+    const leave = button("\u00d7", () => state.select(null), { class: "leave", title: "Leave the sample (Escape)", "aria-label": "Leave the sample" });
     this.root.append(leave, this.title, this.body);
     this.root.hidden = true;
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
     this.canvas.addEventListener("pointerdown", (event) => this.point(event));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
-    app.judge = (posture, met) => this.map?.at(posture, met) ?? { state: met.state, certified: false };
-    app.on("sample", () => this.begin());
-    app.on("posture", () => this.told());
+    state.on("sample", () => this.begin());
+    state.on("posture", () => this.fill());
     new ResizeObserver(() => this.resize()).observe(this.root);
   }
 
@@ -82,46 +72,41 @@ export class PosturePanel {
 
   private begin(): void {
     window.clearTimeout(this.timer);
-    const { sample, cutter, samples } = this.app;
+    const { cutter, map, meta, operation, sample, samples, spot } = this.state;
     // Without a sample the picture has all of the room.
     this.root.hidden = !sample;
     this.root.parentElement?.classList.toggle("chosen", !!sample);
-    this.app.stage.refit();
-    this.title.textContent = "Posture map";
-    this.map = sample && new SampleMap(this.app, sample);
-    if (!sample || !this.map) return;
-    const face = this.app.meta.faces.find((each) => each.number === sample.face);
+    if (!sample || !map) return;
+    const face = meta.faces.find((each) => each.number === sample.face);
     const verdict = samples.verdict(cutter.id, sample.row);
     const reason = samples.reason(cutter.id, sample.row);
-    const served = this.app.meta.setups.length ? samples.setup(cutter.id, sample.row) : null;
+    const served = meta.setups.length ? samples.setup(cutter.id, sample.row) : null;
     const setup = served === null ? "" : `, in setup ${served + 1}`;
-    const known = samples.posture(cutter.id, sample.row);
-    const { operation } = this.app;
-    this.start.textContent = operation?.axis ? `Posture of ${operation.label}` : known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
+    this.start.textContent = operation?.axis ? `Posture of ${operation.label}` : map.found ? "Posture found" : spot ? "Posture of the witness" : "Nearest posture";
     const named = `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`;
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
       ` at ${samples.told(sample.row).map((x) => coordinate(x)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
-      `: ${spoken(this.app.meta, verdict)}${reason ? ` (${spoken(this.app.meta, reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
+      `: ${spoken(meta, verdict)}${reason ? ` (${spoken(meta, reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
-    this.kind.textContent = this.map.blocked
+    this.kind.textContent = map.blocked
       ? "Nothing is called free here. What forbids the postures comes from the drawn triangles."
       : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
-        `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
-    if (this.app.meta.kinematics && this.app.meta.kinematics.direction.length < 2) {
+        `${figure(this.state.liveTool().spared, 2)} mm into the tool. It is not certified.`;
+    if (meta.kinematics && meta.kinematics.direction.length < 2) {
       this.kind.textContent += " This machine turns too few axes for a map: only the posture found is shown.";
     }
-    this.kind.classList.toggle("approximate", !this.map.blocked);
+    this.kind.classList.toggle("approximate", !map.blocked);
     this.differs.textContent = "";
     this.draw();
-    this.timer = window.setTimeout(() => this.advance(this.map!), 0);
+    this.timer = window.setTimeout(() => this.advance(map), 0);
   }
 
   /** Fill the map in slices, so that the page stays responsive. */
   private advance(map: SampleMap): void {
-    if (map !== this.map) return;
+    if (map !== this.state.map) return;
     if (!map.complete) map.advance();
     this.draw();
     if (!map.complete) {
@@ -130,9 +115,9 @@ export class PosturePanel {
     }
     this.table(map);
     this.root.dataset.complete = String(map.sample.row);
-    if (!this.app.posture) {
+    if (!this.state.posture) {
       const start = this.firstFree(map) ?? map.nearest();
-      if (start) this.app.setPosture(start);
+      if (start) this.state.setPosture(start);
     }
   }
 
@@ -147,32 +132,27 @@ export class PosturePanel {
   }
 
   private back(): void {
-    const { sample } = this.app;
-    if (sample) this.app.setPosture(this.app.startPosture(sample.row) ?? this.map?.nearest() ?? null);
+    const { map } = this.state;
+    if (map) this.state.setPosture(this.state.startPosture(map.sample.row) ?? map.nearest());
   }
 
-  private told(): void {
-    const { posture, met, state, sample } = this.app;
-    if (posture && state && sample) {
-      const found = this.app.samples.posture(this.app.cutter.id, sample.row);
-      const planned = this.app.plannedPosture();
-      const of = planned && alike(planned, posture) ? `, ${this.app.operation!.label}` : "";
-      const sure = of || (state.state === "free" && found && alike(found, posture) ? ", the posture found" : "");
-      this.line.textContent =
-        `tilt ${degrees(posture.tilt)}°, rotation ${degrees(posture.rotation)}°: ` +
-        (this.app.atWitness() ? this.witnessed() : wording(this.app, state, met) + sure);
-      this.line.dataset.state = state.state;
+  private fill(): void {
+    const { judged, map, operation, posture, spot } = this.state;
+    const witness = this.state.atWitness();
+    if (posture && judged && map) {
+      const planned = this.state.plannedPosture();
+      const of = planned && alike(planned, posture) ? `, ${operation!.label}` : "";
+      const sure = of || (judged.state === "free" && map.found && alike(map.found, posture) ? ", the posture found" : "");
+      const undecided = this.state.samples.verdict(this.state.cutter.id, map.sample.row) === "undecided";
+      // The plan's sentence on its witness stands below; what the drawn triangles say there would be a second word for it.
+      const words = witness ? `the best posture found, ${undecided ? "undecided" : "not free"}` : wording(this.state, judged) + sure;
+      this.line.textContent = `tilt ${degrees(posture.tilt)}°, rotation ${degrees(posture.rotation)}°: ${words}`;
+      this.line.dataset.state = judged.state;
     } else {
       this.line.textContent = "";
     }
-    this.witness.textContent = this.app.atWitness() ? this.app.spot!.text : "";
+    this.witness.textContent = witness ? spot!.text : "";
     this.draw();
-  }
-
-  /** The plan's sentence on its witness stands below; what the drawn triangles say there would be a second word for it. */
-  private witnessed(): string {
-    const undecided = this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided";
-    return undecided ? "the best posture found, undecided" : "the best posture found, not free";
   }
 
   // Places in the drawing.
@@ -182,17 +162,17 @@ export class PosturePanel {
   }
 
   private y(tilt: number): number {
-    const [low, high] = this.app.meta.tilt_deg;
+    const [low, high] = this.state.meta.tilt_deg;
     return HEIGHT - BOTTOM - ((HEIGHT - BOTTOM - TOP) * (tilt - low)) / Math.max(1e-9, high - low);
   }
 
   private get step(): number {
-    const turns = this.app.meta.rotation_deg;
+    const turns = this.state.meta.rotation_deg;
     return turns.length > 1 ? turns[1] - turns[0] : 360;
   }
 
   draw(): void {
-    const { map, canvas } = this;
+    const { canvas, state: { map } } = this;
     if (!map) return;
     const ratio = Math.min(2, devicePixelRatio || 1);
     canvas.width = this.width * ratio;
@@ -201,7 +181,7 @@ export class PosturePanel {
     canvas.style.height = `${HEIGHT}px`;
     const c = canvas.getContext("2d")!;
     c.scale(ratio, ratio);
-    const fills = new Map(STATES.map((state) => [state, tile(c, ...causeOf(this.app.meta, state))]));
+    const fills = new Map(STATES.map((state) => [state, tile(c, ...causeOf(this.state.meta, state))]));
     const wide = Math.max(1, ((this.width - LEFT - RIGHT) * this.step) / 360 - 1);
     const seen = new Set<State>();
     const { tilts } = map.grid;
@@ -237,15 +217,15 @@ export class PosturePanel {
       this.legend.replaceChildren(
         ...shown.map((state) => {
           const open = state === "free";
-          const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(this.app.meta, state);
-          return el("li", {}, swatch(...(open ? OPEN : causeOf(this.app.meta, state))), word);
+          const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(this.state.meta, state);
+          return el("li", {}, swatch(...(open ? OPEN : causeOf(this.state.meta, state))), word);
         }),
       );
     }
   }
 
   private axes(c: CanvasRenderingContext2D): void {
-    const [low, high] = this.app.meta.tilt_deg;
+    const [low, high] = this.state.meta.tilt_deg;
     c.fillStyle = styled("soft");
     c.font = "11px system-ui, sans-serif";
     c.textAlign = "right";
@@ -266,8 +246,8 @@ export class PosturePanel {
   }
 
   private marks(c: CanvasRenderingContext2D): void {
-    const { sample, cutter, posture } = this.app;
-    const found = sample && this.app.samples.posture(cutter.id, sample.row);
+    const { map, posture } = this.state;
+    const found = map?.found;
     const ring = (x: number, y: number, r: number, colour: string, width: number): void => {
       c.strokeStyle = colour;
       c.lineWidth = width;
@@ -295,22 +275,23 @@ export class PosturePanel {
   // Moving over it.
 
   private point(event: PointerEvent): void {
-    if (!this.map) return;
+    const { map } = this.state;
+    if (!map) return;
     const box = this.canvas.getBoundingClientRect();
     const across = (event.clientX - box.left - LEFT) / (this.width - LEFT - RIGHT);
-    const [low, high] = this.app.meta.tilt_deg;
+    const [low, high] = this.state.meta.tilt_deg;
     const up = (HEIGHT - BOTTOM - (event.clientY - box.top)) / (HEIGHT - BOTTOM - TOP);
     if (across < 0 || across > 1) return;
-    const column = this.map.column(turned(360 * across - this.step / 2));
+    const column = map.column(turned(360 * across - this.step / 2));
     const tilt = Math.round(Math.min(high, Math.max(low, low + up * (high - low))));
     this.go(column, Math.min(high, Math.max(low, tilt)));
   }
 
   private go(column: number, tilt: number): void {
-    const rotation = this.map!.grid.rotations[column];
-    const now = this.app.posture;
+    const rotation = this.state.map!.grid.rotations[column];
+    const now = this.state.posture;
     if (now && now.tilt === tilt && now.rotation === rotation) return;
-    this.app.setPosture({ tilt, rotation });
+    this.state.setPosture({ tilt, rotation });
   }
 
   private key(event: KeyboardEvent): void {
@@ -323,13 +304,13 @@ export class PosturePanel {
       PageDown: [0, -10],
     };
     const step = way[event.key];
-    if (!step || !this.map || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { map, posture } = this.state;
+    if (!step || !map || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     event.stopPropagation();
-    const { posture } = this.app;
-    const turns = this.map.grid.rotations.length;
-    const [low, high] = this.app.meta.tilt_deg;
-    const column = posture ? this.map.column(posture.rotation) : 0;
+    const turns = map.grid.rotations.length;
+    const [low, high] = this.state.meta.tilt_deg;
+    const column = posture ? map.column(posture.rotation) : 0;
     const tilt = Math.round(posture?.tilt ?? low) + step[1];
     this.go((column + step[0] + turns) % turns, Math.min(high, Math.max(low, tilt)));
   }
@@ -338,7 +319,7 @@ export class PosturePanel {
     this.rows.replaceChildren(
       ...map.grid.rotations.map((rotation, column) => {
         const free = map.free(column).map(([low, high]) => `${degrees(low)} to ${degrees(high)}`);
-        const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(this.app.meta, state));
+        const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(this.state.meta, state));
         return el(
           "tr",
           { "data-rotation": rotation },
@@ -358,7 +339,7 @@ export class PosturePanel {
 
   /** The map names what each posture meets first, the plan what would have to change: where these differ one must know it. */
   private compare(map: SampleMap): void {
-    const reason = this.app.samples.reason(this.app.cutter.id, map.sample.row);
+    const reason = this.state.samples.reason(this.state.cutter.id, map.sample.row);
     const cells = new Map<State, number>();
     map.grid.rotations.forEach((_, column) => {
       for (const [state, count] of map.causes(column)) cells.set(state, (cells.get(state) ?? 0) + count);
@@ -366,8 +347,8 @@ export class PosturePanel {
     const [most] = [...cells].filter(([state]) => COLLISIONS.includes(state)).sort((a, b) => b[1] - a[1])[0] ?? [];
     this.differs.textContent =
       reason && most && most !== reason
-        ? `The colours name what each posture meets first, mostly ${spoken(this.app.meta, most)}. The plan's reason, ` +
-          `${spoken(this.app.meta, reason)}, names what to change first so that the sample can be reached.`
+        ? `The colours name what each posture meets first, mostly ${spoken(this.state.meta, most)}. The plan's reason, ` +
+          `${spoken(this.state.meta, reason)}, names what to change first so that the sample can be reached.`
         : "";
   }
 }
@@ -378,3 +359,76 @@ function bend(curvature: number): string {
   if (Math.abs(curvature) * FLAT <= 1) return "flat";
   return `${curvature > 0 ? "concave" : "convex"} R ${figure(1 / Math.abs(curvature))}`;
 }
+
+/** What is said of the posture shown: `free`, or what is in the way. */
+function wording({ drawn, met, meta }: PageState, { state, certified }: Judged): string {
+  if (state === "free") return certified ? "free" : "nothing is met in the drawing, which is not certified";
+  if (state === "undecided") return "undecided: neither called free nor known to be forbidden";
+  const word = spoken(meta, state);
+  const owner = met && met.owner !== null ? drawn.called(met.owner) : "";
+  if (state === "fixture") return `${met?.part ?? "cutter"} meets ${owner}`;
+  return owner ? `${word} with ${owner}` : `${word}: ${meta.causes[state].sentence}`;
+}
+
+const DIGITS = { angle: 2, axis: 4 };
+/** Sine of an angle between tool axes that are one. */
+const SAME = 1e-6;
+
+/** The tool axis at the posture shown, and the positions of the rotary axes that hold it. */
+class Angles {
+  readonly root = el("div", { id: "angles" });
+
+  constructor(private readonly state: PageState) {
+    state.on("posture", () => this.fill());
+  }
+
+  private fill(): void {
+    const { machine, meta: { axes: names }, operation } = this.state;
+    const axis = this.state.placed()?.axis;
+    this.root.hidden = !axis;
+    if (!axis) return;
+    const vector = axis.map((x) => plain(x, DIGITS.axis)).join(", ");
+    const rows = [this.row("Tool axis", vector, "", `Copy the tool axis ${vector}`)];
+    const { kinematics } = machine;
+    const found = names.length ? machine.positions(axis) : [];
+    if (kinematics && names.length && !found.length) rows.push(el("p", { class: "hint" }, `No angles of ${names.join(" and ")} hold this tool axis.`));
+    found.forEach((each, i) => {
+      const words = wordsOf(names, each);
+      const named = found.length > 1 ? `Solution ${i + 1}` : names.length > 1 ? "Angles" : "Angle";
+      rows.push(this.row(named, words.join(", "), beyond(names, each), `Copy ${words.join(" ")}`, words.join(" ")));
+    });
+    if (operation?.axis && norm(cross(axis, operation.axis)) < SAME) rows.push(...operation.words.map((each) => this.row("Control", each, "", `Copy ${each}`)));
+    const near = kinematics && kinematics.direction.length === 2 && found.length > 0 ? norm(cross(axis, kinematics.direction[0])) : 1;
+    if (near <= Math.sin(SINGULAR / DEG)) rows.push(el("p", { class: "hint" }, `Singular: the tool axis is nearly along ${names[0]}, which turns fast there.`));
+    this.root.replaceChildren(...rows);
+  }
+
+  /** What is copied leaves the words behind that stand beside it. */
+  private warning(more: string): string {
+    const { judged } = this.state;
+    const free = judged?.state === "free" ? (judged.certified ? "" : ". This posture is not certified") : ". This posture is not free";
+    return `${free}${more ? `. ${more.charAt(0).toUpperCase()}${more.slice(1)}` : ""}`;
+  }
+
+  private row(named: string, text: string, more: string, label: string, copied = text): HTMLElement {
+    const said = more ? el("span", { class: "hint" }, ` ${more}`) : null;
+    return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, (said) => this.state.say(said + this.warning(more)), label));
+  }
+}
+
+/** Words of a program such as `A-12.5`, in the order of the letters. */
+const wordsOf = (names: string[], { angles }: Position): string[] =>
+  names.map((name, k) => `${name}${plain(angles[k], DIGITS.angle)}`).sort();
+
+function beyond(names: string[], { within, free }: Position): string {
+  const out = names.filter((_, k) => !within[k]);
+  if (out.length) return `beyond the limit of ${out.join(" and ")}`;
+  return free ? `any ${names[0]} serves` : "";
+}
+
+/** A number with so many digits behind the point, without zeros that say nothing. */
+function plain(value: number, digits: number): string {
+  const rounded = Number(value.toFixed(digits));
+  return String(Object.is(rounded, -0) ? 0 : rounded);
+}
+

@@ -1,9 +1,10 @@
 // What the page prints: two stills of the picture, beside the summary and the tables.
 
-import type { App } from "./app.ts";
 import { el } from "./dom.ts";
 import { legendOf } from "./legend.ts";
-import { moment } from "./review_data.ts";
+import { moment } from "./notes.ts";
+import type { Stage } from "./stage.ts";
+import type { PageState } from "./state.ts";
 
 /** The file's date is told in whole seconds, and a page may be loaded slowly. */
 const UNSURE_MS = 5000;
@@ -16,7 +17,7 @@ export class Stills {
   private readonly key = el("div", { class: "key" });
   private readonly dated = el("p", { id: "printed" });
 
-  constructor(private readonly app: App) {
+  constructor(private readonly state: PageState, private readonly stage: Stage) {
     this.pictures.forEach((picture, i) => picture.setAttribute("aria-label", `Still ${i + 1} of the part`));
     for (const picture of this.pictures) picture.setAttribute("role", "img");
     this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."), this.key);
@@ -36,10 +37,10 @@ export class Stills {
   }
 
   take(): void {
-    const { stage } = this.app;
+    const { stage } = this;
     const { table } = stage;
     const before = table.aim;
-    this.key.replaceChildren(...legendOf(this.app));
+    this.key.replaceChildren(...legendOf(this.state));
     const views = [before, table.fitted(before.turn + 180, before.rise > 0 ? before.rise : 32)];
     views.forEach((aim, i) => {
       table.set(aim);

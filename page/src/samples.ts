@@ -41,10 +41,7 @@ export class Samples {
   readonly face: Table;
   readonly surfaceClass: Table;
 
-  constructor(
-    private readonly meta: Meta,
-    private readonly arrays: Arrays,
-  ) {
+  constructor(private readonly meta: Meta, private readonly arrays: Arrays) {
     this.face = arrays.get("sample.face");
     this.surfaceClass = arrays.get("sample.class");
     this.count = this.face.rows;

@@ -1,27 +1,13 @@
 // The materials: lit by a lamp at the eye, coloured as the legend says, cut by the clipping plane.
 
 import {
-  AlwaysStencilFunc,
-  DataTexture,
-  DoubleSide,
-  GLSL3,
-  GreaterDepth,
-  InvertStencilOp,
-  NearestFilter,
-  RGBAFormat,
-  ShaderMaterial,
-  type ShaderMaterialParameters,
-  UnsignedByteType,
-  Vector3,
-  Vector4,
+  AlwaysStencilFunc, DataTexture, DoubleSide, GLSL3, GreaterDepth, InvertStencilOp, NearestFilter, RGBAFormat, ShaderMaterial,
+  type ShaderMaterialParameters, UnsignedByteType, Vector3, Vector4,
 } from "./three";
 import { rgb } from "./colours.ts";
 
 /** What all materials share: the clipping plane (kept: xyz . p <= w) and the pixels of a step of the patterns. */
-export const shared = {
-  plane: { value: new Vector4(0, 0, 0, 1) },
-  ratio: { value: 1 },
-};
+export const shared = { plane: { value: new Vector4(0, 0, 0, 1) }, ratio: { value: 1 } };
 
 const VERTEX = `
 in vec2 texel;

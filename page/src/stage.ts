@@ -20,11 +20,7 @@ export class Stage {
   private begun = false;
 
   /** Throws where there is no WebGL. */
-  constructor(
-    readonly canvas: HTMLCanvasElement,
-    meta: Meta,
-    vertices: () => Float32Array,
-  ) {
+  constructor(readonly canvas: HTMLCanvasElement, meta: Meta, vertices: () => Float32Array) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "default" });
     // To ask whether a program was linked is to wait for it.
     this.renderer.debug.checkShaderErrors = false;

@@ -21,7 +21,7 @@ from plan_cutters import plan
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations.orientations import MOST, Indexing, Orientations, index_times
-from plan_cutters.plan_file.reasons import operation_colour, parts, rgb
+from plan_cutters.plan_file.reasons import parts, rgb
 from plan_cutters.report import DEFAULT_FORMATS, models
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import clearances
@@ -56,6 +56,13 @@ def unpacked(runs):
 def files(document):
     stems = ("operations", "operations_fastest")
     return list(zip(document.operations.plans, stems, strict=True))
+
+
+def words_of(document, entry):
+    """How models call the operations of a plan, by their ids: those of the process by the numbers of its steps."""
+    steps = document.process.steps if document.process.plan == entry.name else []
+    names = {each.id: each.id for each in entry.operations}
+    return names | {step.operation: f"step{k}" for k, step in enumerate(steps, 1) if step.operation}
 
 
 @pytest.mark.slow("plans whole parts")
@@ -123,7 +130,8 @@ def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written
     for (entry, stem), found in zip(files(document), result.answers.operations.plans, strict=True):
         again = read_part(out / f"{stem}.step")
         assert again.solids == result.part.solids
-        colours = {each.id: parts(operation_colour(k)) for k, each in enumerate(entry.operations)}
+        called = words_of(document, entry)
+        colours = {called[each.id]: parts(each.colour) for each in entry.operations}
         words = [face.name.split()[0].partition("_")[2] for face in again.faces]
         for face, word in zip(again.faces, words, strict=True):
             assert face.colour == pytest.approx(colours[word] if word in colours else rgb(word), abs=2e-3)
@@ -131,7 +139,7 @@ def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written
         assert sum(face.area for face in again.faces) == pytest.approx(whole, rel=2e-4)
         for number, each in enumerate(entry.operations):
             # Of each region a face, also of one sample: what is around it may not serve it.
-            area = sum(face.area for face, word in zip(again.faces, words, strict=True) if word == each.id)
+            area = sum(face.area for face, word in zip(again.faces, words, strict=True) if word == called[each.id])
             assert area == pytest.approx(each.area_mm2, abs=0.03 * whole)
             assert area > 0.0
             assert (found.label == number).any()
@@ -150,7 +158,7 @@ def test_no_face_has_an_operation_that_does_not_serve_the_samples_on_it(written)
             names += [re.sub(r"_\d+$", "", name.split()[0].partition("_")[2])] * len(dense)
         cloud = np.concatenate(points)[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
         near = cKDTree(cloud).query(samples.point)[1]
-        ids = [each.id for each in entry.operations]
+        ids = list(words_of(document, entry).values())
         wrong = 0
         for row in np.flatnonzero(found.label >= 0).tolist():
             word = names[near[row]]
@@ -167,13 +175,14 @@ def test_glb_says_the_operation_of_each_piece_and_passes_the_khronos_validator(w
         data = (out / f"{stem}.glb").read_bytes()
         tree = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
         said = [node for node in tree["nodes"] if "operation" in node.get("extras", {})]
-        known = {each.id: each for each in entry.operations}
+        known, called = {each.id: each for each in entry.operations}, words_of(document, entry)
         assert {node["extras"]["operation"] for node in said} - {None} == set(known)
         for node in said:
             extras = node["extras"]
             if extras["operation"]:
                 assert extras["cutter"] == known[extras["operation"]].cutter
-                assert node["name"].startswith(f"{extras['face']}_{extras['operation']}")
+                assert node["name"].startswith(f"{extras['face']}_{called[extras['operation']]}")
+                assert called[extras["operation"]] in (f"step{extras['step']}", extras["operation"])
             else:
                 assert node["name"].startswith(f"{extras['face']}_{extras['verdict']}")
     done = subprocess.run(
@@ -292,6 +301,9 @@ def test_the_table_has_a_line_for_each_operation(written):
         rows = list(csv.DictReader(file))
     wanted = [(plan.name, each) for plan in document.operations.plans for each in plan.operations]
     assert [(row["plan"], row["operation"]) for row in rows] == [(name, each.id) for name, each in wanted]
+    ours = {row["operation"]: row["step"] for row in rows if row["plan"] == document.process.plan}
+    assert [ours[step.operation] for step in document.process.steps] == [str(k) for k in range(1, len(ours) + 1)]
+    assert {row["step"] for row in rows if row["plan"] != document.process.plan} <= {""}
     for row, (_, each) in zip(rows, wanted, strict=True):
         assert float(row["area_mm2"]) == pytest.approx(each.area_mm2, abs=5e-4)
         assert len(row["area_mm2"].partition(".")[2]) <= 3

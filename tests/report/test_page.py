@@ -271,6 +271,7 @@ def test_a_section_has_a_cap(page, planned):
 
 def test_two_samples_are_measured(page, planned):
     one, two = seen(page, inner(planned, SHOWN, [1], 60))[::10][:2]
+    page.click("#more summary")
     page.get_by_role("button", name="Measure").click()
     page.mouse.click(*place_of(page, one))
     page.mouse.click(*place_of(page, two))
@@ -313,6 +314,7 @@ def test_the_keyboard_alone_will_do(page, planned):
 
 def test_every_control_is_reached_by_tab(page):
     reached = set()
+    page.click("#more summary")
     page.focus("#colouring")
     for _ in range(60):
         reached.add(page.evaluate("(e => e.id || e.textContent.trim().slice(0, 30))(document.activeElement)"))
@@ -331,6 +333,7 @@ def test_faces_and_the_picture_know_each_other(page, planned):
 
 
 def test_curvature_has_a_scale_with_numbers(page):
+    page.click("#more summary")
     page.select_option("#colouring", "scalar:curvature_max")
     assert page.locator("#legend .ramp").count() == 1
     assert len(re.findall(r"\d", page.inner_text("#legend .ticks"))) > 3

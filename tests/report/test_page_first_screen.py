@@ -57,12 +57,19 @@ def test_the_first_screen_has_verdict_picture_process_and_decision(at, planned, 
         page.emulate_media(color_scheme=scheme)
         assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
         cutters = () if screen == "phone" else ("#cutters tr[data-cutter] th",)
-        for selector in ("#verdict", "h1", "#approve", "#reject", "#to-note", "#picture", "#process tr[data-step] th", *cutters):
+        first = ("#verdict", "h1", "#approve", "#reject", "#to-note", "#picture", "#process tr[data-step] th")
+        for selector in (*first, *cutters):
             assert within(page, selector), selector
+        # One row: no control of it stands below another one.
+        rows = page.eval_on_selector_all(
+            "#toolbar > :not([hidden])", "all => all.map(each => each.getBoundingClientRect()).map(box => [box.top, box.bottom])"
+        )
+        assert screen == "phone" or max(top for top, _ in rows) < min(bottom for _, bottom in rows)
         ground = page.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
         assert (min(map(int, re.findall(r"\d+", ground)[:3])) > 128) == (scheme == "light")
     assert names(page)[0] == planned.shown == page.evaluate("review.cutter.id")
-    assert page.locator("#cutters tr.more:visible").count() == 1
+    # The process is the subject: no cutter says more before it is shown.
+    assert page.locator("#cutters tr.more:visible").count() == 0
     if screen != "phone":
         # All of nineteen cutters in one list, each in a line.
         lines = page.eval_on_selector_all("#cutters tr[data-cutter]", "rows => rows.map(row => row.offsetHeight)")
@@ -274,6 +281,7 @@ def test_the_scheme_is_switched_and_paper_stays_white(at):
 
     page = at(scheme="dark")
     assert dark()
+    page.click("#more summary")
     page.select_option("#scheme", "light")
     assert not dark()
     page.select_option("#scheme", "dark")

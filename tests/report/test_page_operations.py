@@ -16,7 +16,7 @@ from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import text_of
 from plan_cutters.report.page import tables, write
 from plan_cutters.report.page.steps import colour
-from tests.support.browser import opened, place_of, seen
+from tests.support.browser import SCREENS, opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page, picture
 
@@ -65,6 +65,15 @@ def test_operations_are_told_as_they_are_in_the_plan(planned, read):
             # Its tool is shown where it is proved to serve.
             assert found.label[one["sample"]] == k
             assert found.serves[one["sample"], k]
+
+
+@pytest.mark.parametrize("screen", ["desk", "phone"])
+def test_what_to_look_at_before_one_approves_is_on_the_first_screen(at, planned, screen):
+    found = at(screen).locator("#process .next", has_text="Before you approve")
+    box = found.bounding_box()
+    assert 0 <= box["y"] < box["y"] + box["height"] <= SCREENS[screen][1]
+    least = min(each.clearance_mm for each in planned.plan.process.steps if each.clearance_mm is not None)
+    assert float(re.search(r"holder: ([\d.]+) mm", found.inner_text())[1]) == pytest.approx(least, rel=5e-3)
 
 
 def test_each_step_has_one_number_everywhere(planned, read):
@@ -280,7 +289,7 @@ def test_an_entry_turns_the_part_and_puts_its_tool_there(page, planned, read):
             tool, back = page.evaluate("[review.tool.group.matrix.elements.slice(4, 7), review.stage.table.frame().back]")
             assert np.allclose(tool, one["axis"], atol=1e-3)
             assert np.allclose(back, one["axis"], atol=1e-9)
-            assert page.evaluate("[review.state.state, review.state.certified, review.tool.group.visible]") == [
+            assert page.evaluate("[review.judged.state, review.judged.certified, review.tool.group.visible]") == [
                 "free", True, True,
             ]  # fmt: skip
             assert one["label"] in page.inner_text("#posture-line")

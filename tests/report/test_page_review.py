@@ -72,6 +72,7 @@ def aim(page):
 
 def link(page):
     """The link that the page copies, read from its clipboard."""
+    page.evaluate("document.querySelector('#more').open = true")
     page.get_by_role("button", name=re.compile("Copy link")).click()
     status(page, "Copied")
     return page.evaluate("navigator.clipboard.readText()")
@@ -86,6 +87,7 @@ def test_a_link_leads_to_the_same_cutter_sample_posture_and_view(at, planned):
     page.mouse.click(*place_of(page, row))
     page.wait_for_function("row => review.sample?.row === row", arg=row)
     page.evaluate("review.setPosture({tilt: 17, rotation: 40})")
+    page.click("#more summary")
     page.select_option("#colouring", "scalar:curvature_max")
     page.evaluate("review.stage.table.set({turn: 33, rise: 21, half: 20})")
     address = link(page)
@@ -353,7 +355,7 @@ def test_eyes_hide_what_is_still_in_the_way(at, planned):
     failing = next(c.id for c in planned.plan.cutters if any((w.obstacle_face or "").startswith("fixture:") for w in c.witnesses))
     page.evaluate("id => review.setCutter(id)", failing)
     page.keyboard.press("n")
-    state = page.evaluate("review.state.state")
+    state = page.evaluate("review.judged.state")
     assert state != "free"
     # What holds the part is seen through at first: hidden and shown again, it is solid.
     page.keyboard.press("b")
@@ -364,7 +366,7 @@ def test_eyes_hide_what_is_still_in_the_way(at, planned):
     status(page, "still in the way of the tool")
     assert drawn_jaw(page) < 0.05 * jaw
     page.evaluate("review.setPosture({...review.posture})")
-    assert page.evaluate("review.state.state") == state
+    assert page.evaluate("review.judged.state") == state
     page.keyboard.press("b")
     assert drawn_jaw(page) == pytest.approx(jaw, rel=0.02)
 

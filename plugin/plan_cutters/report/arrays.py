@@ -24,6 +24,7 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
+from plan_cutters.plan_file.words.operations import steps_of
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.question import question_of
 from plan_cutters.scene.conditions import rotations_of
@@ -206,8 +207,9 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", *(f"{name}_deg" for name in entry.rotary),
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words"])  # fmt: skip
+                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words", "step"])  # fmt: skip
         for plan in entry.plans:
+            step = steps_of(result.plan, plan)
             for each in plan.operations:
                 angles = each.angles_deg or {}
                 axis = ("", "", "") if each.axis is None else [_rounded(x, 9) for x in each.axis]
@@ -216,7 +218,7 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
                                " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
-                               each.rotary_words or ""])  # fmt: skip
+                               each.rotary_words or "", step.get(each.id, "")])  # fmt: skip
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:

@@ -4,7 +4,7 @@ They show one cutter: the selected one or, where none is feasible, the one that 
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,8 +24,9 @@ from plan_cutters.document.build import fixture_entry
 from plan_cutters.domain.clamping import Block, Clamping
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.model import FaceEntry, Plan, SplitEntry
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.operations import OperationPlanEntry
 from plan_cutters.plan_file.reasons import LABELS, MEANING, parts, rgb
+from plan_cutters.plan_file.words.operations import stepped, steps_of
 from plan_cutters.report.protocol import Judged
 
 
@@ -133,15 +134,17 @@ def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:
     return plan.model_copy(update=update)
 
 
-def styles(result: Judged, operations: Sequence[OperationEntry] = ()) -> Callable[[Any], Style]:
-    """Name and colour of a piece: those of its operation, else of its verdict; faces that are no target keep their own colour."""
-    faces = result.part.faces
+def styles(result: Judged, plan: OperationPlanEntry | None = None) -> Callable[[Any], Style]:
+    """Name and colour of a piece: of its step or operation, else of its verdict; faces that are no target keep their colour."""
+    faces, operations = result.part.faces, plan.operations if plan else []
+    # As everywhere, `step3` is the third step of the process; operations of other plans have their ids.
+    called = [stepped(result.plan, plan, each.id).replace(" ", "") for each in operations] if plan else []
 
     def style(piece: Any) -> Style:
         info = faces[piece.face - 1]
         if 0 <= piece.label < len(operations):
-            each = operations[piece.label]
-            return Style(f"F{piece.face}_{each.id} {info.name}".strip(), parts(each.colour), each.id)
+            word = called[piece.label]
+            return Style(f"F{piece.face}_{word} {info.name}".strip(), parts(operations[piece.label].colour), word)
         word = verdict_of(piece, len(operations))
         own = info.colour if word in ("check", "ignored") else None
         return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word), word)
@@ -149,9 +152,7 @@ def styles(result: Judged, operations: Sequence[OperationEntry] = ()) -> Callabl
     return style
 
 
-def write_step(
-    result: Judged, split: Any, path: Path, *, schema: str = "ap242", operations: Sequence[OperationEntry] = ()
-) -> None:
+def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242", plan: OperationPlanEntry | None = None) -> None:
     """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`.
 
     Beside it stand the fixtures that are CAD files, vises and chucks.
@@ -165,7 +166,7 @@ def write_step(
             place = np.column_stack([each.fixture.rotation, each.fixture.shift])
             others.append(Product(each.name, shape, place, rgb("fixture")))
     write_cad(
-        split, path, styles(result, operations), product=product(result), tree=part.tree, layers=part.layers,
+        split, path, styles(result, plan), product=product(result), tree=part.tree, layers=part.layers,
         schema=SCHEMAS[schema], others=others,
     )  # fmt: skip
 
@@ -268,18 +269,19 @@ def _operations(result: Judged, name: str | None) -> OperationPlanEntry:
 
 
 def write_operations_step(result: Judged, split: Any, path: Path, *, name: str | None = None, schema: str = "ap242") -> None:
-    """Write `operations.step`: as `annotated.step`, but with a face named `F<number>_<operation>` for each piece."""
-    write_step(result, split, path, schema=schema, operations=_operations(result, name).operations)
+    """Write `operations.step`: as `annotated.step`, but each piece is named `F<number>_step<number>`, or by its operation."""
+    write_step(result, split, path, schema=schema, plan=_operations(result, name))
 
 
 def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | None = None) -> None:
     """Write `operations.glb`: as `annotated.glb`, with the operation of each piece in `extras`."""
     plan = _operations(result, name)
     entries = {int(face.id[1:]): face for face in result.plan.faces}
+    step = steps_of(result.plan, plan)
 
     def extras(face: int) -> dict[str, Any]:
         here = [
-            {"operation": each.id, "samples": at.samples, "area_mm2": at.area_mm2}
+            {"operation": each.id, "step": step.get(each.id), "samples": at.samples, "area_mm2": at.area_mm2}
             for each in plan.operations
             for at in each.faces
             if at.face == f"F{face}"
@@ -293,9 +295,9 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | 
             return {**about, "operation": None, "verdict": word, "meaning": MEANING[word], "cutter": result.shown}
         operation = plan.operations[piece.label]
         known = operation.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
-        return {**about, "operation": operation.id, **known}
+        return {**about, "operation": operation.id, "step": step.get(operation.id), **known}
 
-    style, pieces = styles(result, plan.operations), shown_pieces(result, split)
+    style, pieces = styles(result, plan), shown_pieces(result, split)
     write_gltf(pieces, path, style, extras=extras, piece_extras=facts, others=_fixtures(result))
 
 

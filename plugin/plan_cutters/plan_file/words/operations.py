@@ -78,11 +78,14 @@ def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
     return ""
 
 
+def steps_of(plan: Plan, of: OperationPlanEntry) -> dict[str, str]:
+    """The numbers of `operation_names` if a plan of operations is that of the process, else none."""
+    return operation_names(plan) if plan.process is not None and of.name == plan.process.plan else {}
+
+
 def stepped(plan: Plan, of: OperationPlanEntry, text: str) -> str:
     """A text on a plan of operations, or the id of one: those of the process are called by their steps."""
-    if plan.process is None or of.name != plan.process.plan:
-        return text
-    names = operation_names(plan)
+    names = steps_of(plan, of)
     return _OPERATION.sub(lambda match: f"step {names[match[0]]}" if match[0] in names else match[0], text)
 
 

@@ -259,6 +259,12 @@ def _alone(story: Story) -> list[str]:
     return [text]
 
 
+def before_approval(story: Story) -> list[str]:
+    """A reviewer of a process looks at these first: the least clearance, and how much is proved between the samples."""
+    clearance = story.process.clearance if story.process else ""
+    return [*filter(None, [clearance]), *map(str.strip, wrapped(story.between[:1], 2))]
+
+
 def of_the_plan(story: Story) -> list[str]:
     """Sentences on the plan as a whole: its setups and orientations, its scope, and all doubts."""
     doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]

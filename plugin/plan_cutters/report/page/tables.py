@@ -26,7 +26,7 @@ from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
-from plan_cutters.plan_file.words.text import CHIPS, Story, chip, story_of
+from plan_cutters.plan_file.words.text import CHIPS, Story, before_approval, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
 from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
 from plan_cutters.report.protocol import Judged
@@ -263,6 +263,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "plain": as_fields,
         "size": numbers.size(plan.part.size_mm),
         "stands": story.process.stands if story.process else (),
+        "check": as_fields(" ".join(before_approval(story))),
         "heeded": len(warnings) + (not plan.process and not plan.part.orientation.confident),
         **process_tables(plan, story),
         "names": story.names,
@@ -302,8 +303,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
 
 def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
     p = story.process
-    process = [*p.own, p.clearance] if p else []
-    return [*process, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
+    return [*(p.own if p else ()), _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:

@@ -1,12 +1,16 @@
-// The map of one sample: what the drawn triangles show of it, and what is said of a posture.
+// The postures of one sample, as far as the drawn triangles and the plan show them.
 
-import type { App, Judged } from "./app.ts";
 import { OUTERMOST, STATES } from "./codes.ts";
-import { spoken } from "./colours.ts";
 import { runs } from "./contact.ts";
-import { emptyGrid, fillColumn, type Grid, type Met, type State } from "./live_map.ts";
-import { alike, type Posture, type Sample } from "./samples.ts";
+import { emptyGrid, fillColumn, type Grid, type LiveTool, type Met, type Probe, type State } from "./live_map.ts";
+import type { Meta } from "./meta.ts";
+import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
 import { apart } from "./vectors.ts";
+
+export interface Judged {
+  state: State;
+  certified: boolean;
+}
 
 const SLICE_MS = 14;
 
@@ -14,17 +18,26 @@ export class SampleMap {
   /** The verdict is that no searched rotation has a free tilt, or none that is known. */
   readonly blocked: boolean;
   readonly grid: Grid;
+  /** The posture found at the sample. */
+  readonly found: Posture | null;
+  /** What a blocked posture is called at which the drawn triangles meet nothing. */
+  private readonly unsure: State;
 
   constructor(
-    private readonly app: App,
     readonly sample: Sample,
+    meta: Meta,
+    samples: Samples,
+    private readonly tool: LiveTool,
+    private readonly probe: Probe,
   ) {
-    this.blocked = ["inaccessible", "undecided", "inside_bodies"].includes(this.verdict);
-    this.grid = emptyGrid(app.meta);
-  }
-
-  private get verdict(): string {
-    return this.app.samples.verdict(this.app.cutter.id, this.sample.row);
+    const { id } = tool.cutter;
+    const verdict = samples.verdict(id, sample.row);
+    this.blocked = ["inaccessible", "undecided", "inside_bodies"].includes(verdict);
+    this.grid = emptyGrid(meta);
+    this.found = samples.posture(id, sample.row);
+    // Under or within a body: the drawn triangles do not show what they enclose.
+    const buried = samples.reason(id, sample.row) === "buried";
+    this.unsure = buried ? "buried" : verdict === "undecided" ? "undecided" : "tolerance";
   }
 
   get complete(): boolean {
@@ -34,7 +47,7 @@ export class SampleMap {
   /** Look further for a moment; the page stays responsive. */
   advance(): void {
     const end = performance.now() + SLICE_MS;
-    do fillColumn(this.grid, this.app.probe, this.app.liveTool(), this.sample);
+    do fillColumn(this.grid, this.probe, this.tool, this.sample);
     while (!this.complete && performance.now() < end);
   }
 
@@ -43,16 +56,6 @@ export class SampleMap {
     if (column >= this.grid.done) return null;
     const state = STATES[this.grid.state[column * this.grid.tilts.length + row]];
     return this.blocked && state === "free" ? this.unsure : state;
-  }
-
-  private get unsure(): State {
-    if (this.buried) return "buried";
-    return this.verdict === "undecided" ? "undecided" : "tolerance";
-  }
-
-  /** Whether the sample lies under or within a body: the drawn triangles do not tell what they enclose. */
-  private get buried(): boolean {
-    return this.app.samples.reason(this.app.cutter.id, this.sample.row) === "buried";
   }
 
   /** Free intervals of the grid at a rotation. */
@@ -79,11 +82,9 @@ export class SampleMap {
     return best;
   }
 
-  /** The state of a posture, and whether that is certified. */
-  at(posture: Posture, met: Met): Judged {
-    const found = this.app.samples.posture(this.app.cutter.id, this.sample.row);
-    const planned = this.app.plannedPosture();
-    if ((found && alike(found, posture)) || (planned && alike(planned, posture))) return { state: "free", certified: true };
+  /** The state of a posture, and whether that is certified; `planned` is that of an operation, which is. */
+  at(posture: Posture, met: Met, planned: Posture | null): Judged {
+    if ([this.found, planned].some((each) => each && alike(each, posture))) return { state: "free", certified: true };
     const column = this.column(posture.rotation);
     const searched = apart(this.grid.rotations[column], posture.rotation) < 0.02;
     return { state: this.blocked && searched && met.state === "free" ? this.unsure : met.state, certified: false };
@@ -91,7 +92,7 @@ export class SampleMap {
 
   /** A blocked posture that comes near to being free: of the last cause, the one that meets least. */
   nearest(): Posture | null {
-    const { grid, app } = this;
+    const { grid } = this;
     for (const state of OUTERMOST) {
       const cells: Posture[] = [];
       grid.rotations.forEach((rotation, column) =>
@@ -102,21 +103,11 @@ export class SampleMap {
       const step = Math.max(1, Math.ceil(cells.length / 60));
       let best: [number, Posture] | null = null;
       for (let i = 0; i < cells.length; i += step) {
-        const { depth } = app.probe.look(app.liveTool(), this.sample, cells[i], true);
+        const { depth } = this.probe.look(this.tool, this.sample, cells[i], true);
         if (!best || depth < best[0]) best = [depth, cells[i]];
       }
       if (best) return best[1];
     }
     return null;
   }
-}
-
-/** What is said of a posture: `free`, or what is in the way. */
-export function wording(app: App, { state, certified }: Judged, met: Met | null): string {
-  if (state === "free") return certified ? "free" : "nothing is met in the drawing, which is not certified";
-  if (state === "undecided") return "undecided: neither called free nor known to be forbidden";
-  const word = spoken(app.meta, state);
-  const owner = met && met.owner !== null ? app.drawn.called(met.owner) : "";
-  if (state === "fixture") return `${met?.part ?? "cutter"} meets ${owner}`;
-  return owner ? `${word} with ${owner}` : `${word}: ${app.meta.causes[state].sentence}`;
 }

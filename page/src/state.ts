@@ -1,97 +1,84 @@
-// What is shown now: cutter, colouring, sample, posture, what is lit up; and who wants to know.
+// What is shown now: cutter, colouring, sample, posture, what is lit up. Views read it and are called when it has changed; it knows none.
 
-import type { Clip } from "./clip.ts";
-import { lookOf } from "./colours.ts";
+import { type Look, lookOf } from "./colours.ts";
 import { place, type Placed } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
-import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
-import type { Eyes } from "./eyes.ts";
-import type { Drawn, Owner } from "./mesh.ts";
+import { LiveTool, type Met, Probe } from "./live_map.ts";
 import { Machine } from "./machine.ts";
+import { Drawn, type Owner } from "./mesh.ts";
 import type { Cutter, Meta, Operation, OperationPlan, Spot, Step, Vec } from "./meta.ts";
-import type { Outline } from "./outline.ts";
-import { firstMode, planOf, postureOf, PROCESS, stepOf, takenBy } from "./operations.ts";
-import type { PartView } from "./part.ts";
-import type { Picker } from "./pick.ts";
-import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
-import type { Stage } from "./stage.ts";
-import type { ToolView } from "./tool.ts";
+import { firstMode, planOf, postureOf, PROCESS, stepOf, takenBy } from "./plans.ts";
+import { type Judged, SampleMap } from "./sample_map.ts";
+import { alike, type Posture, type Sample, Samples } from "./samples.ts";
 import { cross, norm, turned } from "./vectors.ts";
 
 /** Sine of an angle between tool axes that are nearly one. */
 const NEAR = 1e-3;
 
-export interface Judged {
-  state: State;
-  certified: boolean;
-}
+/** What can change; `there` is what of the part and around it is in the picture. */
+type Change = "cutter" | "look" | "lift" | "sample" | "posture" | "hot" | "there" | "said";
 
-type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot" | "operation" | "setup";
-
-export class App {
-  cutter: Cutter;
+export class PageState {
+  readonly samples: Samples;
+  readonly drawn: Drawn;
   /** Stands in the setup that serves the sample shown. */
   readonly machine: Machine;
+  cutter: Cutter;
   mode: string;
+  /** Samples that stand out, whatever is shown; null: none. */
+  lifted: ((row: number) => boolean) | null = null;
   sample: Sample | null = null;
+  /** The postures of the sample shown. */
+  map: SampleMap | null = null;
   spot: Spot | null = null;
   posture: Posture | null = null;
   /** What stands in the way at the posture, and what is to be said of it. */
   met: Met | null = null;
-  state: Judged | null = null;
-  /** Told by the posture map, which knows what is certified. */
-  judge: (posture: Posture, met: Met) => Judged = (_, met) => ({ state: met.state, certified: false });
+  judged: Judged | null = null;
+  /** The face under the pointer; from a list, it is lit up in the picture. */
   hot: Owner | null = null;
+  lit = false;
   toolShown = true;
-  clip: Clip | null = null;
-  eyes: Eyes | null = null;
-  outline: Outline | null = null;
-  /** What is to be added to what is said next. */
-  note = "";
+  /** What was said last. */
+  said = "";
+  private madeLook: Look | null = null;
   private madeProbe: Probe | null = null;
   private readonly liveTools = new Map<string, LiveTool>();
-  private readonly told = new Map<Event, (() => void)[]>();
+  private readonly listeners = new Map<Change, (() => void)[]>();
 
-  constructor(
-    readonly meta: Meta,
-    readonly arrays: Arrays,
-    readonly samples: Samples,
-    readonly drawn: Drawn,
-    readonly stage: Stage,
-    readonly part: PartView,
-    readonly tool: ToolView,
-    readonly picker: Picker,
-    /** Say something in the status line, which is read out. */
-    readonly say: (text: string) => void,
-  ) {
+  constructor(readonly meta: Meta, readonly arrays: Arrays) {
+    this.samples = new Samples(meta, arrays);
+    this.drawn = new Drawn(meta, arrays);
+    this.machine = new Machine(meta);
     this.cutter = this.cutterOf(meta.shown);
     this.mode = firstMode(meta);
-    this.machine = new Machine(meta);
   }
 
-  on(event: Event, work: () => void): void {
-    this.told.set(event, [...(this.told.get(event) ?? []), work]);
+  on(change: Change, work: () => void): void {
+    this.listeners.set(change, [...(this.listeners.get(change) ?? []), work]);
   }
 
-  private emit(event: Event): void {
-    for (const work of this.told.get(event) ?? []) work();
+  private emit(change: Change): void {
+    for (const work of this.listeners.get(change) ?? []) work();
   }
+
+  /** Say something in the status line, which is read out. */
+  readonly say = (text: string): void => {
+    this.said = text;
+    this.emit("said");
+  };
 
   cutterOf(id: string): Cutter {
     return this.meta.cutters.find((each) => each.id === id) ?? this.meta.cutters[0];
   }
 
   get probe(): Probe {
-    this.madeProbe ??= new Probe(this.drawn, this.meta, this.machine);
-    return this.madeProbe;
+    return (this.madeProbe ??= new Probe(this.drawn, this.meta, this.machine));
   }
 
   liveTool(cutter = this.cutter): LiveTool {
-    let tool = this.liveTools.get(cutter.id);
-    if (!tool) {
-      tool = new LiveTool(cutter, this.meta);
-      this.liveTools.set(cutter.id, tool);
-    }
+    const tool = this.liveTools.get(cutter.id) ?? new LiveTool(cutter, this.meta);
+    this.liveTools.set(cutter.id, tool);
     return tool;
   }
 
@@ -112,15 +99,21 @@ export class App {
     if (this.sample && this.plan !== before) this.select(this.sample.row, this.spot);
   }
 
-  repaint(): void {
-    const look = lookOf(this.meta, this.arrays, this.samples, this.mode, this.cutter.id);
-    this.part.paint(look, this.standOut);
-    this.look = look;
-    this.emit("look");
-    this.stage.request();
+  /** What the surface is coloured by. */
+  get look(): Look {
+    return (this.madeLook ??= lookOf(this.meta, this.arrays, this.samples, this.mode, this.cutter.id));
   }
 
-  look: ReturnType<typeof lookOf> | null = null;
+  repaint(): void {
+    this.madeLook = null;
+    this.emit("look");
+  }
+
+  /** Let some samples stand out; null: none. */
+  lift(mine: ((row: number) => boolean) | null): void {
+    this.lifted = mine;
+    this.emit("lift");
+  }
 
   /** The plan of operations that is shown; null where something else is. */
   get plan(): OperationPlan | null {
@@ -139,19 +132,10 @@ export class App {
     return found?.cutter === this.cutter.id ? found : null;
   }
 
-  private standOut: ((row: number) => boolean) | null = null;
-
   /** The step of the process that finishes a sample, where the process is shown. */
   stepAt(row: number): Step | null {
     const { process } = this.meta;
     return this.mode === PROCESS && process ? (process.steps[stepOf(this.arrays)(row) - 1] ?? null) : null;
-  }
-
-  /** Let some samples stand out, whatever is shown; null: none. */
-  lift(mine: ((row: number) => boolean) | null): void {
-    this.standOut = mine;
-    if (this.look) this.part.paint(this.look, this.standOut);
-    this.stage.request();
   }
 
   /** Tip and axis of the tool at the posture shown. */
@@ -161,18 +145,15 @@ export class App {
 
   /** Show a sample with the posture found there, or with its witness. */
   select(row: number | null, spot: Spot | null = null): void {
-    // A cut that was made for a hidden place ends with it.
-    this.clip?.release();
+    const { id } = this.cutter;
     this.sample = row === null ? null : this.samples.at(row);
-    this.spot = row === null ? null : (spot ?? this.spotOf(row));
-    this.posture = null;
-    this.met = null;
+    this.spot = row === null ? null : (spot ?? this.meta.spots.find((each) => each.sample === row && each.cutter === id) ?? null);
+    this.posture = this.met = null;
     const step = row === null ? null : this.stepAt(row);
-    const planned = this.operation ?? (step?.cutter === this.cutter.id ? step : null);
-    this.stand(planned?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
+    const planned = this.operation ?? (step?.cutter === id ? step : null);
+    this.stand(planned?.setup ?? (row === null ? 0 : (this.samples.setup(id, row) ?? 0)));
+    this.map = this.sample && new SampleMap(this.sample, this.meta, this.samples, this.liveTool(), this.probe);
     this.emit("sample");
-    this.emit("operation");
-    if (spot) this.emit("spot");
     this.setPosture(row === null ? null : this.startPosture(row));
   }
 
@@ -181,14 +162,17 @@ export class App {
     this.machine.stand(setup);
     if (this.drawn.setup === setup) return;
     this.drawn.setup = setup;
-    this.part.stand();
-    this.clip?.stand();
-    this.emit("setup");
-    this.stage.request();
+    this.emit("there");
   }
 
-  private spotOf(row: number): Spot | null {
-    return this.meta.spots.find((each) => each.sample === row && each.cutter === this.cutter.id) ?? null;
+  /** Hide some owners and fade others: all of them still stand in the way of tools. */
+  veil(hidden: readonly Owner[], faded: readonly Owner[]): void {
+    const { hiding, fading } = this.drawn;
+    hiding.clear();
+    fading.clear();
+    for (const owner of hidden) hiding.add(owner);
+    for (const owner of faded) fading.add(owner);
+    this.emit("there");
   }
 
   /** The posture with the axis of the operation that takes the sample shown. */
@@ -213,11 +197,7 @@ export class App {
 
   /** The posture of the operation shown, the one found, or the witness's. */
   startPosture(row: number): Posture | null {
-    const planned = this.plannedPosture();
-    if (planned) return planned;
-    const found = this.samples.posture(this.cutter.id, row);
-    if (found) return found;
-    return this.witness();
+    return this.plannedPosture() ?? this.samples.posture(this.cutter.id, row) ?? this.witness();
   }
 
   private witness(): Posture | null {
@@ -227,18 +207,14 @@ export class App {
 
   setPosture(posture: Posture | null): void {
     this.posture = posture;
-    const { sample } = this;
-    this.met = this.state = null;
-    if (sample && posture) {
-      this.tool.show(this.cutter, place(this.cutter, sample, posture));
-      this.met = this.probe.look(this.liveTool(), sample, posture, true);
-      this.state = this.judge(posture, this.met);
+    this.met = this.judged = null;
+    if (this.map && posture) {
+      this.met = this.probe.look(this.liveTool(), this.map.sample, posture, true);
+      this.judged = this.map.at(posture, this.met, this.plannedPosture());
       // What is certified to be free stays so, whatever the coarse triangles say.
-      if (this.state.state === "free") this.met = null;
+      if (this.judged.state === "free") this.met = null;
     }
-    if (!sample || !posture || !this.toolShown) this.tool.hide();
     this.emit("posture");
-    this.light();
   }
 
   /** The place and the name of what is in the way: of the witness at its posture, else of the drawn triangles. */
@@ -262,26 +238,11 @@ export class App {
     return this.posture !== null && witness !== null && alike(this.posture, witness);
   }
 
-  /** Told of the face under the pointer; from a list, it is lit up in the picture. */
   hover(owner: Owner | null, lit = false): void {
     if (owner === this.hot && lit === this.lit) return;
     this.hot = owner;
+    this.lit = lit;
     this.emit("hot");
-    if (this.lit !== lit || lit) {
-      this.lit = lit;
-      this.light();
-    }
-  }
-
-  private lit = false;
-
-  private light(): void {
-    const way = this.inTheWay()?.owner ?? null;
-    // The face of the sample itself keeps its verdicts in view: what is in the way of it there has a mark.
-    const own = way !== null && this.sample !== null && this.meta.faces[way]?.number === this.sample.face;
-    this.part.light(this.lit ? this.hot : null, own ? null : way);
-    this.outline?.show(way);
-    this.stage.request();
   }
 
   showTool(shown: boolean): void {
