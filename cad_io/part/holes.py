@@ -8,7 +8,7 @@ islands, slots, fillets, bosses, and walls of closed cavities are none.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import FaceInfo, Floats, Orientation, Record, Triangles
+from cad_io.arrays import FaceInfo, Floats, Orientation, Record, SizeNote, Triangles
 from cad_io.graphs import connected
 from cad_io.kernel import may_refuse
 
@@ -89,6 +89,8 @@ class Hole(Record):
     floor: tuple[int, ...] = ()
     #: All that is wider, the widest first.
     steps: tuple[Step, ...] = ()
+    #: Sizes that the file states of its faces; of those that are not of its narrowest cylinder the notes alone.
+    sizes: tuple[SizeNote, ...] = ()
 
 
 class _Line(NamedTuple):
@@ -365,7 +367,16 @@ class _Finder:
             depth=-lowest, through=not closed, bottom=bottom, cone=angle, countersink=max(sinks, default=None),
             counterbore=max(bores, default=None), axis=way * line.direction, place=line.point + way * top * line.direction,
             floor=tuple(sorted(ring.number for ring in far if ring.wide <= radius + near)) if closed else (), steps=tuple(steps),
+            sizes=tuple(self._stated(numbers, {ring.number for ring in every})),
         )  # fmt: skip
+
+    def _stated(self, core: set[int], every: set[int]) -> Iterator[SizeNote]:
+        """Sizes that the file states of a hole."""
+        for each in self.part.sizes:
+            if core.intersection(each.faces):
+                yield each
+            elif every.intersection(each.faces) and each.notes:
+                yield SizeNote(each.faces, notes=each.notes)
 
     def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
         """Whether something stands on the floor of a hole: whatever begins there, but for other holes."""

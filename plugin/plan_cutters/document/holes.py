@@ -9,8 +9,18 @@ from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.thread import thread_in, tolerance_in
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, MissingEntry, StrokeEntry
+from plan_cutters.plan_file.holes import (
+    CounterboreEntry,
+    CountersinkEntry,
+    DrillingStep,
+    HoleEntry,
+    MissingEntry,
+    StrokeEntry,
+    ThreadEntry,
+    ToleranceEntry,
+)
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
 from plan_cutters.scene.preparation import Prepared
@@ -65,10 +75,12 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
             size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
+    threads = [thread_in(hole.sizes, hole.diameter) for hole in ready.holes]
     steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
+        thread = threads[_in_order(number)[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
         steps.append(
@@ -77,7 +89,8 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
                 holes=[_stroke(place, each) for place, each in same[key]],
                 setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
-                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed),
+                thread="" if thread is None else thread.name, pitch_mm=use.drill.pitch,
+                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed, use.drill.kind),
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
@@ -126,6 +139,7 @@ def _angles(ready: Prepared, setup: int, axis: Floats) -> dict[str, float] | Non
 
 def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
     by, sink, bore = made.by, hole.countersink, hole.counterbore
+    thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
     return HoleEntry(
         faces=[f"F{number}" for number in hole.faces],
         diameter_mm=round(hole.diameter, _DIGITS),
@@ -141,6 +155,12 @@ def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
         drilled=by is not None,
         tool=None if by is None else by.id,
         missing=[_missing(each) for each in made.missing],
+        thread=None
+        if thread is None
+        else ThreadEntry(name=thread.name, diameter_mm=thread.diameter, pitch_mm=thread.pitch, fit=thread.fit, left=thread.left),
+        tolerance=None
+        if tolerance is None
+        else ToleranceEntry(nominal_mm=tolerance.nominal, lower_mm=tolerance.lower, upper_mm=tolerance.upper, fit=tolerance.fit),
     )
 
 
@@ -151,6 +171,7 @@ def _missing(each: Missing) -> MissingEntry:
         depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
         angle_deg=None if each.angle is None else _degrees(each.angle),
         why=each.why,
+        name=each.name,
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from plan_cutters.domain.drill import CONES, Why
 from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
-from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry
+from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry, ToleranceEntry
 from plan_cutters.plan_file.model import Plan
 
 #: Groups that are described; where there are more, their diameters are named: so many of these.
@@ -58,17 +58,19 @@ _WHY: dict[Why, str] = {
 
 def missing_words(missing: MissingEntry) -> str:
     """Name the tool that is missing by its usual size, and say why others of it do not do."""
+    if missing.thing == "thread":
+        return f"tap {missing.name}{f' ({_WHY[missing.why]})' if missing.why else ''}"
     deep = "" if missing.depth_mm is None else f" x {math.ceil(reported(missing.depth_mm) - _WHOLE)}"
     angle = "" if missing.angle_deg is None else f" x {missing.angle_deg:.4g} deg"
     what = "" if missing.thing == "hole" else f"{missing.thing} "
-    why = f" ({_WHY[missing.why]})" if missing.why else ""
+    why = f" ({_WHY[missing.why]})" if missing.why else f" {missing.name}" if missing.name else ""
     return f"{what}{size(missing.diameter_mm)}{deep if missing.thing == 'hole' else ''}{angle}{why}"
 
 
 def drilling_words(step: DrillingStep) -> str:
     """The tool of a step that drills, with what it leaves."""
     deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
-    return f"{step.kind} {size(step.diameter_mm)}{deep}"
+    return f"{step.kind} {step.thread or size(step.diameter_mm)}{deep}"
 
 
 def group_words(group: list[HoleEntry]) -> str:
@@ -79,9 +81,17 @@ def group_words(group: list[HoleEntry]) -> str:
     first, number = group[0], len(group)
     times = f"{number} x " if number > 1 else ""
     ends = ", through" if first.through else ""
+    needed = "" if first.tolerance is None else f" {first.tolerance.fit or limits(first.tolerance)}"
+    thread = "" if first.thread is None else f", {first.thread.name}"
     sink = "" if first.countersink is None else f", countersink {size(first.countersink.diameter_mm)}"
     bore = "" if first.counterbore is None else f", counterbore {size(first.counterbore.diameter_mm)}"
-    return f"{times}{size(first.diameter_mm)}, {reported(first.depth_mm):.4g} deep{ends}{sink}{bore}"
+    return f"{times}{size(first.diameter_mm)}{needed}, {reported(first.depth_mm):.4g} deep{ends}{sink}{bore}{thread}"
+
+
+def limits(tolerance: ToleranceEntry) -> str:
+    """The deviations of a diameter, as `+0.02 -0.01`."""
+    both = [each for each in (tolerance.upper_mm, tolerance.lower_mm) if each is not None]
+    return " ".join(f"{reported(each):+.4g}" if each else "0" for each in both)
 
 
 def size(diameter: float) -> str:
