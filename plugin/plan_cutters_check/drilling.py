@@ -13,8 +13,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
+from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Finding, Loose
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, held
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, carried, frame_of, held, other_angles
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
@@ -65,7 +66,7 @@ def entries(question: Question) -> list[Any]:
             "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
             "seconds": None if feed is None else number * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
-            "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
+            **({} if feed is None else {"feed_mm_min": feed}), "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
         })  # fmt: skip
     return steps
 
@@ -104,8 +105,18 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     degrees = np.array([[float(step["angles_deg"][name]) for name in machine.names]], float).reshape(1, -1)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis = axes_of(machine, setup, degrees)[0].tolist()
-    return {"angles_deg": Exactly(step["angles_deg"]), "axis": [Between(x - _AXIS, x + _AXIS) for x in axis]}
+    axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)
+    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
+    x = (x - (x @ axis) * axis) / max(float(np.linalg.norm(x - (x @ axis) * axis)), 1e-300)
+    others = other_angles(question, step["setup"], degrees[0])
+    other = dict(zip(machine.names, others[0], strict=True)) if others else None
+    words = words_of(machine, step, np.array([x, np.cross(axis, x), axis]) @ frame.T, other)
+    near = {name: [Between(a - _AXIS, a + _AXIS) for a in row.tolist()] for name, row in (("x", x), ("z", axis))}
+    return {
+        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"], "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
+        # What the machine has no word for is not written.
+        **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
+    }  # fmt: skip
 
 
 def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:

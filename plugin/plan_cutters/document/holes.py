@@ -23,10 +23,13 @@ from plan_cutters.plan_file.holes import (
 )
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.planes import tilted_plane
+from plan_cutters.scene.preparation import Prepared, places
 
 #: Decimals of lengths and angles: behind them there is noise alone.
 _DIGITS = 6
+#: Angles that differ by less are one, deg.
+_SAME = 0.01
 #: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 #: Tools in the order in which they come in a setup.
@@ -87,10 +90,10 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
             DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
                 holes=[_stroke(place, each) for place, each in same[key]],
-                setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
+                setup=use.setup, axis=vector(use.axis + 0.0), **_turned(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
                 thread="" if thread is None else thread.name, pitch_mm=use.drill.pitch,
-                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed, use.drill.kind),
+                feed_mm_min=feed, seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed, use.drill.kind),
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
@@ -127,14 +130,20 @@ def _rounded(point: Floats) -> tuple[float, float, float]:
     return vector(np.round(point, _DIGITS) + 0.0)
 
 
-def _angles(ready: Prepared, setup: int, axis: Floats) -> dict[str, float] | None:
-    """Angles of the rotary axes that hold a tool axis, deg; None where no axes are known."""
-    kinematics = ready.setups[setup].kinematics
-    if kinematics is None:
-        return None
-    both, taken, _ = kinematics.positions(axis[None])
-    angles = np.round(np.degrees(both[0, int(taken[0])]), 3) + 0.0
-    return dict(zip((each.name for each in ready.options.machine.rotary or ()), angles.tolist(), strict=True))
+def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
+    """Angles of the rotary axes that hold a tool axis, deg, with the plane and its words; None where no axes are known."""
+    conditions = ready.setups[setup]
+    if conditions.kinematics is None:
+        return {"angles_deg": None}
+    both, taken, _ = conditions.kinematics.positions(axis[None])
+    names, shown = [each.name for each in ready.options.machine.rotary or ()], np.round(np.degrees(both[0]), 3) + 0.0
+    own, other = (dict(zip(names, shown[k].tolist(), strict=True)) for k in (int(taken[0]), 1 - int(taken[0])))
+    # Another solution is one that differs on the machine.
+    apart = np.abs(np.remainder(np.subtract([*other.values()], [*own.values()]) + 180.0, 360.0) - 180.0)
+    beside = other if apart.max(initial=0.0) > _SAME else None
+    place, angle = places(ready.options)[setup], both[0, int(taken[0])]
+    frame, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, beside)
+    return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 
 def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:

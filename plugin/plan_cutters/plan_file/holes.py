@@ -12,6 +12,14 @@ def _none(entry: object) -> bool:
     return entry is None
 
 
+class WorkplaneEntry(Frozen):
+    """The tilted plane that a control turns to: z is the tool axis, x the machine's X turned with it. Part coordinates."""
+
+    origin: Vector = Field(description="mm: the setup's origin, or the part's zero where the setup names none")
+    x: Vector
+    z: Vector
+
+
 class CountersinkEntry(Frozen):
     """The widest cone at a mouth of a hole."""
 
@@ -107,6 +115,10 @@ class DrillingStep(Frozen):
     setup: int = Field(description="0 is the first")
     axis: Vector = Field(description="unit tool axis")
     angles_deg: dict[str, float] | None = Field(description="of the rotary axes; null where the machine has none that are known")
+    frame: WorkplaneEntry | None = Field(default=None, exclude_if=_none, description="where `angles_deg` are known")
+    g68_2: str | None = Field(default=None, exclude_if=_none, description="as of an operation: the tilted plane")
+    g53_1: str | None = Field(default=None, exclude_if=_none, description="as of an operation: the turn onto it")
+    rotary_words: str | None = Field(default=None, exclude_if=_none, description="as of an operation: in place of both")
     diameter_mm: float = Field(description="that it leaves")
     depth_mm: float = Field(
         description="of its full width under each mouth, with what the point goes further through a hole; of a countersink or "
@@ -114,6 +126,7 @@ class DrillingStep(Frozen):
     )
     thread: str = Field(default="", exclude_if=lambda name: not name, description="that a tap cuts, as M4")
     pitch_mm: float | None = Field(default=None, exclude_if=_none, description="of a tap")
+    feed_mm_min: float | None = Field(default=None, exclude_if=_none, description="of its file, else that was given")
     seconds: float | None = Field(
         description="for all holes 1.3 times the depth at the feed, twice that of a tap; null where no feed is known"
     )

@@ -7,7 +7,7 @@ import json
 import math
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,8 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
+from plan_cutters.plan_file.holes import DrillingStep
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.report.protocol import Judged
@@ -206,7 +208,8 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", *(f"{name}_deg" for name in entry.rotary),
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words"])  # fmt: skip
+                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words", "diameter_mm", "depth_mm", "pitch_mm",
+                       "mouths_mm"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
@@ -216,7 +219,22 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
                                " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
-                               each.rotary_words or ""])  # fmt: skip
+                               each.rotary_words or "", "", "", "", ""])  # fmt: skip
+        for number, step in _drilling(result.plan):
+            turned = [(step.angles_deg or {}).get(name, "") for name in entry.rotary]
+            faces = dict.fromkeys(face for stroke in step.holes for face in result.plan.holes[stroke.hole].faces)
+            mouths = "; ".join(" ".join(f"{_rounded(x)}" for x in stroke.mouth_mm) for stroke in step.holes)
+            rows.writerow(["drilling", f"step {number}", "fixed", step.kind, step.tool, step.setup + 1, *turned,
+                           *(_rounded(x, 9) for x in step.axis), "", "", "", "", _rounded(step.seconds),
+                           _rounded(step.link_seconds), " ".join(faces), step.g68_2 or "", step.g53_1 or "",
+                           step.rotary_words or "", _rounded(step.diameter_mm), _rounded(step.depth_mm),
+                           _rounded(step.pitch_mm), mouths])  # fmt: skip
+
+
+def _drilling(plan: Plan) -> Iterator[tuple[int, DrillingStep]]:
+    """Steps of the process that drill, by their numbers."""
+    if plan.process is not None:
+        yield from enumerate(plan.process.drilling, len(plan.process.steps) + 1)
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:

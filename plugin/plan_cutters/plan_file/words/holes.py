@@ -5,13 +5,15 @@ from collections import Counter
 from collections.abc import Iterator
 
 from plan_cutters.domain.drill import CONES, Why
-from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
+from plan_cutters.domain.drill_sizes import inch_name
+from plan_cutters.domain.figures import count, duration, in_inches, joined, listed, percent, reported, reporting
 from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry, ToleranceEntry
 from plan_cutters.plan_file.model import Plan
 
 #: Groups that are described; where there are more, their diameters are named: so many of these.
 _GROUPS, _DIAMETERS = 3, 10
-#: A length that is more than a whole one by less is that.
+#: Lengths of drills in inches are whole ones of this; a length that is more than a whole one by less is that.
+_STEP = 0.05
 _WHOLE = 1e-6
 
 
@@ -60,7 +62,8 @@ def missing_words(missing: MissingEntry) -> str:
     """Name the tool that is missing by its usual size, and say why others of it do not do."""
     if missing.thing == "thread":
         return f"tap {missing.name}{f' ({_WHY[missing.why]})' if missing.why else ''}"
-    deep = "" if missing.depth_mm is None else f" x {math.ceil(reported(missing.depth_mm) - _WHOLE)}"
+    step = _STEP if in_inches() else 1.0
+    deep = "" if missing.depth_mm is None else f" x {step * math.ceil(reported(missing.depth_mm) / step - _WHOLE):.4g}"
     angle = "" if missing.angle_deg is None else f" x {missing.angle_deg:.4g} deg"
     what = "" if missing.thing == "hole" else f"{missing.thing} "
     why = f" ({_WHY[missing.why]})" if missing.why else f" {missing.name}" if missing.name else ""
@@ -95,8 +98,16 @@ def limits(tolerance: ToleranceEntry) -> str:
 
 
 def size(diameter: float) -> str:
-    """A diameter as tools are called."""
-    return f"D{reported(diameter):.4g}"
+    """A diameter as tools are called: of inches with the name of the drill, if there is one of that size."""
+    name = inch_name(reported(diameter)) if in_inches() else ""
+    return f"D{reported(diameter):.4g}{f' ({name})' if name else ''}"
+
+
+@reporting(lambda plan: plan.effective.units)
+def missing_tools(plan: Plan) -> list[str]:
+    """What no tool of the libraries makes of any hole, each once; nothing where they have no tools for holes."""
+    needed = any(library.drills for library in plan.libraries)
+    return [*dict.fromkeys(missing_words(each) for hole in plan.holes for each in hole.missing)] if needed else []
 
 
 def drilled_share(plan: Plan) -> float | None:
