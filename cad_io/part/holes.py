@@ -4,7 +4,7 @@ A hole is known by its narrowest cylinder. Faces next to it that are turned abou
 bottom (a plane, a cone, a sphere, or a torus that rounds the corner), countersinks, and counterbores with their floors. Faces of
 one cylinder count as one wall, whether they share edges, only touch, or are parted by another hole that crosses. Nothing stands
 in a hole: lines along its axis meet no face between its ends, and whatever ends it is a bottom that is known. So pockets with
-islands, slots, fillets, bosses, and walls of closed cavities are none.
+islands, slots, fillets, bosses, pipes with bends, and walls of closed cavities are none.
 """
 
 from collections import Counter, defaultdict
@@ -339,6 +339,8 @@ class _Finder:
         }
         if any(self._has_island(ring, rings) for each in beyond.values() for ring in each if ring.kind == "plane"):
             return None
+        if any(self._bends(n, radius, near) for ring in core for n in self.part.neighbours[ring.number - 1] if n not in rings):
+            return None
         ends = {up: _bottom(each, radius, near, up) for up, each in beyond.items()}
         closed = self._closed(line, radius, ends, core, {*rings})
         # A bottom that a cavity breaks through ends the hole all the same.
@@ -377,6 +379,12 @@ class _Finder:
                 yield each
             elif every.intersection(each.faces) and each.notes:
                 yield SizeNote(each.faces, notes=each.notes)
+
+    def _bends(self, number: int, radius: float, near: float) -> bool:
+        """Whether a wall goes on in a face as wide as it, round a bend: it is that of a pipe."""
+        info = self.info(number)
+        tube = info.carrier.minor_radius if info.shape == "torus" and info.carrier is not None else None
+        return tube is not None and abs(tube - radius) <= near and self.hollow(number)
 
     def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
         """Whether something stands on the floor of a hole: whatever begins there, but for other holes."""
