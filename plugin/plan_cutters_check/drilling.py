@@ -66,7 +66,8 @@ def entries(question: Question) -> list[Any]:
             "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
             "seconds": None if feed is None else number * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
-            **({} if feed is None else {"feed_mm_min": feed}), "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
+            **({} if feed is None else {"feed_mm_min": feed}), "index_seconds": index,
+            "link_seconds": number * document["effective"]["link_time_s"],
         })  # fmt: skip
     return steps
 
