@@ -114,7 +114,8 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     words = words_of(machine, step, np.array([x, np.cross(axis, x), axis]) @ frame.T, other)
     near = {name: [Between(a - _AXIS, a + _AXIS) for a in row.tolist()] for name, row in (("x", x), ("z", axis))}
     return {
-        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"], "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
+        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"],
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
         # What the machine has no word for is not written.
         **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
     }  # fmt: skip
@@ -146,7 +147,7 @@ def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) 
 
 
 def hole(question: Question, number: int) -> dict[str, Any]:
-    """Reckon which tool `holes` must name for one, by the steps that drill it; and its thread and tolerance, by the part's file."""
+    """Reckon which tool `holes` must name for one, by the steps that drill it; its thread and tolerance, by the part's file."""
     document = question.document
     written, tools = document["holes"][number], list[str]()
     for step in document["process"].get("drilling", []):
