@@ -79,8 +79,9 @@ class _Sizes:
             elif "lower limit" in values and "upper limit" in values:
                 # Limits alone: the middle has no name.
                 nominal, lower, upper = values["lower limit"], 0.0, values["upper limit"] - values["lower limit"]
-            lengths = [None if each is None else round(twice * each, 9) for each in (nominal, lower, upper)]
-            yield SizeNote((), *lengths, fit, tuple(each for each in notes if each not in _NO_REQUIREMENT)), tuple(faces)
+            wide, low, high = (None if each is None else round(twice * each, 9) for each in (nominal, lower, upper))
+            texts = tuple(each for each in notes if each not in _NO_REQUIREMENT)
+            yield SizeNote((), wide, low, high, fit, texts), tuple(faces)
 
     def _by_first(self, *kinds: str) -> Mapping[str, list[str]]:
         """Statements of some kinds by the sizes that they are about."""

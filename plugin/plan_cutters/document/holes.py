@@ -140,9 +140,9 @@ def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
     own, other = (dict(zip(names, shown[k].tolist(), strict=True)) for k in (int(taken[0]), 1 - int(taken[0])))
     # Another solution is one that differs on the machine.
     apart = np.abs(np.remainder(np.subtract([*other.values()], [*own.values()]) + 180.0, 360.0) - 180.0)
-    beside = other if apart.max(initial=0.0) > _SAME else None
+    second = other if apart.max(initial=0.0) > _SAME else None
     place, angle = places(ready.options)[setup], both[0, int(taken[0])]
-    frame, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, beside)
+    frame, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
     return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 

@@ -164,20 +164,21 @@ def _drill(tool: Listed, kind: Kind, ask: Ask) -> Entry:
     except (UnfitError, CutterError) as error:
         why = cause_of(error) if isinstance(error, CutterError) else str(error)
         return tool.entry(unused=f"{kind}: {why}")
-    pitch, left = _pitch(tool, body) if kind == "tap" else (None, False)
-    return tool.entry(drill=Drill(kind, body, math.radians(tool.values["SIG"]) if "SIG" in tool.values else None, pitch, left))
+    pitch, reverse = _pitch(tool, body) if kind == "tap" else (None, False)
+    point = math.radians(tool.values["SIG"]) if "SIG" in tool.values else None
+    return tool.entry(drill=Drill(kind, body, point, pitch, reverse))
 
 
 def _pitch(tool: Listed, body: Cutter) -> tuple[float | None, bool]:
     """The pitch of a tap, mm, or that of the thread in its name, and whether it turns to the left."""
-    left, named = tool.left or "left" in tool.kind.lower(), thread_of(tool.name, whole=False)
+    reverse, named = tool.reverse or "left" in tool.kind.lower(), thread_of(tool.name, whole=False)
     if "TP" not in tool.values:
         if named is None or abs(named.diameter - 2.0 * body.radius) > _NAMED:
             tool.notes.append(f"{tool.word('TP')} is missing (the pitch of its thread): it taps no hole")
-            return None, left
+            return None, reverse
         tool.notes.append(f"no {tool.word('TP')}: the pitch of {named.name}, as its name has it, is taken")
-        return named.pitch, left or named.left
-    return tool.values["TP"], left
+        return named.pitch, reverse or named.left
+    return tool.values["TP"], reverse
 
 
 def cause_of(error: CutterError) -> str:

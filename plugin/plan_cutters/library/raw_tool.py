@@ -217,7 +217,7 @@ class Listed:
     doubts: list[str] = field(default_factory=list)  #: Fields that can mean different tools.
     notes: list[str] = field(default_factory=list)
     needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
-    left: bool = False  #: A tap of a left-hand thread.
+    reverse: bool = False  #: A tap of a left-hand thread.
     flutes_everywhere: bool = False  #: Its drawing is as wide everywhere: what states no flutes has them up to its holder.
     stated: Stated | None = None
     feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.

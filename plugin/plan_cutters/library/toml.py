@@ -179,7 +179,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     tool.take("TA", model.TA, "TA", _degrees)
     tool.take("SIG", model.SIG, "SIG")
     tool.take("TP", model.TP, "TP")
-    tool.left = model.HAND == "L"
+    tool.reverse = model.HAND == "L"
     if model.SIG is not None and model.type not in KINDS:
         tool.faults.append(f"SIG: a {model.type} has no point as a drill has; leave it out")
     if model.type != "tap" and (word := "TP" if model.TP is not None else "HAND" if model.HAND is not None else ""):
