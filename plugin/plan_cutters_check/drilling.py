@@ -166,13 +166,13 @@ def _stated(sizes: Sequence[SizeNote], written: Mapping[str, Any]) -> dict[str, 
         result["tolerance"] = tolerance if known else "a tolerance that the part's file states"
     if (thread := written.get("thread")) is not None:
         notes = [re.sub(r"[\s#]", "", note).replace(",", ".") for each in mine for note in each.notes]
-        name, turns = re.sub(r"[\s#]", "", thread["name"]), re.search(r"-(\d+)", thread["name"])
+        name, turns = re.sub(r"[\s#]", "", thread["name"]), re.search(r"-(\d+)\s*UN", thread["name"])
         metric, pitch = re.match(r"M([\d.]+)(?:x([\d.]+))?", thread["name"]), thread["pitch_mm"]
-        alike = (
-            abs(_INCH / int(turns[1]) - pitch) <= _ROUNDED if turns
-            else metric and float(metric[1]) == thread["diameter_mm"] and float(metric[2] or pitch) == pitch
-        )  # fmt: skip
-        known = alike and any(name in note and thread["fit"] in note and ("LH" in note) == thread["left"] for note in notes)
+        if turns is not None:
+            known = abs(_INCH / int(turns[1]) - pitch) <= _ROUNDED
+        else:
+            known = metric is not None and (float(metric[1]), float(metric[2] or pitch)) == (thread["diameter_mm"], pitch)
+        known = known and any(name in note and thread["fit"] in note and ("LH" in note) == thread["left"] for note in notes)
         result["thread"] = thread if known else "a thread that the part's file states"
     return result
 
