@@ -20,6 +20,7 @@ from plan_cutters.plan_file.holes import (
     StrokeEntry,
     ThreadEntry,
     ToleranceEntry,
+    WorkplaneEntry,
 )
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
@@ -142,7 +143,8 @@ def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
     apart = np.abs(np.remainder(np.subtract([*other.values()], [*own.values()]) + 180.0, 360.0) - 180.0)
     second = other if apart.max(initial=0.0) > _SAME else None
     place, angle = places(ready.options)[setup], both[0, int(taken[0])]
-    frame, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
+    origin, x, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
+    frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
     return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 

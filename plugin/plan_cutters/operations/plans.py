@@ -30,6 +30,8 @@ from plan_cutters.operations.orientations import Indexing
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.holes import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
@@ -62,7 +64,8 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
                 None if each is None else dict(zip(where.names, each.tolist(), strict=True))
                 for each in (angle if conditions.machine.turns else None, operations[i].other_angle)
             )
-            frame, words = tilted_plane(conditions, placements[s], moved, axis, np.radians(angle), own, other)
+            origin, x, words = tilted_plane(conditions, placements[s], moved, axis, np.radians(angle), own, other)
+            frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
             planned[i] = operations[i].with_fields(
                 frame=frame, index_s=seconds, index_from=indexing.source, g68_2=words.g68_2, g53_1=words.g53_1,
                 rotary_words=words.rotary,
