@@ -153,6 +153,23 @@ class LostFace:
         return f"{known or 'a face'}: {self.why}"
 
 
+@dataclass(frozen=True, slots=True)
+class SizeNote:
+    """A diameter with its tolerance, or a note on it, as a file states it of faces."""
+
+    #: Numbers of the faces.
+    faces: tuple[int, ...]
+    #: mm
+    nominal: float | None = None
+    #: mm; deviations from the nominal value, None where none are stated.
+    lower: float | None = None
+    upper: float | None = None
+    #: Tolerance class, as `H7`; empty where none is stated.
+    fit: str = ""
+    #: Texts that stand beside it.
+    notes: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Orientation(Record):
     """Which side of each face is out of the material."""

@@ -4,11 +4,11 @@ A hole is known by its narrowest cylinder. Faces next to it that are turned abou
 bottom (a plane, a cone, a sphere, or a torus that rounds the corner), countersinks, and counterbores with their floors. Faces of
 one cylinder count as one wall, whether they share edges, only touch, or are parted by another hole that crosses. Nothing stands
 in a hole: lines along its axis meet no face between its ends, and whatever ends it is a bottom that is known. So pockets with
-islands, slots, fillets, bosses, and walls of closed cavities are none.
+islands, slots, fillets, bosses, pipes with bends, and walls of closed cavities are none.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import FaceInfo, Floats, Orientation, Record, Triangles
+from cad_io.arrays import FaceInfo, Floats, Orientation, Record, SizeNote, Triangles
 from cad_io.graphs import connected
 from cad_io.kernel import may_refuse
 
@@ -89,6 +89,8 @@ class Hole(Record):
     floor: tuple[int, ...] = ()
     #: All that is wider, the widest first.
     steps: tuple[Step, ...] = ()
+    #: Sizes that the file states of its faces; of those that are not of its narrowest cylinder the notes alone.
+    sizes: tuple[SizeNote, ...] = ()
 
 
 class _Line(NamedTuple):
@@ -337,6 +339,8 @@ class _Finder:
         }
         if any(self._has_island(ring, rings) for each in beyond.values() for ring in each if ring.kind == "plane"):
             return None
+        if any(self._bends(n, radius, near) for ring in core for n in self.part.neighbours[ring.number - 1] if n not in rings):
+            return None
         ends = {up: _bottom(each, radius, near, up) for up, each in beyond.items()}
         closed = self._closed(line, radius, ends, core, {*rings})
         # A bottom that a cavity breaks through ends the hole all the same.
@@ -365,7 +369,22 @@ class _Finder:
             depth=-lowest, through=not closed, bottom=bottom, cone=angle, countersink=max(sinks, default=None),
             counterbore=max(bores, default=None), axis=way * line.direction, place=line.point + way * top * line.direction,
             floor=tuple(sorted(ring.number for ring in far if ring.wide <= radius + near)) if closed else (), steps=tuple(steps),
+            sizes=tuple(self._stated(numbers, {ring.number for ring in every})),
         )  # fmt: skip
+
+    def _stated(self, core: set[int], every: set[int]) -> Iterator[SizeNote]:
+        """Sizes that the file states of a hole."""
+        for each in self.part.sizes:
+            if core.intersection(each.faces):
+                yield each
+            elif every.intersection(each.faces) and each.notes:
+                yield SizeNote(each.faces, notes=each.notes)
+
+    def _bends(self, number: int, radius: float, near: float) -> bool:
+        """Whether a wall goes on in a face as wide as it, round a bend: it is that of a pipe."""
+        info = self.info(number)
+        tube = info.carrier.minor_radius if info.shape == "torus" and info.carrier is not None else None
+        return tube is not None and abs(tube - radius) <= near and self.hollow(number)
 
     def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
         """Whether something stands on the floor of a hole: whatever begins there, but for other holes."""

@@ -21,7 +21,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace, SizeNote
 from cad_io.errors import ReadError
 from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
@@ -191,6 +191,8 @@ class Part:
         What is doubtful of what the file says about its unit.
     encoding : str
         What the encoding of its names is called, where the file has an older one; else empty.
+    sizes : tuple of SizeNote
+        Diameters with tolerances and notes that the file states of faces.
     aside : mapping
         By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
@@ -233,6 +235,7 @@ class Part:
         self.references: tuple[tuple[str, str | None], ...] = ()
         self.unit_readings: tuple[UnitReading, ...] = ()
         self.encoding = ""
+        self.sizes: tuple[SizeNote, ...] = ()
         self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
@@ -279,9 +282,10 @@ class Part:
     @classmethod
     def of(cls, content: PartContent, excluded: Mapping[int, str] | None = None) -> "Part":
         """Make a part from what a reader has found, by the names of the parameters and attributes, with faces set aside."""
-        part = cls(**{name: value for name, value in content.items() if name not in ("references", "unit_readings", "encoding")})
+        later = "references", "unit_readings", "encoding", "sizes"
+        part = cls(**{name: value for name, value in content.items() if name not in later})
         part.references, part.unit_readings = content.get("references", ()), content.get("unit_readings", ())
-        part.encoding = content.get("encoding", "")
+        part.encoding, part.sizes = content.get("encoding", ""), content.get("sizes", ())
         part.aside = excluded or {}
         return part
 
@@ -294,7 +298,7 @@ class Part:
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
             "picked": self.picked, "lost": self.lost, "references": self.references,
-            "unit_readings": self.unit_readings, "encoding": self.encoding,
+            "unit_readings": self.unit_readings, "encoding": self.encoding, "sizes": self.sizes,
         }  # fmt: skip
 
     def __repr__(self) -> str:

@@ -15,7 +15,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cad_io.arrays import LostFace
+from cad_io.arrays import LostFace, SizeNote
 from cad_io.kernel import explore, shape_map
 from cad_io.kernel.shapes import Node
 from cad_io.units import UnitReading
@@ -25,8 +25,8 @@ Colour = tuple[float, float, float]
 
 @dataclass
 class Read:
-    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers; the encoding of names,
-    where it is an older one.
+    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers; sizes that are stated of
+    faces; the encoding of names, where it is an older one.
     """
 
     shape: TopoDS_Shape
@@ -38,6 +38,7 @@ class Read:
     lost: list[LostFace] = field(default_factory=list)
     unit_readings: tuple[UnitReading, ...] = ()
     encoding: str = ""
+    sizes: tuple[SizeNote, ...] = ()
 
 
 class DroppedNames(NamedTuple):

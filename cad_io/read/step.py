@@ -30,10 +30,11 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cad_io.arrays import LostFace
+from cad_io.arrays import LostFace, SizeNote
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
 from cad_io.kernel.shapes import as_one, unwrapped
+from cad_io.read import size_notes
 from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
 from cad_io.read.faults import Model, open_border, type_of
 from cad_io.read.step_text import adopted, readable
@@ -123,7 +124,9 @@ class Loaded:
         Raises ReadError where it holds no face that can be read.
         """
         traced = traced or bool(self.faults)
-        real = self._mark() if traced else {}
+        # What is read in another unit than its own has no sizes that are known.
+        sizes = size_notes.stated(self.data) if self.unit is None else []
+        real = self._mark() if traced or sizes else {}
         repaired = repair(self.model, self.faults if self.careful else ()) if traced else {}
         try:
             result = self._shape()
@@ -136,10 +139,13 @@ class Loaded:
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
             if made >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
+                if sizes:
+                    result.sizes = self._numbered(sizes, self._unmark(result, faces(result.shape), real))
                 return result
             return self._again().transfer(traced=True)
         shapes = faces(result.shape)
         numbers = self._unmark(result, shapes, real)
+        result.sizes = self._numbered(sizes, numbers)
         scale = in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
         unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, scale)
         result.lost = unread.found()
@@ -280,6 +286,11 @@ class Loaded:
             if name and name != "NONE":
                 result.names.update(dict.fromkeys(numbers.get(number, ()), name))
         return dict(numbers)
+
+    def _numbered(self, sizes: Any, numbers: dict[int, list[int]]) -> tuple[SizeNote, ...]:
+        """Sizes that are stated, with the numbers of their faces in the part."""
+        idents = self._idents() if sizes else {}
+        return size_notes.numbered(sizes, {idents[n]: each for n, each in numbers.items() if n in idents})
 
     def _idents(self) -> dict[int, str]:
         """Return the names (`#12`) of the entities in the file, by number. The kernel knows them, but does not give them."""

@@ -13,6 +13,8 @@ from .words import length, tr
 MILLS = ("endmill", "ballend", "bullnose", "torus", "vbit", "v-bit", "chamfer")
 #: Fields of the panel that fill what a bit does not state.
 STICK_OUT, HOLDER = "stick_out", "holder"
+#: In the name of the controller that FreeCAD puts into each new job.
+DEFAULT = "Default_Tool"
 #: The line for both fields where the same bits need them.
 BOTH = "both"
 
@@ -33,6 +35,8 @@ class Bit:
         mm from tip to holder; None: not stated.
     held : bool
         Whether it names its holder.
+    untouched : bool
+        Whether FreeCAD put it into a job of itself, and nobody used it.
     """
 
     name: str
@@ -41,17 +45,20 @@ class Bit:
     flutes: float = 0.0
     stick_out: float | None = None
     held: bool = False
+    untouched: bool = False
 
 
 def bits(document) -> list[Bit]:
     """The tool bits of a document, in its order."""
-    return [_bit(each) for each in document.Objects if host.bit_shape(each)]
+    jobs = [each for each in document.Objects if host.is_job(each)]
+    unused = {getattr(held.Tool, "Name", "") for job in jobs for held in getattr(job.Tools, "Group", ()) if _untouched(held, job)}
+    return [_bit(each, each.Name in unused) for each in document.Objects if host.bit_shape(each)]
 
 
-def _bit(thing) -> Bit:
+def _bit(thing, untouched: bool = False) -> Bit:
     flutes = next((value for word in ("CuttingEdgeHeight", "CuttingEdgeLength") if (value := getattr(thing, word, None))), 0.0)
     return Bit(thing.Name, thing.Label, host.bit_shape(thing) in MILLS, float(getattr(flutes, "Value", flutes)),
-               host.stick_out(thing), bool(getattr(thing, "ToolHolder", "")))  # fmt: skip
+               host.stick_out(thing), bool(getattr(thing, "ToolHolder", "")), untouched)  # fmt: skip
 
 
 def bit_of_file(path: str) -> Bit | None:
@@ -119,16 +126,26 @@ class Controller:
 
 
 def controllers(job) -> dict[str, Controller]:
-    """Tool controllers of a job, by the name of the object of the bit; of several with one bit the first that has a feed."""
+    """Tool controllers of a job, by the name of the object of the bit; of several with one bit the first that has a feed.
+
+    The one that FreeCAD puts into each new job is none of them, as long as nobody gave it a feed or an operation.
+    """
     found: dict[str, Controller] = {}
     for each in getattr(job.Tools, "Group", ()):
         bit = getattr(each, "Tool", None)
-        if bit is None or not host.bit_shape(bit):
+        if bit is None or not host.bit_shape(bit) or _untouched(each, job):
             continue
         mine = Controller(int(getattr(each, "ToolNumber", 0)), host.per_minute(getattr(each, "HorizFeed", 0.0)))
         if bit.Name not in found or (mine.feed and not found[bit.Name].feed):
             found[bit.Name] = mine
     return found
+
+
+def _untouched(controller, job) -> bool:
+    """Whether a controller is the one that FreeCAD put into the job, without a feed and without an operation."""
+    used = {getattr(getattr(each, "ToolController", None), "Name", "") for each in getattr(job.Operations, "Group", ())}
+    feed = host.per_minute(getattr(controller, "HorizFeed", 0.0))
+    return DEFAULT in controller.Name and not feed and controller.Name not in used
 
 
 def job_of(selection) -> Any:

@@ -10,7 +10,7 @@ from .windows import QtCore, QtGui
 from .words import area_of, tr
 
 #: Columns: their heads, and the part of a step that is edited in each; none is edited where that is empty.
-_COLUMNS = (("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"), ("Area, mm²", ""))
+_COLUMNS = (("Area, mm²", ""), ("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"))
 
 
 class StepsBox:
@@ -30,6 +30,9 @@ class StepsBox:
         self._run: runner.Run | None = None
         self.steps = own_process.steps_of(result.plan)
         self.form, layout = windows.box(tr("Steps"), "plan_cutters")
+        before = (result.plan.get("effective") or {}).get("process") or {}
+        # What the steps do together, where they were judged as they stand.
+        layout.addRow(windows.words(result.headline() if before else "", "steps_head"))
         self.list = QtGui.QTreeWidget()
         self.list.setObjectName("steps")
         self.list.setHeaderLabels([head for head, _ in _COLUMNS])
@@ -49,7 +52,6 @@ class StepsBox:
         self._out = windows.button(tr("Leave out"), self._leave_out, tr("The process without this step"))
         layout.addRow(windows.row(self._up, self._down, self._out))
         self.rest = QtGui.QCheckBox(tr("Plan what they leave"))
-        before = (result.plan.get("effective") or {}).get("process") or {}
         self.rest.setChecked(before.get("rest", "plan") == "plan")
         layout.addRow(self.rest)
         self.again = windows.button(tr("Judge again"), self.judge, tr("Judge these steps as they stand, in this order"))
@@ -66,12 +68,12 @@ class StepsBox:
         self.list.clear()
         for step in self.steps:
             area = "" if step.area is None else area_of(step.area)
-            item = QtGui.QTreeWidgetItem([str(step.setup), step.turned, step.cutter, step.faces, area])
+            item = QtGui.QTreeWidgetItem([area, str(step.setup), step.turned, step.cutter, step.faces])
             item.setFlags(item.flags() | QtCore.Qt.ItemIsEditable)
             for column in range(len(_COLUMNS)):
                 item.setToolTip(column, step.fault or step.faces)
             self.list.addTopLevelItem(item)
-        for column in (0, 1, 2, 4):
+        for column in (0, 1, 2, 3):
             self.list.resizeColumnToContents(column)
         self.list.setCurrentItem(self.list.topLevelItem(min(place, len(self.steps) - 1)))
         self.list.blockSignals(False)

@@ -53,8 +53,9 @@ class ToolsBox:
         layout.addRow(tr("Stick-out"), self._stick_out)
         mills = False
         for each in cam.bits(document) if document else ():
-            self._add("bit", each.name, tr("{label} (tool bit)").format(label=each.label), each.mill)
-            mills = mills or each.mill
+            ticked = each.mill and not each.untouched
+            self._add("bit", each.name, tr("{label} (tool bit)").format(label=each.label), ticked)
+            mills = mills or ticked
         for path in choices.libraries:
             self._add("file", path, os.path.basename(path), os.path.exists(path))
         for word in choices.typed:

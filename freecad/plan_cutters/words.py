@@ -68,9 +68,8 @@ def area_of(mm2: float) -> str:
 
 
 def speed(mm_per_minute: float) -> str:
-    """A feed in the units that the user chose in FreeCAD."""
-    units = App.Units
-    return str(units.Quantity(mm_per_minute / 60.0, units.Velocity).UserString)
+    """A feed as machines have it: mm or inches in a minute."""
+    return f"{mm_per_minute / (25.4 if unit() == 'in' else 1.0):.5g} {unit()}/min"
 
 
 def mm_of(text: str) -> float:

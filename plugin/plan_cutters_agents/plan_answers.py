@@ -15,12 +15,14 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from plan_cutters.domain.figures import listed
 from plan_cutters.plan_file.frozen import Vector
+from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import CutterEntry, Plan, leaves
 from plan_cutters.plan_file.operations import ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import INTERVALS, REASONS, reason
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.cutters import face_text, helping, in_the_way, main_reason, posture_text, sample_text
+from plan_cutters.plan_file.words.holes import missing_tools
 from plan_cutters.plan_file.words.names import as_fields, named
 from plan_cutters.plan_file.words.text import shown, text_of
 from plan_cutters_agents.access import CallError, Permissions
@@ -66,6 +68,10 @@ class PlanAnswer(OfPlan):
     seconds: float | None = Field(None, description="of all steps, turns and changes of cutters; null without a feed")
     steps: list[Entry] = Field([], description="of the process, in their order")
     left: list[Entry] = Field([], description="what no step finishes, the largest area first")
+    drilling: list[Entry] = Field(
+        [], description="steps that drill holes with tools of the library, by the numbers of the process"
+    )
+    missing_tools: list[str] = Field([], description="tools that holes need, and that the library has not")
     notes: list[Entry] = Field(description="what these verdicts do not say")
     files: dict[str, str] = Field({}, description="format -> path, where `out` was given")
     not_written: dict[str, str] = Field({})
@@ -144,9 +150,17 @@ def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     more: Entry = {}
     if (process := plan.process) is not None:
         more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
-                "left": [_remaining(each) for each in process.left]}  # fmt: skip
+                "left": [_remaining(each) for each in process.left],
+                "drilling": [_drilling(k, each) for k, each in enumerate(process.drilling, len(process.steps) + 1)]}  # fmt: skip
     notes = [{"code": code, "text": as_fields(text)} for code, text in every]
-    return PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
+    return PlanAnswer(
+        **_of_plan(plan, code),
+        **more,
+        missing_tools=missing_tools(plan),
+        notes=notes,
+        files=dict(files),
+        not_written=plan.not_written,
+    )
 
 
 def _step(step: ProcessStep) -> Entry:
@@ -161,6 +175,16 @@ def _step(step: ProcessStep) -> Entry:
     axis = step.axis if step.angles_deg is None else None
     more = _fields(step, "cutter", "faces", "take", "area_mm2", "share", "alone_mm2", "seconds", "clearance_mm")
     return {"setup": step.setup + 1, "mode": step.mode, "angles": step.angles_deg, "axis": axis, **more, "own": own}
+
+
+def _drilling(number: int, step: DrillingStep) -> Entry:
+    """A step that drills; setups from 1, as of `_step`."""
+    sizes = _fields(
+        step, "kind", "tool", "name", "thread", "diameter_mm", "depth_mm", "pitch_mm", "axis", "seconds", "link_seconds"
+    )
+    return {"number": number, "setup": step.setup + 1, "angles": step.angles_deg, **sizes, "holes": [
+        _fields(each, "hole", "mouth_mm", "tip_mm") for each in step.holes
+    ]}  # fmt: skip
 
 
 def _remaining(area: RemainingEntry) -> Entry:

@@ -46,7 +46,7 @@ def _process(value: Any, handler: Handler) -> Any:
 #: The planner's own steps, as a file has them.
 Process = Annotated[ProcessTable, WrapValidator(_process), WithJsonSchema({"type": "object"})]
 #: Files that a plan may write.
-Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk"]
+Format = Literal["json", "step", "glb", "merged", "part", "npz", "html", "png", "csv", "vtk"]
 
 
 def _plain(word: str) -> Any:

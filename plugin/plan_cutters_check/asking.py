@@ -223,7 +223,8 @@ def _drills(options: Options) -> dict[str, DrillSizes]:
             known = drills.get(drill.id)
             sizes = replace(sizes_of(drill.body.asked(0.0, options.holder_clearance, None)), id=drill.id)
             feed = entry.feed if known is None or known.feed is None else known.feed
-            drills[drill.id] = DrillSizes(drill.kind, sizes, drill.point, feed, drill.body.name if known is None else known.name)
+            name = drill.body.name if known is None else known.name
+            drills[drill.id] = DrillSizes(drill.kind, sizes, drill.point, feed, name, drill.pitch, drill.left)
     return drills
 
 

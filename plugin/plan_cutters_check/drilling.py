@@ -4,26 +4,32 @@ A tool for holes is put down as wide as the hole that it leaves, from above its 
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
+from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Finding, Loose
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, held
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, carried, frame_of, held, other_angles
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
 
+_INCH = 25.4
 #: Tools that cut with a cone; the way of a tool at its feed in depths of the hole.
 _CONES, _WAY = ("centre drill", "countersink"), 1.3
 #: How much wider or narrower than its hole a tool may be, mm, and as a share; by how much the angle of its cone may be off, deg.
 _WIDE, _SHARE, _POINT, _SINK = 0.05, 0.01, 3.0, 1.0
 #: What a reamer takes off: at least, mm, and at most besides as a share of its diameter.
 _ALLOWANCE, _MORE = 0.1, 0.03
+#: How much narrower than its thread the drill before a tap is, in pitches; how far a tap may go through a hole; and by how much
+#: its diameter and pitch may be off, as a share of the pitch, and mm.
+_CORE, _LEAD, _THREAD, _TAP = (0.75, 1.15), 3.0, 0.02, 0.02
 #: Lengths that are rounded when they are written, mm; parts of unit axes.
 _ROUNDED, _AXIS = 2e-5, 1e-5
 #: A tool that goes on by so much, mm, or so many tolerances, is too deep where it reaches a bottom.
@@ -58,10 +64,18 @@ def entries(question: Question) -> list[Any]:
             ],
             **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
             "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
-            "seconds": None if feed is None else number * _WAY * deep / feed * 60.0,
-            "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
+            "seconds": None if feed is None else number * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
+            **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
+            **({} if feed is None else {"feed_mm_min": feed}), "index_seconds": index,
+            "link_seconds": number * document["effective"]["link_time_s"],
         })  # fmt: skip
     return steps
+
+
+def _threaded(document: Mapping[str, Any], drill: DrillSizes, step: Mapping[str, Any]) -> dict[str, str]:
+    """The thread that a tap cuts, as the holes of its step have it."""
+    names = {(document["holes"][each["hole"]].get("thread") or {"name": ""})["name"] for each in step["holes"]}
+    return {"thread": names.pop() if len(names) == 1 else "one thread"} if drill.kind == "tap" else {}
 
 
 def _timed(document: Mapping[str, Any]) -> bool:
@@ -92,8 +106,19 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     degrees = np.array([[float(step["angles_deg"][name]) for name in machine.names]], float).reshape(1, -1)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis = axes_of(machine, setup, degrees)[0].tolist()
-    return {"angles_deg": Exactly(step["angles_deg"]), "axis": [Between(x - _AXIS, x + _AXIS) for x in axis]}
+    axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)
+    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
+    x = (x - (x @ axis) * axis) / max(float(np.linalg.norm(x - (x @ axis) * axis)), 1e-300)
+    others = other_angles(question, step["setup"], degrees[0])
+    other = dict(zip(machine.names, others[0], strict=True)) if others else None
+    words = words_of(machine, step, np.array([x, np.cross(axis, x), axis]) @ frame.T, other)
+    near = {name: [Between(a - _AXIS, a + _AXIS) for a in row.tolist()] for name, row in (("x", x), ("z", axis))}
+    return {
+        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"],
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
+        # What the machine has no word for is not written.
+        **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
+    }  # fmt: skip
 
 
 def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:
@@ -121,13 +146,41 @@ def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) 
     return {"drilling": drilling, "seconds": sum(made.values()), **made}
 
 
-def hole(document: Mapping[str, Any], number: int) -> dict[str, Any]:
-    """Reckon which tool `holes` must name for one, by the steps that drill it."""
+def hole(question: Question, number: int) -> dict[str, Any]:
+    """Reckon which tool `holes` must name for one, by the steps that drill it; its thread and tolerance, by the part's file."""
+    document = question.document
     written, tools = document["holes"][number], list[str]()
     for step in document["process"].get("drilling", []):
-        through = abs(step["diameter_mm"] - written["diameter_mm"]) <= _ROUNDED and step["kind"] in ("drill", "reamer")
+        alike = abs(step["diameter_mm"] - written["diameter_mm"]) <= _ROUNDED or _is_core(written, step["diameter_mm"])
+        through = alike and step["kind"] in ("drill", "reamer")
         tools += [step["tool"]] if through and any(each["hole"] == number for each in step["holes"]) else []
-    return {"tool": tools[-1] if tools else None, "drilled": bool(tools)}
+    return {"tool": tools[-1] if tools else None, "drilled": bool(tools), **_stated(question.part.sizes, written)}
+
+
+def _stated(sizes: Sequence[SizeNote], written: Mapping[str, Any]) -> dict[str, Any]:
+    """What the part's file states on the faces of a hole; whether a note is left out is not looked at."""
+    mine, result = [each for each in sizes if {f"F{n}" for n in each.faces}.intersection(written["faces"])], dict[str, Any]()
+    if (tolerance := written.get("tolerance")) is not None:
+        rows = [(each.nominal, each.lower, each.upper, each.fit) for each in mine]
+        known = tuple(tolerance[name] for name in ("nominal_mm", "lower_mm", "upper_mm", "fit")) in rows
+        result["tolerance"] = tolerance if known else "a tolerance that the part's file states"
+    if (thread := written.get("thread")) is not None:
+        notes = [re.sub(r"[\s#]", "", note).replace(",", ".") for each in mine for note in each.notes]
+        name, turns = re.sub(r"[\s#]", "", thread["name"]), re.search(r"-(\d+)\s*UN", thread["name"])
+        metric, pitch = re.match(r"M([\d.]+)(?:x([\d.]+))?", thread["name"]), thread["pitch_mm"]
+        if turns is not None:
+            known = abs(_INCH / int(turns[1]) - pitch) <= _ROUNDED
+        else:
+            known = metric is not None and (float(metric[1]), float(metric[2] or pitch)) == (thread["diameter_mm"], pitch)
+        known = known and any(name in note and thread["fit"] in note and ("LH" in note) == thread["left"] for note in notes)
+        result["thread"] = thread if known else "a thread that the part's file states"
+    return result
+
+
+def _is_core(of: Mapping[str, Any], wide: float) -> bool:
+    """Whether a hole is tapped behind a drill of a diameter, mm."""
+    thread = of.get("thread")
+    return thread is not None and _CORE[0] <= (thread["diameter_mm"] - wide) / thread["pitch_mm"] <= _CORE[1]
 
 
 @dataclass(frozen=True)
@@ -177,11 +230,14 @@ def _strokes(question: Question, step: Mapping[str, Any]) -> Iterator[_Stroke]:
         of = question.document["holes"][each["hole"]]
         if drill.kind == "countersink":
             angle = min((two for _, two in _cones(question, of)), key=lambda two: abs(two - drill.angle), default=None)
-        tool = _body(drill, step["diameter_mm"], drill.angle if angle is None else angle)
+        # A tap, and the drill before it, are no wider than the model has the hole.
+        wide = min(step["diameter_mm"], of["diameter_mm"]) if of.get("thread") else step["diameter_mm"]
+        tool = _body(drill, wide, drill.angle if angle is None else angle)
         words = f"{drill.kind} D{step['diameter_mm']:.4g} in hole {each['hole'] + 1}"
         if tool is None:
             continue
-        main = drill.kind == "reamer" or (drill.kind == "drill" and abs(step["diameter_mm"] - of["diameter_mm"]) <= _ROUNDED)
+        core = abs(step["diameter_mm"] - of["diameter_mm"]) <= _ROUNDED or _is_core(of, step["diameter_mm"])
+        main = drill.kind == "reamer" or (drill.kind == "drill" and core)
         ends = drill.kind in ("countersink", "counterbore") or (main and of["bottom"] == "cone")
         up = 0.0 if drill.kind in _CONES else drill.beyond
         yield _Stroke(words, step["setup"], tool, np.array(each["tip_mm"], float) + up * axis, axis, ends)
@@ -212,7 +268,7 @@ def _sizes(question: Question) -> Iterator[str]:
             along = float(np.dot(step["axis"], of["axis"]))
             if abs(abs(along) - 1.0) > _AXIS:
                 yield f"{words} is not along its axis"
-            if drill.kind not in _CONES and deep > drill.sizes.flutes - drill.beyond + _ROUNDED:
+            if drill.kind not in (*_CONES, "tap") and deep > drill.sizes.flutes - drill.beyond + _ROUNDED:
                 yield f"{words} has flutes that are too short"
             yield from (f"{words} {fault}" for fault in _faults(question, drill, step, of, along))
 
@@ -221,9 +277,13 @@ def _faults(
     question: Question, drill: DrillSizes, step: Mapping[str, Any], of: Mapping[str, Any], along: float
 ) -> Iterator[str]:  # fmt: skip
     """What is wrong with a tool for a hole; `along`: 1 from its mouth, -1 from the far end."""
-    wide, deep, bottom = step["diameter_mm"], step["depth_mm"], of["bottom"]
-    if drill.kind in ("drill", "reamer") and wide <= of["diameter_mm"] + _ROUNDED:
-        main = abs(wide - of["diameter_mm"]) <= _ROUNDED
+    wide, deep, bottom, core = step["diameter_mm"], step["depth_mm"], of["bottom"], _is_core(of, step["diameter_mm"])
+    if drill.kind == "tap":
+        yield from _unfit(question, drill, step, of)
+    elif drill.kind in ("drill", "reamer") and (wide <= of["diameter_mm"] + _ROUNDED or core):
+        main = abs(wide - of["diameter_mm"]) <= _ROUNDED or core
+        if of.get("thread") and not core:
+            yield "leaves another hole than its tap needs"
         off = of["diameter_mm"] - wide
         if not main and not _ALLOWANCE - _ROUNDED <= off <= _ALLOWANCE + _MORE * of["diameter_mm"] + max(_WIDE, _SHARE * wide):
             yield "is no drill before a reamer"
@@ -243,6 +303,24 @@ def _faults(
         abs(math.degrees(two - drill.angle)) <= _SINK for _, two in _cones(question, of)
     ):
         yield "has no cone of its angle"
+
+
+def _unfit(question: Question, drill: DrillSizes, step: Mapping[str, Any], of: Mapping[str, Any]) -> Iterator[str]:
+    """What is wrong with a tap for a hole."""
+    thread, deep = of.get("thread"), step["depth_mm"]
+    if thread is None:
+        yield "has no thread"
+        return
+    pitch = thread["pitch_mm"]
+    off = abs(2.0 * drill.sizes.radius - thread["diameter_mm"]) > _TAP + _THREAD * pitch
+    if off or drill.pitch is None or abs(drill.pitch - pitch) > _THREAD * pitch or drill.left != thread["left"]:
+        yield "cuts another thread"
+    if deep > of["depth_mm"] + of["through"] * _LEAD * pitch + _ROUNDED:
+        yield "goes too deep"
+    # Where the thread alone is as wide, it ends there.
+    wider = any(2.0 * radius > of["diameter_mm"] + _ROUNDED for radius in _cylinders(question, of))
+    if deep < of["depth_mm"] - _ROUNDED and not wider:
+        yield "is not as deep"
 
 
 def _cylinders(question: Question, of: Mapping[str, Any]) -> list[float]:

@@ -47,7 +47,7 @@ class ToolSizes:
 @dataclass(frozen=True, slots=True)
 class DrillSizes:
     """A tool for holes: its kind, its body as a cutter with a flat end, its name; and if they are known, the whole angle of its
-    point, rad, and its feed, mm/min.
+    point, rad, and its feed, mm/min; of a tap its pitch, mm, and whether it turns to the left.
     """
 
     kind: str
@@ -55,6 +55,8 @@ class DrillSizes:
     point: float | None
     feed: float | None
     name: str
+    pitch: float | None = None
+    left: bool = False
 
     @property
     def angle(self) -> float:
@@ -63,8 +65,8 @@ class DrillSizes:
 
     @property
     def beyond(self) -> float:
-        """How far its tip is beyond the depth that is written, mm: of a cone and a counterbore not at all."""
-        flat = self.kind in ("countersink", "centre drill", "counterbore")
+        """How far its tip is beyond the depth that is written, mm: of a cone, a counterbore and a tap not at all."""
+        flat = self.kind in ("countersink", "centre drill", "counterbore", "tap")
         return 0.0 if flat else self.sizes.radius / math.tan(0.5 * self.angle)
 
 

@@ -77,7 +77,7 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
             "exempt": int(reckoned.exempt.sum()), **_drilled(reckoned.drilled),
         },
         "holes": [
-            {**_hole(reckoned, each), **drilling.hole(document, k)} for k, each in enumerate(document.get("holes", []))
+            {**_hole(reckoned, each), **drilling.hole(question, k)} for k, each in enumerate(document.get("holes", []))
         ],
         "faces": [
             {

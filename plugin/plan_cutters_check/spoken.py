@@ -92,7 +92,7 @@ def _drilled(lines: list[str], process: Mapping[str, Any]) -> Iterator[str]:
             yield f"there is no step {k} that drills"
             continue
         step = drilling[k - first]
-        size = re.search(r"\bD([\d.]+)", row["what"])
+        size = re.search(rf"\b{re.escape(step.get('thread') or 'D')}[\d. ]", row["what"])
         alike = step["kind"] in row["what"] and int(row["holes"]) == len(step["holes"])
         time = None if step["seconds"] is None else step["seconds"] + step["link_seconds"]
         if not alike or size is None or not _in(_time(row["took"]), time):

@@ -177,7 +177,7 @@ def window(tmp_path_factory):
 def test_bits_of_the_document_are_what_is_judged(window):
     assert window["built in"] == [[], "", "the default tool set"]
     # A drill is offered, and not ticked.
-    assert window["ticked"] == ["Endmill", "Mill10"]
+    assert window["ticked"] == ["Mill10"]
 
 
 def test_what_the_bits_lack_is_marked_before_anything_starts(window):
@@ -213,8 +213,9 @@ def test_a_length_is_typed_and_shown_in_the_users_units(window):
 
 def test_a_job_fills_the_panel(window):
     body, bits, job, hidden, words, allowance = window["job"]
-    assert (body, bits, job) == ("Clone", ["Endmill", "Mill10"], "Job")
-    assert window["rows"][:2] == ["T1 Endmill (Job)", "T7 Mill10, 15.00 mm/s (Job)"]
+    # Not the tool that FreeCAD put there, which nobody used.
+    assert (body, bits, job) == ("Clone", ["Mill10"], "Job")
+    assert window["rows"][:2] == ["Endmill (tool bit)", "T7 Mill10, 900 mm/min (Job)"]
     # The stock is offered, and counts only when the user says so.
     assert (hidden, allowance, window["allowance"]) == (False, 0.0, 1.0)
     assert words.startswith("Stock of Job: 1")

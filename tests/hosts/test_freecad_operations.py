@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.words.operations import stepped
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT, SAMPLES
 
@@ -233,7 +234,7 @@ def test_planes_have_the_tool_axis_and_the_angles_of_the_plan(written, inside):
             assert frame[:3, 3] == pytest.approx(each.frame.origin)
             told = {words.split()[0]: float(words.split()[1]) for words in group["angles"]}
             assert told == pytest.approx(each.angles_deg, abs=1e-3)
-            assert group["label"] == " ".join([each.id, each.cutter, *group["angles"]])
+            assert group["label"] == " ".join([stepped(written[0], entry, each.id), each.cutter, *group["angles"]])
 
 
 def test_faces_are_those_of_their_operations(written, inside):
@@ -275,7 +276,7 @@ def test_operations_have_their_planes_and_faces_where_they_know_planes(written, 
     made = inside["newer"]["operations"]
     assert len(made) == len(fast.operations) > 2
     for each, (label, active, controller, plane, areas) in zip(fast.operations, made, strict=True):
-        assert label == f"{each.id} {each.cutter}"
+        assert label == f"{stepped(written[0], fast, each.id)} {each.cutter}"
         assert (active, controller, plane) == (False, f"TC {each.cutter}", f"{each.id}_plane")
         assert sum(areas) == pytest.approx(sum(f["area"] for f in inside["newer"]["groups"][each.id]["faces"].values()))
 

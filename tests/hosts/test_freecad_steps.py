@@ -204,13 +204,13 @@ def session():
     box._down.click()
     found["moved"] = [rows(), box.place]
     box._up.click()
-    box.list.topLevelItem(0).setText(1, "C 5 A five")
+    box.list.topLevelItem(0).setText(2, "C 5 A five")
     pump()
     box.again.click()
     found["wrong"] = [box.told.text(), box._run is None]
-    box.list.topLevelItem(0).setText(1, first[0][1])
+    box.list.topLevelItem(0).setText(2, first[0][2])
     pump()
-    found["unknown"] = [rows()[0][4], box.told.text()]
+    found["unknown"] = [rows()[0][0], box.told.text()]
     while len(box.steps) > 1:
         box._out.click()
         box.list.setCurrentItem(box.list.topLevelItem(len(box.steps) - 1))
@@ -225,7 +225,9 @@ def session():
     pump()
     again = findings.LAST
     found["again"] = [again is not panel, len(again.steps.steps), again.steps.rest.isChecked(), len(objects.plans(document))]
-    found["headline"] = again._headline.text()
+    found["headline"] = again._headline.text(), *(
+        each.steps.form.findChild(QtGui.QLabel, "steps_head").text() for each in (panel, again)
+    )
     block.Shape = Part.makeBox(40, 30, 21)
     document.recompute()
     pump()
@@ -247,7 +249,8 @@ def test_the_list_of_steps_is_edited_in_the_window(tmp_path):
                 LIBGL_ALWAYS_SOFTWARE="1")  # fmt: skip
     rows = found["rows"]
     assert len(rows) > 1
-    assert all(row[1] and row[3].startswith("F") and row[4] for row in rows)
+    # The area comes first: a panel is narrow.
+    assert all(row[0] and row[2] and row[4].startswith("F") for row in rows)
     assert found["moved"] == [[rows[1], rows[0], *rows[2:]], 1]
     assert "step 1: “C 5 A five” is no orientation" in found["wrong"][0]
     assert found["wrong"][1]
@@ -256,5 +259,8 @@ def test_the_list_of_steps_is_edited_in_the_window(tmp_path):
     assert found["ended"][0] == "Judge again"
     assert found["ended"][1].startswith("cancelled")
     assert found["again"] == [True, 1, False, 1]
+    whole, before, after = found["headline"]
+    assert (before, after) == ("", whole)
+    assert whole
     assert "plan again" in found["stale"][0]
     assert found["stale"][1]

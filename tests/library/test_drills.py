@@ -8,7 +8,7 @@ from plan_cutters import LibraryError
 from plan_cutters.domain.drill import KINDS
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.read import listing
-from tests.support.tool_files import fusion, write_bit, write_csv, write_hsmlib, write_json, write_tools
+from tests.support.tool_files import fusion, in_inches, write_bit, write_csv, write_hsmlib, write_json, write_tools
 
 PLAIN = {"shoulder_length": None, "shoulder_diameter": None, "shaft": None}
 #: What Fusion calls each kind.
@@ -55,6 +55,56 @@ def test_our_own_format_is_written_and_read_again(tmp_path):
     assert [each.id for each in again.drills] == [each.id for each in library.drills]
     (tmp_path / "b.toml").write_text('unit = "mm"\n[[tool]]\ntype = "flat"\nDC = 6\nLCF = 9\nLPR = 30\nDMM = 6\nSIG = 118\n')
     with pytest.raises(LibraryError, match="SIG"):
+        read_library(tmp_path / "b.toml")
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_a_tap_has_its_pitch_and_its_hand_in_each_format(tmp_path, suffix):
+    tools = [
+        fusion("tap right hand", DC=4, LCF=12, SFDM=4, TP=0.7, **PLAIN),
+        fusion("tap left hand", DC=6, LCF=20, SFDM=6, TP=1, **PLAIN),
+    ]
+    library = read_library(WRITERS[suffix](tmp_path / f"a.{suffix}", tools))
+    assert [(each.diameter, each.pitch, each.left) for each in library.drills] == [(4.0, 0.7, False), (6.0, 1.0, True)]
+    (tmp_path / "b.toml").write_text(to_toml(library))
+    assert [each.id for each in read_library(tmp_path / "b.toml").drills] == [each.id for each in library.drills]
+
+
+def test_a_tap_in_inches_has_its_pitch_in_mm(tmp_path):
+    (tap,) = read_library(write_json(tmp_path / "a.json", [in_inches(fusion(
+        "tap right hand", DC=6.35, LCF=20, SFDM=6.35, TP=1.27, **PLAIN))])).drills  # fmt: skip
+    assert (tap.diameter, tap.pitch) == pytest.approx((6.35, 1.27))
+
+
+def test_a_tap_of_freecad_has_its_pitch_and_its_hand(tmp_path):
+    sizes = {"Diameter": "8 mm", "CuttingEdgeHeight": "20 mm", "ShankDiameter": "6 mm", "TipAngle": "90 °"}
+    for name, more in {
+        "r": {"Pitch": "1.25 mm"},
+        "l": {"Pitch": "1.25 mm", "SpindleDirection": "Reverse"},
+        "none": {"Pitch": "0 mm"},
+    }.items():
+        write_bit(tmp_path / f"{name}.fctb", "Tap", **sizes, **more)
+    right, left, none = (
+        listing(tmp_path / f"{name}.fctb", assume_stickout=40, holder="none").entries[0] for name in ("r", "l", "none")
+    )
+    assert [(each.drill.pitch, each.drill.left) for each in (right, left, none)] == [(1.25, False), (1.25, True), (None, False)]
+    assert any("it taps no hole" in note for note in none.notes)
+
+
+def test_a_tap_without_a_pitch_has_that_of_the_thread_in_its_name(tmp_path):
+    def pitch(name):
+        (entry,) = read_library(
+            write_json(tmp_path / "a.json", [fusion("tap right hand", name=name, DC=4, LCF=12, SFDM=4, **PLAIN)])
+        ).entries
+        return entry.drill.pitch
+
+    assert [pitch(name) for name in ("Tap M4 HSS", "M4x0.5", "#8-32 UNC", "M5", "spiral tap")] == [0.7, 0.5, None, None, None]
+
+
+@pytest.mark.parametrize("line", ["TP = 1", 'HAND = "L"'])
+def test_no_other_tool_has_a_pitch(tmp_path, line):
+    (tmp_path / "b.toml").write_text(f'unit = "mm"\n[[tool]]\ntype = "drill"\nDC = 6\nLCF = 9\nLPR = 30\nDMM = 6\n{line}\n')
+    with pytest.raises(LibraryError, match="cuts no thread"):
         read_library(tmp_path / "b.toml")
 
 

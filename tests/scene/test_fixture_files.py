@@ -219,8 +219,15 @@ def test_models_with_fixtures_pass_the_khronos_validator(tmp_path):
     assert (ROOT / "node_modules" / "gltf-validator").is_dir(), "run: sh setup.sh dev"
     held = [solid(np.array([61.0, 0, 0]), np.array([70.0, 9, 9])), "cylinder:5,20@30,-8,0", "table:0"]
     result = plan(SAMPLES / "pocket_top.step", cutters="R3L40", spacing=6.0, fixtures=held, area_budget=0)
-    result.write(tmp_path, ["glb", "merged"])
-    for name in ("annotated.glb", "merged.glb"):
+    result.write(tmp_path, ["glb", "merged", "part"])
+    shown = {name: {*trimesh.load(tmp_path / f"{name}.glb").geometry} for name in ("merged", "part")}
+    # The part alone, for what holds it would hide it.
+    assert shown["part"] == {"part"}
+    assert len(shown["merged"]) == 1 + len(held)
+    whole = trimesh.load(tmp_path / "annotated.glb")
+    pieces = [mesh for name, mesh in whole.geometry.items() if name[:1] == "F" and name[1].isdigit()]
+    assert trimesh.load(tmp_path / "part.glb").geometry["part"].area == pytest.approx(sum(mesh.area for mesh in pieces), rel=1e-4)
+    for name in ("annotated.glb", "merged.glb", "part.glb"):
         done = subprocess.run(
             ["node", str(ROOT / "tests" / "support" / "gltf_validate.js"), str(tmp_path / name)],
             capture_output=True, text=True, check=True, env={**os.environ, "NODE_PATH": str(ROOT / "node_modules")},

@@ -152,13 +152,72 @@ def _broken():
     return made, [(4.0, 8.0, False, "cone", None, None)]
 
 
+def _shaft():
+    return cq.Workplane("YZ").circle(15).extrude(60)
+
+
+def _in_a_shaft():
+    """Across it, and down into it beside that: mouths on a curved face are where it is highest."""
+    made = _shaft().cut(cq.Workplane("XY").circle(2.5).extrude(40).translate((15, 0, -20)))
+    made = made.cut(drilled(5.0, 8.0, at=(40.0, 0.0)).translate((0, 0, 15)))
+    return made, [(5.0, 30.0, True, "open", None, None), (5.0, 8.0, False, "cone", None, None)]
+
+
+def _in_a_ball():
+    made = cq.Workplane("XY").sphere(20).cut(cq.Workplane("XY").circle(3).extrude(60, both=True))
+    return made, [(6.0, 2.0 * (400.0 - 9.0) ** 0.5, True, "open", None, None)]
+
+
+def _three_ways():
+    made = block(40, 40, 40)
+    for plane, radius in (("XZ", 3), ("YZ", 2)):
+        made = made.cut(cq.Workplane(plane).circle(radius).extrude(60, both=True).translate((0, 0, -20)))
+    made = made.cut(cq.Workplane("XY").circle(3).extrude(60).translate((0, 0, -50)))
+    return made, [(6.0, 40.0, True, "open", None, None)] * 2 + [(4.0, 40.0, True, "open", None, None)]
+
+
+def _opposite():
+    """Two blind ones on one axis that do not meet, and two of other diameters that do."""
+    made = block(60, 40, 30)
+    for x in (-15.0, 15.0):
+        made = made.cut(drilled(5.0, 8.0, at=(x, 0.0)))
+    made = made.cut(drilled(5.0, 8.0).rotate((0, 0, 0), (1, 0, 0), 180).translate((-15, 0, -30)))
+    made = made.cut(cq.Workplane("XY").circle(3).extrude(-15)).cut(
+        cq.Workplane("XY").circle(2).extrude(20).translate((0, 0, -30))
+    )
+    return made, [(5.0, 8.0, False, "cone", None, None)] * 3 + [(4.0, 30.0, True, "open", None, (6.0, 15.0))]
+
+
+def _bolted():
+    """Each of two bodies has its own diameter."""
+    one, other = (block(60, 40, 10).rarray(20, 1, 2, 1).hole(diameter) for diameter in (5.0, 4.2))
+    made = cq.Compound.makeCompound([one.val(), other.val().translate(cq.Vector(0, 0, -10))])
+    return cq.Workplane(made), [(5.0, 10.0, True, "open", None, None)] * 2 + [(4.2, 10.0, True, "open", None, None)] * 2
+
+
+def _halves_with_a_floor():
+    made = block()
+    for way in (1, -1):
+        cut = cq.Workplane("XY").rect(20, 10).extrude(-20).translate((0, 5.0 * way, 0))
+        made = made.cut(cq.Workplane("XY").circle(3).extrude(-8).intersect(cut), clean=False)
+    return made, [(6.0, 8.0, False, "flat", None, None)]
+
+
+def _broken_out():
+    """At the edge of a plate, with more than half a turn of it left; and one with a keyway."""
+    made = block().pushPoints([(-15, 19)]).hole(6).cut(cq.Workplane("XY").circle(4).extrude(-20))
+    made = made.cut(cq.Workplane("XY").rect(4, 20).extrude(-20).translate((0, -8, 0)))
+    return made, [(6.0, 16.0, True, "open", None, None), (8.0, 16.0, True, "open", None, None)]
+
+
 #: By name, each with the holes that are in it.
 PLATES = {
     "grid": lambda: _grid(3.3), "large": lambda: _grid(8.0), "points": _points, "flat": _flat, "round": _round, "corner": _corner,
     "sunk": _sunk, "bored": _bored, "both": _both, "two_sides": _two_sides, "step_point": _step_point, "halves": _halves,
     "crossing": _crossing, "crossing_alike": _crossing_alike, "into_another": _into_another, "slanted": _slanted,
     "from_sides": _from_sides, "stacked": _stacked, "groove": _groove, "in_a_pocket": _in_a_pocket, "clevis": _clevis,
-    "broken": _broken,
+    "broken": _broken, "in_a_shaft": _in_a_shaft, "in_a_ball": _in_a_ball, "three_ways": _three_ways, "opposite": _opposite,
+    "bolted": _bolted, "halves_with_a_floor": _halves_with_a_floor, "broken_out": _broken_out,
 }  # fmt: skip
 
 
@@ -197,11 +256,30 @@ def _void():
     return block().cut(cq.Workplane("XY").circle(4).extrude(6).translate((0, 0, -12)))
 
 
+def _pipe(bend):
+    """A bent pipe: no drill goes round its bend."""
+    share = bend * (1.0 - 0.5**0.5)
+    way = cq.Workplane("XZ").lineTo(0, 30).threePointArc((share, 30 + bend - share), (bend, 30 + bend)).lineTo(60, 30 + bend)
+    return cq.Workplane("XY").circle(6).circle(5).sweep(way)
+
+
+def _channel():
+    way = cq.Workplane("XZ").moveTo(0, -50).lineTo(0, -30).threePointArc((5.858, -15.858), (20, -10)).lineTo(60, -10)
+    return block(80, 60, 50).cut(cq.Workplane("XY").workplane(offset=-50).circle(5).sweep(way))
+
+
+def _bow():
+    ring = cq.Workplane("XY").circle(20).circle(14).extrude(-20)
+    return block(80, 80, 10).cut(ring.cut(cq.Workplane("XY").rect(60, 30).extrude(-20).translate((0, -15, 0))))
+
+
 #: By name: none of these has a hole.
 NONE = {
     "slot": _slot, "pocket": _pocket, "ring": _ring, "boss": _tall_boss, "island": _island, "slanted_floor": _slanted_floor,
     "bowl": _bowl, "void": _void, "sphere": lambda: cq.Workplane("XY").sphere(10),
     "rod": lambda: cq.Workplane("XY").circle(5).extrude(30),
     "round_plate": lambda: cq.Workplane("XY").box(60, 40, 16).edges("|Z").fillet(6).faces(">Z").edges().fillet(1),
+    "pipe": lambda: _pipe(20.0), "tight_pipe": lambda: _pipe(12.0), "channel": _channel, "bow": _bow,
+    "torus": lambda: cq.Workplane(obj=cq.Solid.makeTorus(20, 5)), "taper": lambda: block().cut(turned((3.0, -17.0), (4.0, 1.0))),
     "half_round": lambda: block().cut(cq.Workplane("XZ").circle(5).extrude(60, both=True)),
 }  # fmt: skip

@@ -62,7 +62,7 @@ def write_tools(path, tools):
 _COLUMNS = {"tool_diameter": "DC", "tool_cornerRadius": "RE", "tool_fluteLength": "LCF", "tool_bodyLength": "LB",
             "tool_overallLength": "OAL", "tool_shaftDiameter": "SFDM", "tool_shoulderLength": "shoulder-length",
             "tool_shoulderDiameter": "shoulder-diameter", "tool_taperAngle": "TA",
-            "tool_tipDiameter": "tip-diameter", "tool_maximumCuttingDiameter": "DCX"}  # fmt: skip
+            "tool_tipDiameter": "tip-diameter", "tool_maximumCuttingDiameter": "DCX", "tool_threadPitch": "TP"}  # fmt: skip
 
 
 def write_csv(path, tools, *, delimiter=",", comma=False):
@@ -97,7 +97,7 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
 
 _BODY = {"diameter": "DC", "corner-radius": "RE", "flute-length": "LCF", "body-length": "LB", "overall-length": "OAL",
          "shaft-diameter": "SFDM", "shoulder-length": "shoulder-length", "shoulder-diameter": "shoulder-diameter",
-         "taper-angle": "TA", "tip-diameter": "tip-diameter", "tapered-type": "tapered-type"}  # fmt: skip
+         "taper-angle": "TA", "tip-diameter": "tip-diameter", "tapered-type": "tapered-type", "thread-pitch": "TP"}  # fmt: skip
 
 
 def hsmlib(tools, before=""):

@@ -12,6 +12,7 @@ from cad_io.part.holes import Hole, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled, Missing, Why
 from plan_cutters.domain.fixture import STOCK
+from plan_cutters.domain.thread import Thread, thread_in, tolerance_in
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, free_in_posture
 from plan_cutters.scene.holes import made_of
@@ -21,6 +22,8 @@ from plan_cutters.scene.preparation import Prepared
 _NO_WAY = 1e-12
 #: Share of the area of a bottom that mills have to finish.
 _BOTTOM = 0.99
+#: Pitches that a tap goes further through a hole: the lead of most (form C).
+_LEAD = 3.0
 #: Cosine of the angle between directions that are one.
 _ALONG = 1.0 - 1e-9
 
@@ -67,20 +70,43 @@ class _Maker:
 
     def bored(self, hole: Hole) -> Bored:
         """The tools of a hole."""
-        uses, missing = self._cylinder(hole), list[Missing]()
+        uses, missing, thread = self._cylinder(hole), list[Missing](), thread_in(hole.sizes, hole.diameter)
         if not uses or not self._floored(hole):
             missing.append(Missing("hole", hole.diameter, hole.depth, why="bottom" if uses else self._why(hole)))
             uses = []
         for step in hole.steps:
-            if not {*step.faces}.intersection(hole.faces):
-                # A mill makes it.
+            if not {*step.faces}.intersection(hole.faces) or (thread is not None and thread.is_whole(step.diameter)):
+                # A mill makes it, or a tap.
                 continue
             use = self._widened(hole, step)
             # Where there is no hole nothing is sunk.
             uses += [use] if uses and use is not None else []
             deep, angle = (None, step.angle) if step.kind == "countersink" else (abs(step.inner - step.outer), None)
             missing += [Missing(step.kind, step.diameter, deep, angle)] if use is None else []
+        if thread is not None:
+            taps = [drill for drill in self.drills if drill.taps(thread)]
+            cut = next((use for tap in taps for use in self._tapped(hole, thread, tap, uses)), None)
+            uses += [] if cut is None else [cut]
+            missing += [] if cut is not None else [
+                Missing("thread", thread.diameter, name=thread.name, why="in_the_way" if taps and uses else "")
+            ]  # fmt: skip
+        elif uses and not any(use.drill.kind == "reamer" for use in uses):
+            tolerance = tolerance_in(hole.sizes, hole.diameter)
+            missing += [] if tolerance is None or not tolerance.reamed else [Missing("reamer", hole.diameter, name=tolerance.fit)]
         return Bored(tuple(uses), tuple(missing))
+
+    def _tapped(self, hole: Hole, thread: Thread, tap: Drill, uses: Sequence[Drilled]) -> Iterator[Drilled]:
+        """A tap behind the drill of a hole, from the same end in the same setup."""
+        for first in uses:
+            if not first.main:
+                continue
+            deep = hole.depth + _LEAD * thread.pitch * hole.through
+            mine = [step.inner for step in hole.steps if thread.is_whole(step.diameter) and not step.far]
+            deep = max(mine, default=deep) if first.axis @ hole.axis > 0.0 else deep
+            task = _Task(tap, tap.in_hole(min(hole.diameter, tap.diameter)), deep, thread.diameter)
+            use = self._use(task, _Way(first.setup, first.axis, first.mouth))
+            if use is not None:
+                yield use
 
     def _why(self, hole: Hole) -> Why:
         """Why no tools make its narrowest cylinder."""
@@ -113,10 +139,29 @@ class _Maker:
 
     def _chains(self, hole: Hole) -> Iterator[list[_Task]]:
         """Tools that make it one after the other: the best first."""
+        thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
+        if thread is not None:
+            yield from self._before_a_tap(hole, thread)
+            return
         near = sorted(self.drills, key=lambda each: round(abs(each.diameter - hole.diameter), 6))
-        for drill in near:
-            if drill.kind == "drill" and drill.wide_as(hole.diameter) and _ends(drill, hole):
-                yield [_down(drill, hole, hole.diameter, main=True)]
+        alone = [
+            [_down(drill, hole, hole.diameter, main=True)]
+            for drill in near if drill.kind == "drill" and drill.wide_as(hole.diameter) and _ends(drill, hole)
+        ]  # fmt: skip
+        if tolerance is not None and tolerance.reamed:
+            yield from (*self._reamed(hole, near), *alone)
+        else:
+            yield from (*alone, *self._reamed(hole, near))
+
+    def _before_a_tap(self, hole: Hole, thread: Thread) -> Iterator[list[_Task]]:
+        """The drill of a hole that is tapped: models have it as wide as that drill, as the nut's inside, or as the thread."""
+        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - thread.core), 6)):
+            if drill.kind == "drill" and thread.is_core(drill.diameter) and _ends(drill, hole):
+                same = drill.wide_as(hole.diameter)
+                task = _down(drill, hole, min(hole.diameter, drill.diameter), main=True)
+                yield [task._replace(diameter=hole.diameter if same else drill.diameter)]
+
+    def _reamed(self, hole: Hole, near: Sequence[Drill]) -> Iterator[list[_Task]]:
         for reamer in near:
             if reamer.kind != "reamer" or not reamer.wide_as(hole.diameter) or hole.bottom not in ("open", "cone"):
                 continue
@@ -173,7 +218,8 @@ class _Maker:
     def _use(self, task: _Task, way: _Way) -> Drilled | None:
         """A tool in a hole if it stands free there; None: it does not, or is too short."""
         drill, body = task.drill, task.body
-        if body is None or (drill.kind not in CONES and drill.reach < task.depth):
+        # A tap's shank may go into its hole.
+        if body is None or (drill.kind not in (*CONES, "tap") and drill.reach < task.depth):
             return None
         conditions = self.ready.setups[way.setup]
         context = Context.of(body.asked(0.0, self.ready.options.holder_clearance, None), conditions)

@@ -9,14 +9,28 @@ from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.thread import thread_in, tolerance_in
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.holes import CounterboreEntry, CountersinkEntry, DrillingStep, HoleEntry, MissingEntry, StrokeEntry
+from plan_cutters.plan_file.holes import (
+    CounterboreEntry,
+    CountersinkEntry,
+    DrillingStep,
+    HoleEntry,
+    MissingEntry,
+    StrokeEntry,
+    ThreadEntry,
+    ToleranceEntry,
+    WorkplaneEntry,
+)
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.planes import tilted_plane
+from plan_cutters.scene.preparation import Prepared, places
 
 #: Decimals of lengths and angles: behind them there is noise alone.
 _DIGITS = 6
+#: Angles that differ by less are one, deg.
+_SAME = 0.01
 #: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 #: Tools in the order in which they come in a setup.
@@ -65,19 +79,22 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
             size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
+    threads = [thread_in(hole.sizes, hole.diameter) for hole in ready.holes]
     steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
+        thread = threads[_in_order(number)[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
         steps.append(
             DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
                 holes=[_stroke(place, each) for place, each in same[key]],
-                setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
+                setup=use.setup, axis=vector(use.axis + 0.0), **_turned(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
-                seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed),
+                thread="" if thread is None else thread.name, pitch_mm=use.drill.pitch,
+                feed_mm_min=feed, seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed, use.drill.kind),
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
@@ -114,18 +131,26 @@ def _rounded(point: Floats) -> tuple[float, float, float]:
     return vector(np.round(point, _DIGITS) + 0.0)
 
 
-def _angles(ready: Prepared, setup: int, axis: Floats) -> dict[str, float] | None:
-    """Angles of the rotary axes that hold a tool axis, deg; None where no axes are known."""
-    kinematics = ready.setups[setup].kinematics
-    if kinematics is None:
-        return None
-    both, taken, _ = kinematics.positions(axis[None])
-    angles = np.round(np.degrees(both[0, int(taken[0])]), 3) + 0.0
-    return dict(zip((each.name for each in ready.options.machine.rotary or ()), angles.tolist(), strict=True))
+def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
+    """Angles of the rotary axes that hold a tool axis, deg, with the plane and its words; None where no axes are known."""
+    conditions = ready.setups[setup]
+    if conditions.kinematics is None:
+        return {"angles_deg": None}
+    both, taken, _ = conditions.kinematics.positions(axis[None])
+    names, shown = [each.name for each in ready.options.machine.rotary or ()], np.round(np.degrees(both[0]), 3) + 0.0
+    own, other = (dict(zip(names, shown[k].tolist(), strict=True)) for k in (int(taken[0]), 1 - int(taken[0])))
+    # Another solution is one that differs on the machine.
+    apart = np.abs(np.remainder(np.subtract([*other.values()], [*own.values()]) + 180.0, 360.0) - 180.0)
+    second = other if apart.max(initial=0.0) > _SAME else None
+    place, angle = places(ready.options)[setup], both[0, int(taken[0])]
+    origin, x, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
+    frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
+    return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 
 def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
     by, sink, bore = made.by, hole.countersink, hole.counterbore
+    thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
     return HoleEntry(
         faces=[f"F{number}" for number in hole.faces],
         diameter_mm=round(hole.diameter, _DIGITS),
@@ -141,6 +166,12 @@ def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
         drilled=by is not None,
         tool=None if by is None else by.id,
         missing=[_missing(each) for each in made.missing],
+        thread=None
+        if thread is None
+        else ThreadEntry(name=thread.name, diameter_mm=thread.diameter, pitch_mm=thread.pitch, fit=thread.fit, left=thread.left),
+        tolerance=None
+        if tolerance is None
+        else ToleranceEntry(nominal_mm=tolerance.nominal, lower_mm=tolerance.lower, upper_mm=tolerance.upper, fit=tolerance.fit),
     )
 
 
@@ -151,6 +182,7 @@ def _missing(each: Missing) -> MissingEntry:
         depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
         angle_deg=None if each.angle is None else _degrees(each.angle),
         why=each.why,
+        name=each.name,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length
+from plan_cutters.domain.thread import Thread
 from plan_cutters.errors import CutterError
 
 Kind = Literal["drill", "centre drill", "reamer", "tap", "countersink", "counterbore"]
@@ -27,12 +28,15 @@ class Drill:
     kind: Kind
     body: Cutter  #: A flat end mill of its diameter, flutes, shank, stick-out and holder, with the name that its file has for it.
     point: float | None = None  #: rad; the whole angle of its point, where the file states one.
+    pitch: float | None = None  #: mm; of a tap, where its file or its name states it.
+    left: bool = False  #: A tap of a left-hand thread.
 
     @property
     def id(self) -> str:
         """`drill R1.65L60F36P118`: the same dimensions, the same id."""
         point = "" if self.point is None else f"P{math.degrees(self.point):.6g}"
-        return f"{self.kind} {self.body.id}{point}"
+        pitch = "" if self.pitch is None else f"T{self.pitch:.6g}"
+        return f"{self.kind} {self.body.id}{point}{pitch}{'LH' if self.left else ''}"
 
     @property
     def diameter(self) -> float:
@@ -41,8 +45,8 @@ class Drill:
 
     @property
     def point_length(self) -> float:
-        """Height of its point, mm, or more: one that is not stated is taken for 90 deg, and a counterbore has none."""
-        if self.kind == "counterbore":
+        """Height of its point, mm, or more: one that is not stated is taken for 90 deg, and a counterbore and a tap have none."""
+        if self.kind in ("counterbore", "tap"):
             return 0.0
         return self.body.radius / math.tan(0.5 * (0.5 * math.pi if self.point is None else self.point))
 
@@ -62,6 +66,10 @@ class Drill:
     def points_at(self, cone: float | None) -> bool:
         """Whether its point leaves a cone at the bottom; its whole angle in rad."""
         return cone is not None and self.point is not None and abs(self.point - cone) <= _ANGLE
+
+    def taps(self, thread: Thread) -> bool:
+        """Whether it is a tap that cuts a thread."""
+        return self.kind == "tap" and thread.equals(self.diameter, self.pitch, left=self.left)
 
     def sinks(self, diameter: float, angle: float) -> bool:
         """Whether it is a countersink that leaves one of a largest diameter, mm, and a whole angle, rad."""
@@ -118,13 +126,14 @@ Why = Literal["", "axis", "short", "in_the_way", "bottom"]
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """No tool makes this of a hole: its narrowest cylinder, or a countersink or counterbore."""
+    """No tool makes this of a hole: its narrowest cylinder, a countersink or counterbore, its thread; or its tolerance."""
 
-    thing: Literal["hole", "countersink", "counterbore"]
+    thing: Literal["hole", "countersink", "counterbore", "thread", "reamer"]
     diameter: float  #: mm
     depth: float | None = None  #: mm; not of a countersink.
     angle: float | None = None  #: rad; of a countersink.
     why: Why = ""
+    name: str = ""  #: Of a thread, as `M4`; of a hole that is to be reamed its class.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,10 +153,10 @@ class Bored:
 _WAY = 1.3
 
 
-def time_of_hole(depth: float, feed: float) -> float:
-    """Time of a hole of a depth, mm, at a feed, mm/min, in s; pecks are not counted.
+def time_of_hole(depth: float, feed: float, kind: Kind = "drill") -> float:
+    """Time of a hole of a depth, mm, at a feed, mm/min, in s; pecks are not counted. A tap goes out as slowly as in.
 
-    >>> time_of_hole(10.0, 260.0)
-    3.0
+    >>> time_of_hole(10.0, 260.0), time_of_hole(10.0, 260.0, "tap")
+    (3.0, 6.0)
     """
-    return _WAY * depth / feed * 60.0
+    return _WAY * depth / feed * 60.0 * (2.0 if kind == "tap" else 1.0)

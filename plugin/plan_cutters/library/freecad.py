@@ -211,6 +211,8 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
         if "DC" in tool.values:
             tool.values.setdefault("DMM", tool.values["DC"])
         tool.take("SIG", parameters.get("TipAngle"), "TipAngle", _angle)
+        tool.take("TP", parameters.get("Pitch"), "Pitch", length)
+        tool.reverse = str(parameters.get("SpindleDirection")) == "Reverse"
     if tool.sort:
         if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.

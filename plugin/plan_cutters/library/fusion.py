@@ -116,7 +116,8 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
     for key, column, _, _ in _FIELDS:
         tool.take(key, row.get(column, "").strip(), column, number)
     if kind_of_drill(tool) is not None:
-        tool.take("SIG", row.get("tool_tipAngle", "").strip(), "tool_tipAngle", number)
+        for key, column in (("SIG", "tool_tipAngle"), ("TP", "tool_threadPitch")):
+            tool.take(key, row.get(column, "").strip(), column, number)
     try:
         tool.shaft = _csv_sections(row.get("shaft_segments", ""), tool, "shaft_segments")
         stages = _csv_sections(row.get("holder_segments", ""), tool, "holder_segments")
@@ -207,7 +208,8 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
             tool.take(key, geometry.get(word), word)
     drills = kind_of_drill(tool) is not None
     if drills:
-        tool.take("SIG", geometry.get("SIG"), "SIG")
+        for key in ("SIG", "TP"):
+            tool.take(key, geometry.get(key), key)
     shaft = tool.tried(lambda: _table(item, "shaft"), {})
     if shaft.get("segments"):
         tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
@@ -313,7 +315,8 @@ def _hsm_tool(element: Element, place: str) -> Listed:
         if word:
             tool.take(key, body.given.get(word) if body else None, word, _number)
     if kind_of_drill(tool) is not None:
-        tool.take("SIG", body.given.get("tip-angle") if body else None, "tip-angle", _number)
+        for key, word in (("SIG", "tip-angle"), ("TP", "thread-pitch")):
+            tool.take(key, body.given.get(word) if body else None, word, _number)
     if shaft is not None:
         tool.shaft = tool.tried(lambda: _hsm_sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:

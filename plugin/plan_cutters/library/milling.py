@@ -13,6 +13,7 @@ from plan_cutters.domain.drill import Drill, Kind
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_at_most, top_radius
+from plan_cutters.domain.thread import thread_of
 from plan_cutters.errors import CutterError, HolderFitError
 from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner_of, note_tapered, slack
 from plan_cutters.library.raw_tool import Entry, Listed, Stated
@@ -114,6 +115,8 @@ _NEEDED = {
 }
 #: Kinds that need more than all others do.
 _NEEDS = {"dovetail": ("TA",), "chamfer": ("TA",), "lollipop": ("DN",)}
+#: The thread in a tap's name has its diameter, within this, mm.
+_NAMED = 0.02
 #: Sections between the flutes and the holder that are told apart.
 _MOST_ABOVE = 6
 
@@ -161,7 +164,21 @@ def _drill(tool: Listed, kind: Kind, ask: Ask) -> Entry:
     except (UnfitError, CutterError) as error:
         why = cause_of(error) if isinstance(error, CutterError) else str(error)
         return tool.entry(unused=f"{kind}: {why}")
-    return tool.entry(drill=Drill(kind, body, math.radians(tool.values["SIG"]) if "SIG" in tool.values else None))
+    pitch, reverse = _pitch(tool, body) if kind == "tap" else (None, False)
+    point = math.radians(tool.values["SIG"]) if "SIG" in tool.values else None
+    return tool.entry(drill=Drill(kind, body, point, pitch, reverse))
+
+
+def _pitch(tool: Listed, body: Cutter) -> tuple[float | None, bool]:
+    """The pitch of a tap, mm, or that of the thread in its name, and whether it turns to the left."""
+    reverse, named = tool.reverse or "left" in tool.kind.lower(), thread_of(tool.name, whole=False)
+    if "TP" not in tool.values:
+        if named is None or abs(named.diameter - 2.0 * body.radius) > _NAMED:
+            tool.notes.append(f"{tool.word('TP')} is missing (the pitch of its thread): it taps no hole")
+            return None, reverse
+        tool.notes.append(f"no {tool.word('TP')}: the pitch of {named.name}, as its name has it, is taken")
+        return named.pitch, reverse or named.left
+    return tool.values["TP"], reverse
 
 
 def cause_of(error: CutterError) -> str:

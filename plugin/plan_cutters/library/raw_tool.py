@@ -206,8 +206,8 @@ class Listed:
     scale: float = 1.0
     #: By ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF flute
     #: length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and DN its
-    #: diameter, TA half angle, SIG angle of a drill's point, TIP diameter at the tip, LF gauge length of the assembly, LH of its
-    #: holder, DCX largest diameter.
+    #: diameter, TA half angle, SIG angle of a drill's point, TP pitch of a tap, TIP diameter at the tip, LF gauge length of the
+    #: assembly, LH of its holder, DCX largest diameter.
     values: dict[str, float] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)  #: What the file calls each.
     shaft: list[Segment] = field(default_factory=list)  #: Sections that the file gives above LN (or LCF), from there up.
@@ -217,6 +217,7 @@ class Listed:
     doubts: list[str] = field(default_factory=list)  #: Fields that can mean different tools.
     notes: list[str] = field(default_factory=list)
     needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
+    reverse: bool = False  #: A tap of a left-hand thread.
     flutes_everywhere: bool = False  #: Its drawing is as wide everywhere: what states no flutes has them up to its holder.
     stated: Stated | None = None
     feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.

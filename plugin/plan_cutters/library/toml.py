@@ -60,6 +60,8 @@ class ToolTable(BaseModel):
     DN: Number | None = None
     LN: Number | None = None
     SIG: Number | None = None
+    TP: Number | None = None
+    HAND: Literal["R", "L"] | None = None
     TA: Number | Annotated[str, Field(min_length=1)] | None = None
     PRFRAD: Number = 0.0
     profile_height: Number = 0.0
@@ -176,8 +178,12 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     tool.take("DMM", None if model.DMM == "same" else model.DMM, "DMM")
     tool.take("TA", model.TA, "TA", _degrees)
     tool.take("SIG", model.SIG, "SIG")
+    tool.take("TP", model.TP, "TP")
+    tool.reverse = model.HAND == "L"
     if model.SIG is not None and model.type not in KINDS:
         tool.faults.append(f"SIG: a {model.type} has no point as a drill has; leave it out")
+    if model.type != "tap" and (word := "TP" if model.TP is not None else "HAND" if model.HAND is not None else ""):
+        tool.faults.append(f"{word}: a {model.type} cuts no thread; leave it out")
     tool.holder = tool.tried(lambda: _holder(model.holder, tool.scale, named), None)
 
     def length(value: Any, field: str) -> float:
@@ -312,6 +318,9 @@ def _written(cutter: Cutter, name: str, number: int | None, feed: float | None =
         entry["DC"] = 2.0 * cutter.radius
     if drill is not None and drill.point is not None:
         entry["SIG"] = stated_degrees(drill.point)
+    if drill is not None:
+        entry |= {"TP": drill.pitch} if drill.pitch is not None else {}
+        entry |= {"HAND": "L"} if drill.left else {}
     if cutter.corner_radius and cutter.shape != "lollipop":
         entry["RE"] = cutter.corner_radius
     if cutter.taper:

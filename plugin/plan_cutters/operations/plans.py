@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from plan_cutters.domain.control_words import control_words
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.labels import (
@@ -33,10 +31,11 @@ from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.operations import WorkplaneEntry
+from plan_cutters.plan_file.holes import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import least_clearance
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
+from plan_cutters.scene.planes import tilted_plane
 from plan_cutters.scene.preparation import Prepared, places
 
 
@@ -57,19 +56,16 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
         where = indexing.orientations[s]
         conditions, moved = where.conditions, where.kinematics
         known = [[each for each in (operations[i].angle, operations[i].other_angle) if each is not None] for i in mine]
-        origin = np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
-        across = conditions.frame[0]
         for i, seconds in zip(mine, indexing.times(s, known).tolist(), strict=True):
             axis, angle = operations[i].axis, operations[i].angle
             assert axis is not None, "a group holds fixed axes"
             assert angle is not None, "a fixed axis has angles"
-            x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
-            frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
             own, other = (
                 None if each is None else dict(zip(where.names, each.tolist(), strict=True))
                 for each in (angle if conditions.machine.turns else None, operations[i].other_angle)
             )
-            words = control_words(conditions.frame, np.array([x, np.cross(axis, x), axis]), own, other)
+            origin, x, words = tilted_plane(conditions, placements[s], moved, axis, np.radians(angle), own, other)
+            frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
             planned[i] = operations[i].with_fields(
                 frame=frame, index_s=seconds, index_from=indexing.source, g68_2=words.g68_2, g53_1=words.g53_1,
                 rotary_words=words.rotary,

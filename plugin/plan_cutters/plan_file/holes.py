@@ -8,6 +8,18 @@ from plan_cutters.domain.drill import Kind, Why
 from plan_cutters.plan_file.frozen import Frozen, Vector
 
 
+def _none(entry: object) -> bool:
+    return entry is None
+
+
+class WorkplaneEntry(Frozen):
+    """The tilted plane that a control turns to: z is the tool axis, x the machine's X turned with it. Part coordinates."""
+
+    origin: Vector = Field(description="mm: the setup's origin, or the part's zero where the setup names none")
+    x: Vector
+    z: Vector
+
+
 class CountersinkEntry(Frozen):
     """The widest cone at a mouth of a hole."""
 
@@ -22,17 +34,39 @@ class CounterboreEntry(Frozen):
     depth_mm: float = Field(description="from that mouth")
 
 
+class ThreadEntry(Frozen):
+    """A thread that the part's file states of a hole; none is guessed."""
+
+    name: str = Field(description="as M4, M8x1 or 1/4-20 UNC")
+    diameter_mm: float = Field(description="its largest")
+    pitch_mm: float
+    fit: str = Field(description="its tolerance class, as 6H or 2B; empty where none is stated")
+    left: bool = Field(description="it turns to the left")
+
+
+class ToleranceEntry(Frozen):
+    """What the part's file says that the diameter of a hole may be."""
+
+    nominal_mm: float
+    lower_mm: float | None = Field(description="deviation; null where the file states the class alone")
+    upper_mm: float | None
+    fit: str = Field(description="tolerance class, as H7; empty where none is stated")
+
+
 class MissingEntry(Frozen):
     """No tool of the libraries makes this of a hole."""
 
-    thing: Literal["hole", "countersink", "counterbore"] = Field(description="hole: its narrowest cylinder, with its bottom")
+    thing: Literal["hole", "countersink", "counterbore", "thread", "reamer"] = Field(
+        description="hole: its narrowest cylinder, with its bottom; reamer: a drill makes it, but does not hold its tolerance"
+    )
     diameter_mm: float
-    depth_mm: float | None = Field(description="null of a countersink")
+    depth_mm: float | None = Field(description="null but of a hole and a counterbore")
     angle_deg: float | None = Field(description="the whole angle of a countersink, else null")
     why: Why = Field(
         description="empty: no tool has its size; of those that have it: axis: no setup has it; short: flutes are too short; "
         "in_the_way: they do not stand free; bottom: no mill reaches its bottom, which is no cone"
     )
+    name: str = Field(default="", exclude_if=lambda name: not name, description="of a thread, as M4; of a tolerance its class")
 
 
 class HoleEntry(Frozen):
@@ -57,6 +91,8 @@ class HoleEntry(Frozen):
     )
     tool: str | None = Field(description="the tool that makes that cylinder last; null where none does")
     missing: list[MissingEntry] = Field(default=[], description="what of it no tool of the libraries makes")
+    thread: ThreadEntry | None = Field(default=None, exclude_if=_none, description="where the part's file states one")
+    tolerance: ToleranceEntry | None = Field(default=None, exclude_if=_none, description="where the part's file states one")
 
 
 class StrokeEntry(Frozen):
@@ -79,11 +115,20 @@ class DrillingStep(Frozen):
     setup: int = Field(description="0 is the first")
     axis: Vector = Field(description="unit tool axis")
     angles_deg: dict[str, float] | None = Field(description="of the rotary axes; null where the machine has none that are known")
+    frame: WorkplaneEntry | None = Field(default=None, exclude_if=_none, description="where `angles_deg` are known")
+    g68_2: str | None = Field(default=None, exclude_if=_none, description="as of an operation: the tilted plane")
+    g53_1: str | None = Field(default=None, exclude_if=_none, description="as of an operation: the turn onto it")
+    rotary_words: str | None = Field(default=None, exclude_if=_none, description="as of an operation: in place of both")
     diameter_mm: float = Field(description="that it leaves")
     depth_mm: float = Field(
         description="of its full width under each mouth, with what the point goes further through a hole; of a countersink or "
         "centre drill that of the tip"
     )
-    seconds: float | None = Field(description="for all holes 1.3 times the depth at the feed; null where no feed is known")
+    thread: str = Field(default="", exclude_if=lambda name: not name, description="that a tap cuts, as M4")
+    pitch_mm: float | None = Field(default=None, exclude_if=_none, description="of a tap")
+    feed_mm_min: float | None = Field(default=None, exclude_if=_none, description="of its file, else that was given")
+    seconds: float | None = Field(
+        description="for all holes 1.3 times the depth at the feed, twice that of a tap; null where no feed is known"
+    )
     link_seconds: float = Field(description="from hole to hole: a link for each")
     index_seconds: float = Field(description="of the turn to its orientation, once for the tool; 0 without operations")

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
-from plan_cutters.plan_file.holes import DrillingStep
+from plan_cutters.plan_file.holes import DrillingStep, WorkplaneEntry
 
 
 class SplitEntry(Frozen):
@@ -60,14 +60,6 @@ class OperationRegion(Frozen):
     low: Vector = Field(description="corner of the bounding box of its samples")
     high: Vector
     rows: Runs = Field(description="its samples: first and last of runs of rows of samples.npz and axes.csv, from 0")
-
-
-class WorkplaneEntry(Frozen):
-    """The tilted plane that a control turns to: z is the tool axis, x the machine's X turned with it. Part coordinates."""
-
-    origin: Vector = Field(description="mm: the setup's origin, or the part's zero where the setup names none")
-    x: Vector
-    z: Vector
 
 
 class TurningEntry(Frozen):

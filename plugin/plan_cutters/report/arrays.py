@@ -7,7 +7,7 @@ import json
 import math
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,8 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
+from plan_cutters.plan_file.holes import DrillingStep
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.plan_file.words.operations import steps_of
@@ -207,7 +209,8 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", *(f"{name}_deg" for name in entry.rotary),
                        "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
-                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words", "step"])  # fmt: skip
+                       "link_seconds", "faces", "g68_2", "g53_1", "rotary_words", "step", "diameter_mm", "depth_mm", "pitch_mm",
+                       "mouths_mm"])  # fmt: skip
         for plan in entry.plans:
             step = steps_of(result.plan, plan)
             for each in plan.operations:
@@ -218,7 +221,22 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                                _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
                                " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
-                               each.rotary_words or "", step.get(each.id, "")])  # fmt: skip
+                               each.rotary_words or "", step.get(each.id, ""), "", "", "", ""])  # fmt: skip
+        for number, bores in _drilling(result.plan):
+            turned = [(bores.angles_deg or {}).get(name, "") for name in entry.rotary]
+            faces = dict.fromkeys(face for stroke in bores.holes for face in result.plan.holes[stroke.hole].faces)
+            mouths = "; ".join(" ".join(f"{_rounded(x)}" for x in stroke.mouth_mm) for stroke in bores.holes)
+            rows.writerow(["drilling", f"step {number}", "fixed", bores.kind, bores.tool, bores.setup + 1, *turned,
+                           *(_rounded(x, 9) for x in bores.axis), "", "", "", "", _rounded(bores.seconds),
+                           _rounded(bores.link_seconds), " ".join(faces), bores.g68_2 or "", bores.g53_1 or "",
+                           bores.rotary_words or "", number, _rounded(bores.diameter_mm), _rounded(bores.depth_mm),
+                           _rounded(bores.pitch_mm), mouths])  # fmt: skip
+
+
+def _drilling(plan: Plan) -> Iterator[tuple[int, DrillingStep]]:
+    """Steps of the process that drill, by their numbers."""
+    if plan.process is not None:
+        yield from enumerate(plan.process.drilling, len(plan.process.steps) + 1)
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:

@@ -44,6 +44,7 @@ WRITERS = {
     "step": Writer("annotated.step", "models", "write_step", by_name=True),
     "glb": Writer("annotated.glb", "models", "write_glb", by_name=True),
     "merged": Writer("merged.glb", "models", "write_glb", by_name=True, options={"merged": True}),
+    "part": Writer("part.glb", "models", "write_glb", by_name=True, options={"merged": True, "fixtures": False}),
     "npz": Writer("samples.npz", "arrays", "write_npz", by_name=True),
     "process": Writer("process.toml", "process_file", "write_process"),
     **{f"setup_{k}": Writer(f"setup-{k}.toml", "process_file", "write_setup", options={"number": k}) for k in (1, 2, 3)},
@@ -62,7 +63,7 @@ _FILES = [writer.file for writer in WRITERS.values()]
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
 #: first plan, or of another one by its name. Of each, the first one is made while the others are.
 _MODELS = {
-    "verdicts": ("glb", "merged", "png", "step"),
+    "verdicts": ("glb", "merged", "part", "png", "step"),
     "operations": ("operations_glb", "operations_step"),
     "fastest": ("fastest_glb", "fastest_step"),
 }

@@ -201,8 +201,8 @@ def shown_pieces(result: Judged, split: Any) -> Any:
     return replace(split, pieces=tuple(piece for piece in split.pieces if piece.face not in doubles)) if doubles else split
 
 
-def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -> None:
-    """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
+def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False, fixtures: bool = True) -> None:
+    """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`; without `fixtures` the part alone."""
     shown = next(c for c in result.plan.cutters if c.id == result.shown)
     entries = {int(f.id[1:]): f for f in result.plan.faces}
     reasons = defaultdict[str, set[str]](set)
@@ -233,7 +233,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
             "cutter": shown.id,
         },
         merged=merged,
-        others=fixture_meshes(result),
+        others=fixture_meshes(result) if fixtures else (),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from cad_io.part.holes import Hole, holes
 from plan_cutters.domain.drill import Drill
+from plan_cutters.domain.thread import thread_in, tolerance_in
 from plan_cutters.library.raw_tool import Library
 from plan_cutters.scene.preparation import Prepared
 
@@ -50,8 +51,10 @@ def for_drills(hole: Hole, below: float, drills: Collection[Drill] = (), least: 
     A bottom that is no cone is milled. So is a counterbore with a floor that is no cone, if a mill is as narrow and none of the
     `drills` is a counterbore of its size; `least`: the diameter of the narrowest mill, mm.
     """
-    milled = {*(hole.floor if hole.bottom in ("flat", "round") else ())}
+    milled, thread = {*(hole.floor if hole.bottom in ("flat", "round") else ())}, thread_in(hole.sizes, hole.diameter)
     for step in hole.steps:
+        if thread is not None and thread.is_whole(step.diameter):
+            continue
         fits = step.floor == "flat" and any(each.kind == "counterbore" and each.wide_as(step.diameter) for each in drills)
         if step.kind == "counterbore" and step.floor != "cone" and least <= step.diameter and not fits:
             milled |= {*step.faces}
@@ -84,6 +87,7 @@ def alike(one: Hole, other: Hole) -> bool:
         and _equal(one.countersink, other.countersink, (_LENGTH, _ANGLE))
         and _equal(one.counterbore, other.counterbore, (_LENGTH, _LENGTH))
         and bool(one.axis @ other.axis >= np.cos(_ANGLE))
+        and all(of(one.sizes, one.diameter) == of(other.sizes, other.diameter) for of in (thread_in, tolerance_in))
     )
 
 

@@ -5,13 +5,15 @@ from collections import Counter
 from collections.abc import Iterator
 
 from plan_cutters.domain.drill import CONES, Why
-from plan_cutters.domain.figures import count, duration, joined, listed, percent, reported
-from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry
+from plan_cutters.domain.drill_sizes import inch_name
+from plan_cutters.domain.figures import count, duration, in_inches, joined, listed, percent, reported, reporting
+from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry, ToleranceEntry
 from plan_cutters.plan_file.model import Plan
 
 #: Groups that are described; where there are more, their diameters are named: so many of these.
 _GROUPS, _DIAMETERS = 3, 10
-#: A length that is more than a whole one by less is that.
+#: Lengths of drills in inches are whole ones of this; a length that is more than a whole one by less is that.
+_STEP = 0.05
 _WHOLE = 1e-6
 
 
@@ -58,17 +60,20 @@ _WHY: dict[Why, str] = {
 
 def missing_words(missing: MissingEntry) -> str:
     """Name the tool that is missing by its usual size, and say why others of it do not do."""
-    deep = "" if missing.depth_mm is None else f" x {math.ceil(reported(missing.depth_mm) - _WHOLE)}"
+    if missing.thing == "thread":
+        return f"tap {missing.name}{f' ({_WHY[missing.why]})' if missing.why else ''}"
+    step = _STEP if in_inches() else 1.0
+    deep = "" if missing.depth_mm is None else f" x {step * math.ceil(reported(missing.depth_mm) / step - _WHOLE):.4g}"
     angle = "" if missing.angle_deg is None else f" x {missing.angle_deg:.4g} deg"
     what = "" if missing.thing == "hole" else f"{missing.thing} "
-    why = f" ({_WHY[missing.why]})" if missing.why else ""
+    why = f" ({_WHY[missing.why]})" if missing.why else f" {missing.name}" if missing.name else ""
     return f"{what}{size(missing.diameter_mm)}{deep if missing.thing == 'hole' else ''}{angle}{why}"
 
 
 def drilling_words(step: DrillingStep) -> str:
     """The tool of a step that drills, with what it leaves."""
     deep = "" if step.kind in CONES else f" x {reported(step.depth_mm):.4g}"
-    return f"{step.kind} {size(step.diameter_mm)}{deep}"
+    return f"{step.kind} {step.thread or size(step.diameter_mm)}{deep}"
 
 
 def group_words(group: list[HoleEntry]) -> str:
@@ -79,14 +84,30 @@ def group_words(group: list[HoleEntry]) -> str:
     first, number = group[0], len(group)
     times = f"{number} x " if number > 1 else ""
     ends = ", through" if first.through else ""
+    needed = "" if first.tolerance is None else f" {first.tolerance.fit or limits(first.tolerance)}"
+    thread = "" if first.thread is None else f", {first.thread.name}"
     sink = "" if first.countersink is None else f", countersink {size(first.countersink.diameter_mm)}"
     bore = "" if first.counterbore is None else f", counterbore {size(first.counterbore.diameter_mm)}"
-    return f"{times}{size(first.diameter_mm)}, {reported(first.depth_mm):.4g} deep{ends}{sink}{bore}"
+    return f"{times}{size(first.diameter_mm)}{needed}, {reported(first.depth_mm):.4g} deep{ends}{sink}{bore}{thread}"
+
+
+def limits(tolerance: ToleranceEntry) -> str:
+    """The deviations of a diameter, as `+0.02 -0.01`."""
+    both = [each for each in (tolerance.upper_mm, tolerance.lower_mm) if each is not None]
+    return " ".join(f"{reported(each):+.4g}" if each else "0" for each in both)
 
 
 def size(diameter: float) -> str:
-    """A diameter as tools are called."""
-    return f"D{reported(diameter):.4g}"
+    """A diameter as tools are called: of inches with the name of the drill, if there is one of that size."""
+    name = inch_name(reported(diameter)) if in_inches() else ""
+    return f"D{reported(diameter):.4g}{f' ({name})' if name else ''}"
+
+
+@reporting(lambda plan: plan.effective.units)
+def missing_tools(plan: Plan) -> list[str]:
+    """What no tool of the libraries makes of any hole, each once; nothing where they have no tools for holes."""
+    needed = any(library.drills for library in plan.libraries)
+    return [*dict.fromkeys(missing_words(each) for hole in plan.holes for each in hole.missing)] if needed else []
 
 
 def drilled_share(plan: Plan) -> float | None:
