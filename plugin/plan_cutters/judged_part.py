@@ -204,7 +204,7 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
-        if ready.holes and document.process is not None:
+        if ready.holes:
             done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
             made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))
             process = with_drilling(document.process, ready, made, index_times)

@@ -11,7 +11,6 @@ from plan_cutters.cases import files as case
 from plan_cutters.cases.files import Case
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.shares import reached_share
 from plan_cutters_base.workers.child import TIMED_OUT
 
 #: Needs of a part that its row names.
@@ -65,16 +64,13 @@ class PartTools(BaseModel):
 def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
     """Read from a plan with an exit code which tools finish its part; `names`: how its tools are called in a line, by id."""
     process = plan.process
-    used = {step.cutter: None for step in process.steps} if process else {}
+    used = {step.cutter: None for step in process.steps}
     if not used and (taken := plan.selected or plan.selected_over_setups):
         used = {taken: None}
-    needs: list[str] = []
-    if process is not None and process.left:
-        # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
-        tries = [each.words for each in process.next if "--answers" not in each.argv]
-        needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
-    share = process.finished_share if process else None
-    made = PartTools(names=names, used=tuple(used), share=share, needs=tuple(needs))
+    # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
+    tries = [each.words for each in process.next if "--answers" not in each.argv and process.left]
+    needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
+    made = PartTools(names=names, used=tuple(used), share=process.finished_share, needs=tuple(needs))
     if code != 0:
         return made
     # What may lie between its samples is a doubt: such a tool finishes nothing beyond doubt.
@@ -280,7 +276,7 @@ class PartRow(BaseModel):
     verdict: str = ""
     #: The cutter selected, or the one that leaves the least area.
     cutter: str | None = None
-    #: Of the area to machine that the process finishes, as the headline has it, 0 to 1; of an older plan what the cutter reaches.
+    #: Of the area to machine that the process finishes, as the headline has it, 0 to 1.
     share: float | None = None
     #: The cause, a code of the plan's, for which most of it stays.
     reason: str | None = None
@@ -318,10 +314,10 @@ def row_of(
     from plan_cutters.report.folder import file_name
 
     names = short_names(plan)
-    cutter = headline_cutter(plan) if plan.cutters else None
-    causes = [each.cause for each in plan.process.left if each.cause in REASONS] if plan.process else []
+    cutter = headline_cutter(plan)
+    causes = [each.cause for each in plan.process.left if each.cause in REASONS]
     reason = causes[0] if causes else None
-    if cutter and not reason:
+    if not reason:
         # The code by which most of the area is not reached; by samples where these stand for no area.
         reason = main_reason(cutter.area_share) or None
         if not reason and cutter.not_reached:
@@ -333,9 +329,9 @@ def row_of(
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return PartRow(
         name=name, file=file, key=key, status=status, code=code,
-        verdict=headline(plan, names).title if cutter else "No cutter was judged",
-        cutter=names[cutter.id] if cutter else None,
-        share=plan.process.finished_share if plan.process else reached_share(cutter, cutter.area_share) if cutter else None,
+        verdict=headline(plan, names).title,
+        cutter=names[cutter.id],
+        share=plan.process.finished_share,
         reason=reason,
         cutters=len(plan.cutters), samples=plan.samples.judged,
         faces=sum(face.target and face.samples > 0 for face in plan.faces),

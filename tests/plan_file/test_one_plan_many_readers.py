@@ -79,7 +79,8 @@ def test_the_terminal_shows_it(result, first, lost, capsys):
     # A terminal has options as they are typed, all others fields of the same names.
     shown = flat(capsys.readouterr().out)
     as_typed = process_lines(result.plan, story_of(result.plan), MOST, typed)
-    assert first[0] in shown and all(flat(each) in shown for each in as_typed)
+    assert first[0] in shown
+    assert all(flat(each) in shown for each in as_typed)
     assert flat(result.summary()).count(lost) == 1
 
 

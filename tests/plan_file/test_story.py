@@ -93,8 +93,6 @@ def test_a_code_decides_which_notes_are_shown(whole, capsys):
     assert "Reworded no_machine" in said
     assert "Reworded no_machine" not in told(capsys, reworded)
     assert "Reworded samples_apart" in told(capsys, reworded, verbose=True)
-    # A plan of before has no codes: nothing is hidden.
-    assert "Verdicts are about samples" in notebook_text(document.model_copy(update={"note_codes": []}))
 
 
 def test_what_is_as_it_should_be_is_no_news(whole):

@@ -47,6 +47,7 @@ from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import (
     ANOTHER_SETUP,
+    NO_TEXT,
     AreaEntry,
     CutterEntry,
     LibraryEntry,
@@ -225,6 +226,7 @@ def plan_of(
     shown = selected or nearest(entries).id
     process = process_entry(ready, entries, answers, over, shown, fitting)
     return Plan(
+        text=NO_TEXT,
         process=process,
         part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),

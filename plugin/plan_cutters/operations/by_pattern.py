@@ -259,8 +259,8 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     at_best = float(copied.problem.cost.min(axis=1, initial=np.inf).sum())
     timed = against_bound(plan.total, bound, at_best, *copied.apart.cost.shape), copied.area
     words = [
-        "Orientations were chosen by the samples of one copy of the part; `--operations both` looks for the fewest orientations as "
-        "well, by all samples."
+        "Orientations were chosen by the samples of one copy of the part; `--operations both` looks for the fewest "
+        "orientations as well, by all samples."
     ]
     if plan is not single and known(single) < known(plan) and np.isfinite(single.total):
         words.append(_without_repeats(single))

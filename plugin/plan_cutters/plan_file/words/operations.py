@@ -39,7 +39,7 @@ def operations(plan: Plan) -> list[Line]:
 
 def operation_names(plan: Plan) -> dict[str, str]:
     """Number the operations of the process, by their ids, as their steps: `3`, or `3.2` where that is done several times."""
-    return {} if plan.operations is None or plan.process is None else numbered(plan.operations, plan.process)
+    return {} if plan.operations is None else numbered(plan.operations, plan.process)
 
 
 def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, str]:
@@ -58,7 +58,7 @@ def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, st
 
 def stepped(plan: Plan, of: OperationPlanEntry, text: str) -> str:
     """A text on a plan of operations, or the id of one: those of the process are called by their steps."""
-    if plan.process is None or of.name != plan.process.plan:
+    if of.name != plan.process.plan:
         return text
     names = operation_names(plan)
     return _OPERATION.sub(lambda match: f"step {names[match[0]]}" if match[0] in names else match[0], text)

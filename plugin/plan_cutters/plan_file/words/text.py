@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, reporting, sentence
-from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText, nearest
+from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
@@ -21,6 +21,7 @@ from plan_cutters.plan_file.words.headline import (
     patterns,
     proposal,
     sharp_edges,
+    shown_cutter,
     undecided,
     unseen,
 )
@@ -39,8 +40,7 @@ class Story:
     if any, and of the one that the models show. `inside` is surface that does not belong to the finished part, which comes
     first; `scope` what is undecided, which faces were not judged or not seen, and how much the cutters reach together;
     `between` how much is known between the samples; `in_short` what the plan of operations leaves, and how many orientations it
-    needs; `doubts` causes that make verdicts unsure, by their kind in the plural. `process` is None where an older file has
-    none.
+    needs; `doubts` causes that make verdicts unsure, by their kind in the plural.
     """
 
     names: Mapping[str, str]
@@ -48,7 +48,7 @@ class Story:
     shown: str
     inside: tuple[str, ...]
     headline: Headline
-    process: ProcessStory | None
+    process: ProcessStory
     proposal: tuple[str, ...]
     in_short: tuple[str, ...]
     scope: tuple[str, ...]
@@ -68,7 +68,7 @@ class Story:
 @reporting(lambda plan: plan.effective.units)
 def story_of(plan: Plan) -> Story:
     """Tell a plan."""
-    names, best = short_names(plan), shown(plan)
+    names, best = short_names(plan), shown_cutter(plan)
     cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
     finished = plan.selected or plan.selected_over_setups
     pair = "" if finished else together(plan)
@@ -100,11 +100,6 @@ def story_of(plan: Plan) -> Story:
     )
 
 
-def shown(plan: Plan) -> CutterEntry:
-    """The cutter that the models show: the selected, else the one that leaves the least area."""
-    return next((c for c in plan.cutters if c.id == plan.selected), None) or nearest(plan.cutters)
-
-
 class Chip(NamedTuple):
     """A kind (`good`, `unsure` or `bad`: its colours), a sign, and a word."""
 
@@ -133,7 +128,7 @@ def chip(plan: Plan, story: Story) -> Chip:
     good = story.headline.good
     if good:
         return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
-    if good is None and not (plan.process is not None and plan.process.finished) and any(c.blocked for c in plan.cutters):
+    if good is None and not plan.process.finished and any(c.blocked for c in plan.cutters):
         return _IN_PART
     return CHIPS[good]
 
@@ -188,22 +183,21 @@ def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], st
     def add(texts: Iterable[str], each: int) -> None:
         paragraphs.extend(wrapped([write(text)], each) for text in texts if text)
 
-    add(plan.process.doubts if plan.process else (), 2)
+    add(plan.process.doubts, 2)
     add(inside, 6)
     add(_doubts(plan, story)[:_DOUBTS], 1)
     add([judged], 3)
-    if process:
-        add([in_summary(plan)], 2)
-        paragraphs += [[line] for line in ([process.roughing] if process.roughing else []) + process.table()]
-    if plan.process and plan.process.plan == "fewest":
+    add([in_summary(plan)], 2)
+    paragraphs += [[line] for line in ([process.roughing] if process.roughing else []) + process.table()]
+    if plan.process.plan == "fewest":
         add([named(plan, one_more(plan.operations))], 3)
-    if process:
-        add([*shortened(process.own), *process.remaining[: process.much]], _LEFT)
-        add(process.next, 3)
-        add(process.remaining[process.much :], _LEFT)
+    stays = [", ".join(filter(None, each)) for each in process.remaining]
+    add([*shortened(process.own), *stays[: process.much]], _LEFT)
+    add(process.next, 3)
+    add(stays[process.much :], _LEFT)
     add(holes(plan), 2)
     add([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2)
-    add([process.clearance if process else ""], 1)
+    add([process.clearance], 1)
     add(_alone(story), _ALONE)
     add([story.headline.why], 2)
     add(story.between[:1], 2)
@@ -220,7 +214,7 @@ def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], st
 
 def _doubts(plan: Plan, story: Story) -> list[str]:
     """What makes the verdicts unsure, but for warnings that stand above in other words."""
-    above = {f"{text}." for text in repeated_warnings(plan)} if plan.process else set()
+    above = {f"{text}." for text in repeated_warnings(plan)}
     return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines if line.text not in above]
 
 
