@@ -34,7 +34,8 @@ def entries(question: Question) -> list[Any]:
     """Reckon `process.drilling`, as far as it follows from the libraries, the holes and the command."""
     document = question.document
     written: Sequence[Mapping[str, Any]] = document["process"].get("drilling", [])
-    timed, seen, steps = _timed(document), set[tuple[Any, ...]](), list[Any]()
+    timed = any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
+    seen, steps = set[tuple[Any, ...]](), list[Any]()
     for step in written:
         drill = question.drills.get(step["tool"])
         if drill is None:
@@ -62,10 +63,6 @@ def entries(question: Question) -> list[Any]:
             "link_seconds": number * document["effective"]["link_time_s"], "index_seconds": index,
         })  # fmt: skip
     return steps
-
-
-def _timed(document: Mapping[str, Any]) -> bool:
-    return any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
 
 
 def _on_axis(document: Mapping[str, Any], stroke: Mapping[str, Any]) -> list[float]:

@@ -71,29 +71,21 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
+        strokes = [StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
         steps.append(
             DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
-                holes=[_stroke(place, each) for place, each in same[key]],
+                holes=strokes,
                 setup=use.setup, axis=vector(use.axis + 0.0), angles_deg=_angles(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
                 seconds=None if feed is None else len(same[key]) * time_of_hole(deep, feed),
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
-    return [step for group in _by_tool(steps) for step in _indexed(ready, group, index_times)]
-
-
-def _stroke(hole: int, use: Drilled) -> StrokeEntry:
-    return StrokeEntry(hole=hole, mouth_mm=_rounded(use.mouth), tip_mm=_rounded(use.tip))
-
-
-def _by_tool(steps: Sequence[DrillingStep]) -> list[list[DrillingStep]]:
-    """Steps of one tool in one setup together, in their order."""
-    each: dict[tuple[int, str], list[DrillingStep]] = {}
+    together: dict[tuple[int, str], list[DrillingStep]] = {}
     for step in steps:
-        each.setdefault((step.setup, step.tool), []).append(step)
-    return [*each.values()]
+        together.setdefault((step.setup, step.tool), []).append(step)
+    return [step for group in together.values() for step in _indexed(ready, group, index_times)]
 
 
 def _indexed(ready: Prepared, steps: Sequence[DrillingStep], index_times: IndexTimes) -> list[DrillingStep]:

@@ -379,12 +379,6 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
-def _by_others(plan: Plan) -> str:
-    """The cutter that does alone, or over all setups, where the process has other cutters; else empty."""
-    does = plan.selected or plan.selected_over_setups
-    return does if does and {step.cutter for step in plan.process.steps} - {does} else ""
-
-
 def _alone_too(plan: Plan, cutter: str, called: str) -> str:
     """A sentence on the cutter that does alone, and why the process has others."""
     if not cutter:
@@ -463,7 +457,9 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process.finished_share >= 1.0 else ""
         return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
 
-    others = _by_others(plan)
+    # The cutter that does alone, or over all setups, where the process has other cutters.
+    does = plan.selected or plan.selected_over_setups
+    others = does if does and {step.cutter for step in process.steps} - {does} else ""
     if process.finished:
         if plan.selected and not others:
             # Of several setups one may do by itself.

@@ -161,15 +161,15 @@ def text_of(plan: Plan) -> TextEntry:
     return TextEntry(
         headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],
-        lines=process_lines(plan, story, MOST),
+        lines=process_lines(plan, story),
         cutters={each.id: each.sentence for each in story.cutters},
         verdicts={name: VerdictText(tone=TONES[each], word=each.word) for name, each in chips.items()},
         shares={each.id: each.shares for each in story.cutters},
     )
 
 
-def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], str] = as_fields) -> list[str]:
-    """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
+def process_lines(plan: Plan, story: Story, write: Callable[[str], str] = as_fields) -> list[str]:
+    """The process below the headline, at most `MOST` lines of 80 columns: what makes it unsure, steps, what is left, next.
 
     `write`: how options are written: `typed` for a terminal; other readers have fields of these names.
     """
@@ -202,12 +202,12 @@ def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], st
     add([story.headline.why], 2)
     add(story.between[:1], 2)
     add([f"{count(unshown, 'note')}: {where}."] if unshown else [], 1)
-    if sum(map(len, paragraphs)) <= most:
+    if sum(map(len, paragraphs)) <= MOST:
         return [line for paragraph in paragraphs for line in paragraph]
     lines = list[str]()
     for paragraph in paragraphs:
         # A sentence that is cut says something else.
-        if len(lines) + len(paragraph) < most:
+        if len(lines) + len(paragraph) < MOST:
             lines += paragraph
     return [*lines, f"More: {where}."]
 
