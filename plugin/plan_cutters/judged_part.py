@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints
 from cad_io.part.edges import InsideEdge, inside_edges
 from plan_cutters.answers.drilling import drilled
-from plan_cutters.answers.fitting import fitting
+from plan_cutters.answers.means import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
