@@ -46,7 +46,7 @@ def made_plan(cutters=3, faces=4, **more):
 
 
 def witness(point, face, depth_mm, reason="rear_gouge", obstacle_face="F1"):
-    return {"point": point, "face": face, "reason": reason, "obstacle_face": obstacle_face, "obstacle_point": None,
+    return {"sample": 0, "point": point, "face": face, "reason": reason, "obstacle_face": obstacle_face, "obstacle_point": None,
             "best_posture": None, "depth_mm": depth_mm}  # fmt: skip
 
 

@@ -120,9 +120,8 @@ MET = Samples(face=np.array([1, 2, 2]), point=np.array([[1.0, 2, 3], [1, 2, 3], 
 def test_a_witness_names_its_sample():
     """A sample of another face lies at the same point."""
     assert row_of(MET, entry()) == 1
-    assert row_of(MET, entry(sample=None)) == 1
-    assert row_of(MET, entry(sample=None, face="F1")) == 0
-    for other in (entry(sample=2), entry(sample=0), entry(sample=7), entry(point=(5, 5, 5), sample=None), entry(face="F3")):
+    assert row_of(MET, entry(sample=0, face="F1")) == 0
+    for other in (entry(sample=2), entry(sample=0), entry(sample=7), entry(sample=-1), entry(point=(5, 5, 5)), entry(face="F3")):
         with pytest.raises(ValueError, match="of another plan"):
             row_of(MET, other)
 

@@ -166,9 +166,7 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str], *, verbose: 
     lines: list[Any] = []
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
     if files and verbose:
-        sizes = {
-            f.name: f" ({f.size_bytes / 1e6:.1f} MB)" for f in plan.files.values() if f.size_bytes and f.size_bytes >= _LARGE
-        }
+        sizes = {f.name: f" ({f.size_bytes / 1e6:.1f} MB)" for f in plan.files.values() if f.size_bytes >= _LARGE}
         each = ", ".join(f"{name}{sizes.get(name, '')}" for name in files)
         lines.append(f"Written to {out}: {each} ({plan.run.total:.0f} s in all).")
     if verbose:

@@ -111,7 +111,7 @@ class MissingEntry(Frozen):
 class WitnessEntry(Frozen):
     """A sample that is not reached and the posture that comes nearest to reaching it."""
 
-    sample: int | None = Field(default=None, description="its row in samples.npz; null in older files")
+    sample: int = Field(description="its row in samples.npz")
     point: Vector
     face: str
     verdict: Literal["inaccessible", "undecided"] = "inaccessible"
@@ -336,7 +336,7 @@ NO_TEXT = TextEntry(headline="", tone="unsure", lines=[], cutters={}, verdicts={
 class FileEntry(Frozen):
     name: str
     sha256: str
-    size_bytes: int | None = Field(default=None, description="null in older files")
+    size_bytes: int
 
 
 class Run(Frozen):
@@ -344,9 +344,7 @@ class Run(Frozen):
 
     time: str
     seconds: dict[str, float] = Field(description="by stage; those of a cutter, by its id, are its judging")
-    boxes: dict[str, int] = Field(
-        default={}, description="boxes of obstacle trees that were looked at, by stage; empty in older files"
-    )
+    boxes: dict[str, int] = Field(default={}, description="boxes of obstacle trees that were looked at, by stage")
     total: float = Field(
         default=0.0,
         description="seconds from the start of the command (from Python: of the planning, without what lies between it and the "
