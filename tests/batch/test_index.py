@@ -91,8 +91,9 @@ def test_the_row_links_to_what_was_written_alone(judged):
 
 
 def entry(share, **counts):
-    known = {"id": "R6L80", "name": "R6L80", "group": "flat", "radius": 6.0, "corner_radius": 0.0, "length": 80.0, "feasible": None,
-             "march_differs": 0, "by_reason": {}, "undecided_by_reason": {}, "faces": {}, "witnesses": []}  # fmt: skip
+    known = {"id": "R6L80", "name": "R6L80", "group": "flat", "radius": 6.0, "corner_radius": 0.0, "length": 80.0,
+             "feasible": None, "march_differs": 0, "by_reason": {}, "undecided_by_reason": {},
+             "faces": {}, "witnesses": []}  # fmt: skip
     return CutterEntry.model_validate({**known, **counts, "area_share": share})
 
 
