@@ -335,7 +335,8 @@ class _Finder:
         numbers = {ring.number for ring in core}
         rest = [ring for ring in rings.values() if ring.number not in numbers]
         beyond = {
-            up: _outward([r for r in rest if _lies_beyond(r, low, high, up, near)], radius, near, up) for up in (False, True)
+            False: _outward([ring for ring in rest if ring.high <= low + near], radius, near, False),
+            True: _outward([ring for ring in rest if ring.low >= high - near], radius, near, True),
         }
         if any(self._has_island(ring, rings) for each in beyond.values() for ring in each if ring.kind == "plane"):
             return None
@@ -519,11 +520,6 @@ def _grouped(items: Iterable[int], pairs: Sequence[tuple[int, int]]) -> list[lis
     for item, group in zip(items, connected(len(items), np.array(pairs, np.int32).reshape(-1, 2)).tolist(), strict=True):
         groups[group].append(item)
     return [*groups.values()]
-
-
-def _lies_beyond(ring: _Ring, low: float, high: float, up: bool, near: float) -> bool:
-    """Whether a face lies above, or below, what goes from one height to another one."""
-    return ring.low >= high - near if up else ring.high <= low + near
 
 
 def _outward(rings: Sequence[_Ring], radius: float, near: float, up: bool) -> list[_Ring]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints
 from cad_io.part.edges import InsideEdge, inside_edges
 from plan_cutters.answers.drilling import drilled
-from plan_cutters.answers.fitting import fitting
+from plan_cutters.answers.means import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
@@ -206,7 +206,7 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
-        if ready.holes and document.process is not None:
+        if ready.holes:
             done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
             made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))
             process = with_drilling(document.process, ready, made, index_times)

@@ -3,18 +3,18 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from plan_cutters.domain.answers import LeastSet, RadiusMap
+from plan_cutters.domain.answers import RadiusMap
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.own_process import Mode, OwnResult
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.plan_file.answers import MendEntry, StepEntry
+from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, StepEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 
 
@@ -136,6 +136,21 @@ class Advice:
 
     entry: MendEntry
     steps: tuple[Step, ...] = ()  #: In the order of those of `entry`.
+
+
+class Run(NamedTuple):
+    """A cutter in a setup, the first of which is 0."""
+
+    cutter: Cutter
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class LeastSet:
+    """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters."""
+
+    entry: LeastSetEntry  #: As the plan file has them.
+    runs: tuple[Run, ...]  #: In the order of those of `entry`; none where nothing is reached.
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,7 +18,6 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.process import OtherSetup
-from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import handed, order, wanted
 from plan_cutters.domain.verdicts import Verdicts
@@ -28,7 +27,7 @@ from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_ma
 from plan_cutters.judging.judge import CachedJudge, FirstLook, Judge, JudgeOnce, in_setup, judge
 from plan_cutters.judging.phases import classify, regions
 from plan_cutters.options import Options
-from plan_cutters.outcome import Answers, Operations
+from plan_cutters.outcome import Answers, LeastSet, Operations
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
@@ -275,7 +274,9 @@ def prepare(
         if whole.solids:
             _ = whole.sewn  # faces that share edges with those of a solid cannot be taken from it
         else:
-            whole.recall(sewn=stages.cached("sewn", whole.key, lambda: SewnForm.of(whole.sewn), _is_whole))
+            whole.recall(
+                sewn=stages.cached("sewn", whole.key, lambda: SewnForm.of(whole.sewn), lambda sewn: sewn.rest.stopped is None)
+            )
         whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
     with clock.stage("orient"):
         scene = Scene.of(
@@ -378,10 +379,6 @@ def prepare(
             file=whole.file,
         )
     return ready
-
-
-def _is_whole(sewn: SewnForm) -> bool:
-    return sewn.rest.stopped is None
 
 
 def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:

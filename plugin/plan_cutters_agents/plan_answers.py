@@ -24,7 +24,6 @@ from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.cutters import face_text, helping, in_the_way, main_reason, posture_text, sample_text
 from plan_cutters.plan_file.words.holes import missing_tools
 from plan_cutters.plan_file.words.names import as_fields, named
-from plan_cutters.plan_file.words.text import shown, text_of
 from plan_cutters_agents.access import CallError, Permissions
 from plan_cutters_agents.requests import ExplainQuestion
 from plan_cutters_ci.plans import compare
@@ -145,13 +144,11 @@ def _missing(plan: Plan) -> list[Entry]:
 
 def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     """Which cutters finish, in which steps, and what the others lose."""
-    codes = [*plan.note_codes, *[""] * len(plan.notes)]
-    every = [*zip(codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
-    more: Entry = {}
-    if (process := plan.process) is not None:
-        more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
-                "left": [_remaining(each) for each in process.left],
-                "drilling": [_drilling(k, each) for k, each in enumerate(process.drilling, len(process.steps) + 1)]}  # fmt: skip
+    every = [*zip(plan.note_codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
+    process = plan.process
+    more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
+            "left": [_remaining(each) for each in process.left],
+            "drilling": [_drilling(k, each) for k, each in enumerate(process.drilling, len(process.steps) + 1)]}  # fmt: skip
     notes = [{"code": code, "text": as_fields(text)} for code, text in every]
     return PlanAnswer(
         **_of_plan(plan, code),
@@ -210,7 +207,7 @@ def compared(plan: Plan, code: int) -> Comparison:
 def pictured(plan: Plan, code: int) -> Picture:
     """Describe a picture: whose verdicts it shows, and its colours."""
     legend = {colour: plan.legend_words.get(word, word) for word, colour in plan.legend.items()}
-    return Picture(**_of_plan(plan, code), shown=shown(plan).id, legend=legend)
+    return Picture(**_of_plan(plan, code), shown=plan.shown, legend=legend)
 
 
 def ranked(plan: Plan) -> list[CutterEntry]:
@@ -219,7 +216,7 @@ def ranked(plan: Plan) -> list[CutterEntry]:
 
 
 def _of_plan(plan: Plan, code: int) -> Entry:
-    text = plan.text or text_of(plan)
+    text = plan.text
     # Given as `spacing_mm` in each call, the widest spacing makes the samples of all calls the same.
     sampling = _fields(plan.effective, "spacing_mm", "sampled_by")
     return {

@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import Literal, NamedTuple, get_args
 
 from pydantic import BaseModel, ConfigDict
@@ -11,22 +12,12 @@ from plan_cutters.cases import files as case
 from plan_cutters.cases.files import Case
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.shares import reached_share
 from plan_cutters_base.workers.child import TIMED_OUT
 
 #: Needs of a part that its row names.
 _NEEDS = 3
 #: Seconds that each of the two searches may take; then the best set so far is reported, with the bound that is proved by then.
 _SECONDS = 10.0
-
-
-class FaceTools(BaseModel):
-    """The tools that reach a face whole, and those that reach some of it."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    whole: tuple[str, ...]
-    partly: tuple[str, ...] = ()
 
 
 class PartTools(BaseModel):
@@ -42,9 +33,9 @@ class PartTools(BaseModel):
     alone: tuple[str, ...] = ()
     #: Sets that the plan states to finish the part: its process, its least set.
     together: tuple[tuple[str, ...], ...] = ()
-    #: What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
-    #: setups, for the plan counts the samples of a face in the first one alone.
-    faces: tuple[FaceTools, ...] = ()
+    #: Of each face the tools that reach it whole, but for what follows from others (`essential`). Empty where the part was judged
+    #: in several setups, for the plan counts the samples of a face in the first one alone.
+    faces: tuple[tuple[str, ...], ...] = ()
     #: Tools of the steps of the plan, whatever it finishes.
     used: tuple[str, ...] = ()
     #: Of what is requested, that all tools finish together, 0 to 1.
@@ -59,22 +50,19 @@ class PartTools(BaseModel):
             return False
         if there & set(self.alone) or any(there.issuperset(each) for each in self.together):
             return True
-        return bool(self.faces) and all(there & set(face.whole) for face in self.faces)
+        return bool(self.faces) and all(there & set(face) for face in self.faces)
 
 
 def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
     """Read from a plan with an exit code which tools finish its part; `names`: how its tools are called in a line, by id."""
     process = plan.process
-    used = {step.cutter: None for step in process.steps} if process else {}
+    used = {step.cutter: None for step in process.steps}
     if not used and (taken := plan.selected or plan.selected_over_setups):
         used = {taken: None}
-    needs: list[str] = []
-    if process is not None and process.left:
-        # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
-        tries = [each.words for each in process.next if "--answers" not in each.argv]
-        needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
-    share = process.finished_share if process else None
-    made = PartTools(names=names, used=tuple(used), share=share, needs=tuple(needs))
+    # The next things to try, then what each area left needs; to ask for more answers is nothing that the part needs.
+    tries = [each.words for each in process.next if "--answers" not in each.argv and process.left]
+    needs = [text for text in dict.fromkeys((*tries, *(each.needs for each in process.left))) if text][:_NEEDS]
+    made = PartTools(names=names, used=tuple(used), share=process.finished_share, needs=tuple(needs))
     if code != 0:
         return made
     # What may lie between its samples is a doubt: such a tool finishes nothing beyond doubt.
@@ -94,48 +82,29 @@ def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
     )
 
 
-def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
-    """The ways in which the tools reach the faces that are to be machined."""
-    ways: dict[FaceTools, None] = {}
+def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[tuple[str, ...], ...]:
+    """The tools that reach each of the faces that are to be machined whole."""
+    every = list[tuple[str, ...]]()
     for face in faces:
         counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
         # Without a sample of the finished part's surface there is nothing to reach.
         if not face.target or not any(each.reached + each.not_reached + each.unjudged for each in counts.values()):
             continue
-        whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
-        partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
-        ways[FaceTools(whole=whole, partly=partly)] = None
-    return essential(tuple(ways))
+        every.append(tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged))
+    return essential(every)
 
 
-def essential(ways: Sequence[FaceTools]) -> tuple[FaceTools, ...]:
-    """Keep the ways that say more than others do, so that a part of many faces has a short row.
+def essential(faces: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
+    """Keep the faces that say more than others do: whatever does these does a face that more tools reach whole.
 
-    A way follows from another one if whatever tools do that face whole do this one, and those that do some of it as well.
-
-    >>> essential([FaceTools(whole=("D6",)), FaceTools(whole=("D6", "D8"))])
-    (FaceTools(whole=('D6',), partly=()),)
+    >>> essential([("D6",), ("D6", "D8")])
+    (('D6',),)
     """
-    stays: list[FaceTools] = []
-    for way in sorted(dict.fromkeys(ways), key=lambda each: (len(each.whole), len(each.partly))):
-        whole, some = set(way.whole), {*way.whole, *way.partly}
-        if not any(whole.issuperset(one.whole) and some.issuperset(one.partly) for one in stays):
-            stays.append(way)
+    stays: list[tuple[str, ...]] = []
+    for whole in sorted(dict.fromkeys(faces), key=len):
+        if not any(set(whole).issuperset(one) for one in stays):
+            stays.append(whole)
     return tuple(stays)
-
-
-class Fewest(NamedTuple):
-    """The fewest tools that the plans state to finish all parts together."""
-
-    #: Ids, the one that finishes most parts alone first.
-    tools: tuple[str, ...]
-    #: No fewer finish all of the parts, however they would share faces: a proved lower bound.
-    at_least: int
-
-    @property
-    def proven(self) -> bool:
-        """Whether it is proved that no fewer do."""
-        return len(self.tools) <= self.at_least
 
 
 class _Row(NamedTuple):
@@ -145,52 +114,38 @@ class _Row(NamedTuple):
     least: float
 
 
-def fewest(parts: Sequence[PartTools]) -> Fewest:
-    """Find the fewest tools for all parts that are finished.
+def fewest(parts: Sequence[PartTools]) -> tuple[str, ...]:
+    """Find the fewest tools for all parts that are finished: their ids, the one that finishes most parts alone first.
 
     A set counts as finishing a part if the plan says so: a tool that does so alone, the tools of its process or of its least set,
     or tools of which one reaches each face whole. Tools that share a face in some other way might do as well; the plans do not
-    state it, so the lower bound allows for it: whatever finishes a part has on each face a tool that reaches it whole, or two
-    that reach some of it. Parts that are not finished are left out.
+    state it. Parts that are not finished are left out.
 
     Examples
     --------
     >>> a = PartTools(names={}, finished=True, alone=("D6", "D8"))
     >>> b = PartTools(names={}, finished=True, alone=("D8",))
-    >>> fewest([a, b]), fewest([a, b]).proven
-    (Fewest(tools=('D8',), at_least=1), True)
-    >>> fewest([])
-    Fewest(tools=(), at_least=0)
+    >>> fewest([a, b]), fewest([])
+    (('D8',), ())
     """
     stated = (part for part in parts if part.finished and (part.alone or part.together or part.faces))
     different = list({(*map(frozenset, (part.names, part.alone, part.faces)), frozenset(map(frozenset, part.together))): part
                       for part in stated}.values())  # fmt: skip
     if not different:
-        return Fewest((), 0)
+        return ()
     alone = Counter(name for part in parts for name in part.alone)
     used = Counter(name for part in parts for name in part.used)
-    names = alone.keys() | {name for part in different for name in _names(part)}
+    names = {name for part in different for name in (*part.names, *part.alone, *chain(*part.together, *part.faces))} | {*alone}
     tools = sorted(names, key=lambda name: (-alone[name], -used[name], name))
     place = {name: k for k, name in enumerate(tools)}
     rows, columns = _stated(different, place)
     # Of sets of as many, the one of the tools that finish most parts alone.
     cost = [1.0 + k / (1.0 + len(tools) ** 2) for k in range(len(tools))]
-    values, _ = _least(cost + [0.0] * (columns - len(tools)), rows)
+    values = _least(cost + [0.0] * (columns - len(tools)), rows)
     chosen = None if values is None else {name for name, k in place.items() if values[k] > 0.5}
     if chosen is None or not all(part.finished_by(chosen) for part in different):
         chosen = _greedy(different)
-    bounding = [
-        _Row({place[name]: 2.0 if name in whole else 1.0 for name in sorted(whole | partly)}, 2.0)
-        for part in different
-        for whole, partly in ((set(part.alone), _names(part)), *((set(face.whole), set(face.partly)) for face in part.faces))
-    ]
-    _, bound = _least([1.0] * len(tools), bounding)
-    return Fewest(tuple(sorted(chosen, key=place.__getitem__)), max(1, math.ceil(bound - 1e-6)))
-
-
-def _names(part: PartTools) -> set[str]:
-    # Those that the plan states of no set as well: they might be in one.
-    return set().union(part.names, part.alone, *part.together, *((*face.whole, *face.partly) for face in part.faces))
+    return tuple(sorted(chosen, key=place.__getitem__))
 
 
 def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Row], int]:
@@ -212,7 +167,7 @@ def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Ro
                 mine.add(columns)
                 columns += 1
         mine |= {place[name] for name in part.alone}
-        for whole in {face.whole for face in part.faces} or {()}:
+        for whole in {*part.faces} or {()}:
             add(_Row(dict.fromkeys(mine | {place[name] for name in whole}, 1.0), 1.0))
     return list(rows.values()), columns
 
@@ -223,27 +178,26 @@ def _greedy(parts: Sequence[PartTools]) -> set[str]:
     for part in parts:
         if not part.finished_by(chosen):
             sets = [{name} for name in part.alone] + [set(each) for each in part.together]
-            chosen |= min(sets, key=len) if sets else {face.whole[0] for face in part.faces}
+            chosen |= min(sets, key=len) if sets else {face[0] for face in part.faces}
     return chosen
 
 
-def _least(cost: Sequence[float], rows: Sequence[_Row]) -> tuple[Sequence[float] | None, float]:
-    """The values 0 or 1 of least cost under conditions, None where none were found in time; and a proved bound of that cost."""
+def _least(cost: Sequence[float], rows: Sequence[_Row]) -> Sequence[float] | None:
+    """The values 0 or 1 of least cost under conditions; None where none were found in time."""
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import coo_array
 
     entries = [(i, k, factor) for i, row in enumerate(rows) for k, factor in row.factors.items()]
     i, k, factors = zip(*entries, strict=True)
     table = coo_array((factors, (i, k)), shape=(len(rows), len(cost))).tocsr()
-    solution = milp(
+    values: Sequence[float] | None = milp(
         list(cost),
         integrality=[1] * len(cost),
         bounds=Bounds(0, 1),
         options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
         constraints=LinearConstraint(table, [row.least for row in rows], math.inf),
-    )
-    bound = solution.fun if solution.status == 0 else solution.mip_dual_bound
-    return solution.x, float(bound) if bound is not None and math.isfinite(bound) else 0.0
+    ).x
+    return values
 
 
 #: Exit codes of a batch: as of a single plan (`docs/command.md`).
@@ -280,7 +234,7 @@ class PartRow(BaseModel):
     verdict: str = ""
     #: The cutter selected, or the one that leaves the least area.
     cutter: str | None = None
-    #: Of the area to machine that the process finishes, as the headline has it, 0 to 1; of an older plan what the cutter reaches.
+    #: Of the area to machine that the process finishes, as the headline has it, 0 to 1.
     share: float | None = None
     #: The cause, a code of the plan's, for which most of it stays.
     reason: str | None = None
@@ -318,10 +272,10 @@ def row_of(
     from plan_cutters.report.folder import file_name
 
     names = short_names(plan)
-    cutter = headline_cutter(plan) if plan.cutters else None
-    causes = [each.cause for each in plan.process.left if each.cause in REASONS] if plan.process else []
+    cutter = headline_cutter(plan)
+    causes = [each.cause for each in plan.process.left if each.cause in REASONS]
     reason = causes[0] if causes else None
-    if cutter and not reason:
+    if not reason:
         # The code by which most of the area is not reached; by samples where these stand for no area.
         reason = main_reason(cutter.area_share) or None
         if not reason and cutter.not_reached:
@@ -333,9 +287,9 @@ def row_of(
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return PartRow(
         name=name, file=file, key=key, status=status, code=code,
-        verdict=headline(plan, names).title if cutter else "No cutter was judged",
-        cutter=names[cutter.id] if cutter else None,
-        share=plan.process.finished_share if plan.process else reached_share(cutter, cutter.area_share) if cutter else None,
+        verdict=headline(plan, names).title,
+        cutter=names[cutter.id],
+        share=plan.process.finished_share,
         reason=reason,
         cutters=len(plan.cutters), samples=plan.samples.judged,
         faces=sum(face.target and face.samples > 0 for face in plan.faces),

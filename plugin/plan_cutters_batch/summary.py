@@ -85,8 +85,6 @@ class LeastTools(_Entry):
 
     tools: list[str] = Field(description="the one that finishes most parts alone first")
     parts: int = Field(description="that they finish: all that any tools finish beyond doubt")
-    at_least: int = Field(description="proved: no fewer tools than this finish all of these parts, however they share faces")
-    proven: bool = Field(description="no fewer tools do: there are as many as `at_least`")
 
 
 class UnfinishedPart(_Entry):
@@ -190,9 +188,8 @@ def _shop(rows: Sequence[PartRow]) -> ShopTools:
     unfinished = [row for row in rows if outcome(row) == "not_finished"]
     return ShopTools(
         tools=[ToolParts(tool=names[tool], id=tool, judged=judged[tool], alone=alone[tool], used=used[tool]) for tool in order],
-        least=None if not best.tools else
-        LeastTools(tools=[names[tool] for tool in best.tools], parts=sum(part.finished_by(best.tools) for part in parts),
-                   at_least=best.at_least, proven=best.proven),
+        least=None if not best else
+        LeastTools(tools=[names[tool] for tool in best], parts=sum(part.finished_by(best) for part in parts)),
         never_used=[names[tool] for tool in order if not used[tool]],
         unfinished=[
             UnfinishedPart(name=row.name, share=tools.share if tools else None, needs=list(tools.needs) if tools else [])
@@ -350,11 +347,7 @@ def _least(least: LeastTools) -> str:
     names = _listed(least.tools)
     if len(least.tools) == 1:
         return f"One tool finishes {parts} that can be finished beyond doubt: {names}."
-    text = f"Fewest tools for {parts} that can be finished beyond doubt, {len(least.tools)}: {names}"
-    if least.proven:
-        return f"{text}. No fewer do (proved)."
-    doubt = f"whether fewer than {len(least.tools)} do, the plans do not state"
-    return f"{text}. At least {numbers.count(least.at_least, 'tool')} must be there (proved); {doubt}."
+    return f"Fewest tools for {parts} that can be finished beyond doubt, {len(least.tools)}: {names}."
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -84,10 +84,9 @@ def stated_by(question: Question, options: Options) -> Question:
         odd = getattr(error, "cause", None) or f"its words cannot be made ({type(error).__name__}: {error})"
         return replace(question, names=names, stated=stated, odd=odd)
     stated["text"], process = made["text"], made["process"]
-    if process is not None:
-        own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]
-        left = [{"needs": each["needs"]} for each in process["left"]]
-        stated["process"] = {"next": process["next"], "doubts": process["doubts"], "left": left, "steps": own}
+    own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]
+    left = [{"needs": each["needs"]} for each in process["left"]]
+    stated["process"] = {"next": process["next"], "doubts": process["doubts"], "left": left, "steps": own}
     return replace(question, names=names, stated=stated)
 
 

@@ -40,7 +40,8 @@ def entries(question: Question) -> list[Any]:
     """Reckon `process.drilling`, as far as it follows from the libraries, the holes and the command."""
     document = question.document
     written: Sequence[Mapping[str, Any]] = document["process"].get("drilling", [])
-    timed, seen, steps = _timed(document), set[tuple[Any, ...]](), list[Any]()
+    timed = any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
+    seen, steps = set[tuple[Any, ...]](), list[Any]()
     for step in written:
         drill = question.drills.get(step["tool"])
         if drill is None:
@@ -76,10 +77,6 @@ def _threaded(document: Mapping[str, Any], drill: DrillSizes, step: Mapping[str,
     """The thread that a tap cuts, as the holes of its step have it."""
     names = {(document["holes"][each["hole"]].get("thread") or {"name": ""})["name"] for each in step["holes"]}
     return {"thread": names.pop() if len(names) == 1 else "one thread"} if drill.kind == "tap" else {}
-
-
-def _timed(document: Mapping[str, Any]) -> bool:
-    return any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
 
 
 def _on_axis(document: Mapping[str, Any], stroke: Mapping[str, Any]) -> list[float]:

@@ -1,6 +1,5 @@
 """Find the parts that changed in a git repository, and compare their plans, part by part."""
 
-import hashlib
 import json
 import os
 import posixpath
@@ -138,30 +137,6 @@ def content(at: str, path: str) -> bytes:
     return data
 
 
-def publish(pictures: dict[str, bytes], branch: str, remote: str) -> str:
-    """Add files to a branch of the remote, whatever is checked out; the commit that has them.
-
-    A PlanError where the remote refuses, as it does where the token may not write.
-    """
-    if not re.fullmatch(r"[\w.][\w./-]*", branch):
-        raise PlanError(f"{branch!r} is no name of a branch")
-    tip = git("ls-remote", remote, f"refs/heads/{branch}").decode().split()
-    entries = b""
-    if tip:
-        git("fetch", "--quiet", "--depth=1", remote, tip[0])
-        entries = git("ls-tree", "-z", tip[0])
-    there = {entry.split(b"\t", 1)[1] for entry in entries.split(b"\0") if entry}
-    for name, data in pictures.items():
-        if name.encode() not in there:
-            blob = git("hash-object", "-w", "--stdin", stdin=data).decode().strip()
-            entries += f"100644 blob {blob}\t{name}\0".encode()
-    tree = git("mktree", "-z", stdin=entries).decode().strip()
-    by = ["-c", f"user.name={os.environ.get('GITHUB_ACTOR', 'plan-cutters')}", "-c", "user.email=plan-cutters@localhost"]
-    made = git(*by, "commit-tree", tree, *(["-p", tip[0]] if tip else []), "-m", "Pictures of plans").decode().strip()
-    git("push", "--quiet", remote, f"{made}:refs/heads/{branch}")
-    return made
-
-
 #: Rules by which the command fails, each one stricter than the one before it.
 RULES = ("none", "lost", "unreachable", "not-comparable")
 #: Words of `--annotations`: where none is given, the environment decides.
@@ -227,22 +202,6 @@ def row_cases(row: Row, rule: str) -> Iterator["Case"]:
     yield counted(whole, "unreachable")
 
 
-def links_of(rows: Sequence[Row], branch: str) -> dict[Path, str]:
-    """Addresses of the pictures of folders, once they are pushed; where there is none, nothing is."""
-    data = {
-        folder: (folder / "review.png").read_bytes()
-        for row in rows
-        for folder in (row.before, row.after)
-        if folder is not None and (folder / "review.png").is_file()
-    }
-    if not data:
-        return {}
-    names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
-    made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
-    where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"
-    return {folder: f"{where}/{name}" for folder, name in names.items()}
-
-
 def artifacts() -> str:
     """Address of the files that the job keeps; empty where this is no job."""
     names = ("GITHUB_SERVER_URL", "GITHUB_REPOSITORY", "GITHUB_RUN_ID")
@@ -250,7 +209,7 @@ def artifacts() -> str:
     return f"{server}/{repository}/actions/runs/{run_id}#artifacts" if server and repository and run_id else ""
 
 
-def summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str) -> str:
+def summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], began: str, artifacts: str) -> str:
     """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
@@ -274,11 +233,8 @@ def summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[
             lines += ["", page_link(row.beside.as_posix(), artifacts)]
         if row.unreachable:
             lines += ["", f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}."]
-        shown = [(side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links]
-        lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
-    if not links:
-        where = "in the artifact of this job" if artifacts else "in the folder of this summary"
-        lines += ["", f"Pictures and review pages are {where}."]
+    where = "in the artifact of this job" if artifacts else "in the folder of this summary"
+    lines += ["", f"Pictures and review pages are {where}."]
     return "\n".join(lines) + "\n"
 
 
@@ -413,7 +369,6 @@ class ChangedRequest(Reported):
     out: str
     annotations: str | None
     cache: str | None
-    pictures_branch: str | None
     debug: bool
 
 
@@ -449,7 +404,6 @@ class ChangedRequest(Reported):
     "--annotations", type=click.Choice(KINDS),
     help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
 )  # fmt: skip
-@_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
 @options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."},
          sarif={})  # fmt: skip
 @takes(ChangedRequest)
@@ -475,14 +429,8 @@ def command(request: ChangedRequest) -> int:
         cache = Path(request.cache or folder).absolute()
         of_part = PartRequest.of(request.plan_options) if parts else None
         rows = [_compared(part, began, head, of_part, cache, out) for part in parts]
-    links: dict[Path, str] = {}
-    if request.pictures_branch and rows:
-        try:
-            links = links_of(rows, request.pictures_branch)
-        except PlanError as fault:
-            error(f"{_SELF}: pictures are in {out} alone: {fault}")
     failing = [row for row in rows if row.breaks(request.fail_on)]
-    text, job = (summary(rows, request.fail_on, failing, links, began, at) for at in ("", artifacts()))
+    text, job = (summary(rows, request.fail_on, failing, began, at) for at in ("", artifacts()))
     hand_on(rows, out, text, job, failing)
     cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
     if files is not None:

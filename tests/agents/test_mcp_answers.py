@@ -14,6 +14,7 @@ from mcp import Client, types
 from plan_cutters.domain.figures import percent, size
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.words.text import with_text
 from plan_cutters_agents import child, command
 from plan_cutters_agents.access import CallError, Limits, Roots
 from plan_cutters_agents.plan_answers import chosen, compared, explained, planned
@@ -45,7 +46,7 @@ def made_plan(cutters=3, faces=4, **more):
 
 
 def witness(point, face, depth_mm, reason="rear_gouge", obstacle_face="F1"):
-    return {"point": point, "face": face, "reason": reason, "obstacle_face": obstacle_face, "obstacle_point": None,
+    return {"sample": 0, "point": point, "face": face, "reason": reason, "obstacle_face": obstacle_face, "obstacle_point": None,
             "best_posture": None, "depth_mm": depth_mm}  # fmt: skip
 
 
@@ -56,7 +57,7 @@ def change(thing, why, **more):
 
 
 def read(**more):
-    return plan_of(json.dumps(made_plan(**more)), "plan.json", CallError)
+    return with_text(plan_of(json.dumps(made_plan(**more)), "plan.json", CallError))
 
 
 def cut(answer, most):
@@ -142,7 +143,7 @@ def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
     data["cutters"][1]["witnesses"] = [
         witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None) for x, depth in ((0, 1), (5, 3), (9, None))
     ]
-    plan = Plan.model_validate(data)
+    plan = with_text(Plan.model_validate(data))
     assert [w["point"][0] for w in explained(plan, plan.cutters[1], "F1").witnesses] == [5, 0, 9]
     found = cut(explained(plan, plan.cutters[1], "F1", point=(8.0, 0.0, 0.0)), 2)
     assert ([w["point"][0] for w in found["witnesses"]], found["more_witnesses"]) == ([9, 5], 1)
@@ -189,10 +190,11 @@ def test_cutters_are_named_by_the_words_that_were_given():
             "why": "R1L80 for the rest", "remains": []}  # fmt: skip
     lost["mend"] = {"lost": 8, "buried": 0, "why": "", "steps": [step]}
     data["selected"] = "R1L80"
-    plan = Plan.model_validate(data)
+    plan = with_text(Plan.model_validate(data))
     found = planned(plan, 0, {})
     said = (
-        f"Take flat end D2 x 80. For part.step, {size(plan.part.size_mm)}: D2L80, judged without a holder, 80 mm up from its tip."
+        f"Take flat end D2 x 80: it finishes all 4 mm². For part.step, {size(plan.part.size_mm)}: D2L80, judged without a "
+        "holder, 80 mm up from its tip."
     )
     assert " ".join(found.told.split()).startswith(said)
     assert [c["id"] for c in found.cutters] == ["R1L80", "R2L80"]
@@ -201,21 +203,8 @@ def test_cutters_are_named_by_the_words_that_were_given():
     assert said.told.startswith("flat end D4 x 80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
     assert "R2L80" not in said.told
     lost["mend"] |= {"unsure": True}
-    plan = Plan.model_validate(data)
+    plan = with_text(Plan.model_validate(data))
     assert [each["finishes"] for each in explained(plan, plan.cutters[1], "F1").would_help] == [None]
-
-
-def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something_does_not():
-    data = made_plan(cutters=2)
-    for share, counts, told in (
-        ({"inaccessible": 1.0}, {"accessible": 0, "inaccessible": 4}, "0 %"),
-        ({"inaccessible": 1.0}, {"accessible": 1, "inaccessible": 3}, "<0.1 %"),
-        ({"accessible": 1.0}, {"accessible": 3, "inaccessible": 1}, ">99.9 %"),
-    ):
-        data["cutters"][1] |= {**counts, "area_share": share}
-        data["cutters"] = data["cutters"][1:]
-        assert f"finish {told} of the area" in planned(Plan.model_validate(data), 1, {}).told
-        data = made_plan(cutters=2)
 
 
 @given(st.floats(0, 1))
@@ -348,4 +337,3 @@ def test_steps_are_told_in_the_words_in_which_they_are_given_back():
     assert (first["own"]["leaves"][0]["faces"], first["own"]["leaves"][0]["more_faces"]) == (["F2"], 1)
     assert first["own"]["nearest"]["angles"] == {"C": 0.0, "A": 90.0}
     assert planned(read(process=process), 1, {}).steps[1]["own"] is None
-    assert planned(read(), 1, {}).steps == []

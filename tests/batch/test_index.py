@@ -82,7 +82,7 @@ def test_the_row_says_what_the_samples_say(judged):
 
 
 def test_the_row_links_to_what_was_written_alone(judged):
-    files = {"html": {"name": "review.html", "sha256": ""}}
+    files = {"html": {"name": "review.html", "sha256": "", "size_bytes": 1}}
     document = type(judged.plan).model_validate({**judged.plan.model_dump(), "files": files})
     row = row_of(document, name="groove", file="groove.step", code=0, folder="a/groove")
     assert (row.page, row.picture) == ("a/groove/review.html", None)
@@ -91,8 +91,9 @@ def test_the_row_links_to_what_was_written_alone(judged):
 
 
 def entry(share, **counts):
-    known = {"id": "R6L80", "name": "R6L80", "radius": 6.0, "corner_radius": 0.0, "length": 80.0, "feasible": None,
-             "march_differs": 0, "by_reason": {}, "undecided_by_reason": {}, "faces": {}, "witnesses": []}  # fmt: skip
+    known = {"id": "R6L80", "name": "R6L80", "group": "flat", "radius": 6.0, "corner_radius": 0.0, "length": 80.0,
+             "feasible": None, "march_differs": 0, "by_reason": {}, "undecided_by_reason": {},
+             "faces": {}, "witnesses": []}  # fmt: skip
     return CutterEntry.model_validate({**known, **counts, "area_share": share})
 
 

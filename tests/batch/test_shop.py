@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from plan_cutters import plan
 from plan_cutters_batch import row as of_shop
-from plan_cutters_batch.row import FaceTools, PartRow, PartTools, essential, fewest, row_of
+from plan_cutters_batch.row import PartRow, PartTools, essential, fewest, row_of
 from plan_cutters_batch.summary import write_index
 
 TOOLS = "ABCDE"
@@ -24,13 +24,9 @@ def stated(reached, faces):
     while open_.any():
         process.append(int(reached[open_].sum(axis=0).argmax()))
         open_ &= ~reached[:, process[-1]]
-    ways = {}
-    for face in np.unique(faces):
-        here = reached[faces == face]
-        whole = tuple(TOOLS[k] for k in np.flatnonzero(here.all(axis=0)))
-        ways[FaceTools(whole=whole, partly=tuple(t for k, t in enumerate(TOOLS) if here[:, k].any() and t not in whole))] = None
+    whole = [tuple(TOOLS[k] for k in np.flatnonzero(reached[faces == face].all(axis=0))) for face in np.unique(faces)]
     names = {tool: f"tool {tool}" for tool in TOOLS}
-    return PartTools(names=names, finished=True, alone=alone, together=(tuple(TOOLS[k] for k in process),), faces=tuple(ways))
+    return PartTools(names=names, finished=True, alone=alone, together=(tuple(TOOLS[k] for k in process),), faces=tuple(whole))
 
 
 @st.composite
@@ -57,33 +53,21 @@ def test_the_fewest_tools_are_those_of_brute_force(parts):
     tools = [stated(*part) for part in parts]
     result = fewest(tools)
     # Truth: each sample of each part is reached by one of them.
-    columns = [TOOLS.index(name) for name in result.tools]
+    columns = [TOOLS.index(name) for name in result]
     assert all(reached[:, columns].any(axis=1).all() for reached, _ in parts)
-    # Of the sets that the plans state, none is smaller; and no set at all is smaller than the bound.
-    assert len(result.tools) == smallest(lambda each: all(part.finished_by(each) for part in tools))
-    least = smallest(lambda each: all(r[:, [TOOLS.index(t) for t in each]].any(axis=1).all() for r, _ in parts))
-    assert 1 <= result.at_least <= least <= len(result.tools)
-    assert result.proven == (result.at_least == len(result.tools))
-
-
-def test_tools_that_share_a_face_are_no_proof():
-    """A and B share the face of a part in a way that its plan does not state: the bound allows for it."""
-    face = FaceTools(whole=(), partly=("A", "B", "C", "D"))
-    names = dict.fromkeys("ABCD", "")
-    parts = [PartTools(names=names, finished=True, together=(each,), faces=(face,)) for each in (("A", "B"), ("C", "D"))]
-    result = fewest(parts)
-    assert (result.tools, result.at_least, result.proven) == (("A", "B", "C", "D"), 2, False)
+    # Of the sets that the plans state, none is smaller.
+    assert len(result) == smallest(lambda each: all(part.finished_by(each) for part in tools))
 
 
 def test_several_setups_have_no_ways_by_face():
     one = PartTools(names={"A": "", "B": "", "C": ""}, finished=True, together=(("A", "B"),))
-    assert fewest([one]) == (("A", "B"), 2)
-    assert fewest([one, PartTools(names={"B": ""}, finished=True, alone=("B",))]).tools == ("B", "A")
+    assert fewest([one]) == ("A", "B")
+    assert fewest([one, PartTools(names={"B": ""}, finished=True, alone=("B",))]) == ("B", "A")
 
 
 def test_parts_in_doubt_and_unfinished_ones_count_for_nothing():
-    assert fewest([]) == ((), 0)
-    assert fewest([PartTools(names={"A": "a"}, used=("A",), needs=("a smaller tool",))]) == ((), 0)
+    assert fewest([]) == ()
+    assert fewest([PartTools(names={"A": "a"}, used=("A",), needs=("a smaller tool",))]) == ()
 
 
 @given(shops(), st.sampled_from(["none", "wrong"]))
@@ -91,34 +75,23 @@ def test_parts_in_doubt_and_unfinished_ones_count_for_nothing():
 def test_a_search_that_ends_early_leaves_a_set_that_finishes_all(parts, end):
     tools = [stated(*part) for part in parts]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(of_shop, "_least", lambda cost, rows: (None if end == "none" else [0.0] * len(cost), 0.0))
+        patch.setattr(of_shop, "_least", lambda cost, rows: None if end == "none" else [0.0] * len(cost))
         result = fewest(tools)
-    assert all(part.finished_by(result.tools) for part in tools)
-    assert result.at_least == 1
+    assert all(part.finished_by(result) for part in tools)
 
 
 @pytest.mark.slow("plans a folder of parts")
 @given(shops())
 @settings(max_examples=100, deadline=None)
-def test_ways_that_follow_from_others_change_neither_condition(parts):
-    """For all sets of tools: what does the ways that stay does all of them, and the bound is as strong."""
+def test_faces_that_follow_from_others_change_nothing(parts):
+    """For all sets of tools: what does the faces that stay does all of them."""
     for part in parts:
         every = stated(*part).faces
         few = essential(every)
         assert set(few) <= set(every)
         for size in range(len(TOOLS) + 1):
             for each in map(set, itertools.combinations(TOOLS, size)):
-                whole, bound = ([rule(way, each) for way in every] for rule in (does, may_do))
-                assert all(does(way, each) for way in few) == all(whole)
-                assert all(may_do(way, each) for way in few) == all(bound)
-
-
-def does(way, tools):
-    return bool(tools & set(way.whole))
-
-
-def may_do(way, tools):
-    return 2 * len(tools & set(way.whole)) + len(tools & set(way.partly)) >= 2
+                assert all(each & {*face} for face in few) == all(each & {*face} for face in every)
 
 
 # Of plans
@@ -137,14 +110,8 @@ def test_a_plan_states_what_its_samples_say(judged):
     assert tools.alone
     assert all(np.logical_or.reduce([reached[name] for name in each]).all() for each in tools.together)
     by_face = [judged.samples.face == number for number in np.unique(judged.samples.face)]
-    ways = {
-        FaceTools(
-            whole=tuple(c.id for c in judged.plan.cutters if reached[c.id][here].all()),
-            partly=tuple(c.id for c in judged.plan.cutters if reached[c.id][here].any() and not reached[c.id][here].all()),
-        )
-        for here in by_face
-    }
-    assert set(tools.faces) == set(essential(tuple(ways)))
+    whole = [tuple(c.id for c in judged.plan.cutters if reached[c.id][here].all()) for here in by_face]
+    assert set(tools.faces) == set(essential(whole))
     assert set(tools.used) == {step.cutter for step in judged.plan.process.steps}
 
 
@@ -160,7 +127,7 @@ def test_a_tool_that_may_miss_something_between_samples_finishes_nothing_beyond_
     effective = judged.plan.effective.model_copy(update={"sampled_by": "default"})
     document = judged.plan.model_copy(update={"cutters": doubted, "effective": effective})
     tools = row_of(document, name="groove", file="groove.step", code=0).tools
-    named = {*tools.alone, *itertools.chain(*tools.together), *itertools.chain(*((*f.whole, *f.partly) for f in tools.faces))}
+    named = {*tools.alone, *itertools.chain(*tools.together), *itertools.chain(*tools.faces)}
     assert "R2L30" not in named
     assert "R6L80" in named
 
@@ -209,14 +176,12 @@ def test_the_summary_counts_tools_over_all_parts():
     counts = [(each["tool"], each["judged"], each["alone"], each["used"]) for each in result.summary["shop"]["tools"]]
     assert counts == [("flat end D8", 4, 2, 3), ("ball end D6", 4, 1, 2), ("flat end D9", 4, 0, 0)]
     assert result.summary["shop"]["least"] == {
-        "tools": ["flat end D8", "ball end D6"], "parts": 3, "at_least": 2, "proven": True}  # fmt: skip
+        "tools": ["flat end D8", "ball end D6"], "parts": 3}  # fmt: skip
     assert result.summary["shop"]["never_used"] == ["flat end D9"]
     assert result.summary["shop"]["unfinished"] == [{"name": "d", "share": 0.5, "needs": ["a longer tool"]}]
     assert (result.summary["shop"]["unfinished_count"], result.summary["shop"]["not_known"]) == (1, 2)
     assert "Finishes most parts alone: flat end D8, 2 of 6." in result.page
-    assert (
-        "Fewest tools for all 3 parts that can be finished beyond doubt, 2: flat end D8, ball end D6. No fewer do" in result.page
-    )
+    assert "Fewest tools for all 3 parts that can be finished beyond doubt, 2: flat end D8, ball end D6." in result.page
     assert "In no plan: flat end D9." in result.page
     assert "a longer tool" in result.page
 

@@ -7,8 +7,6 @@ from OCP.IGESControl import IGESControl_Writer
 
 from cad_io.read import read_part
 from plan_cutters import Cutter, Holder, plan
-from plan_cutters_ci import changed
-from plan_cutters_ci.changed import Changed
 from plan_cutters_ci.matching import match_faces
 from plan_cutters_ci.plans import compare
 from plan_cutters_ci.review import Picture, Side, page
@@ -221,10 +219,3 @@ def test_a_name_pairs_no_bore_with_a_pin():
         for p in (planned(bore, (2,)), planned(pin, (2,)))
     )
     assert not any(a.shape == "cylinder" for a, _, _ in match_faces(old, new))
-
-
-def test_where_there_is_no_picture_nothing_is_pushed(tmp_path, monkeypatch):
-    """A branch without a file is no help to anybody."""
-    monkeypatch.setattr(changed, "publish", lambda *words: pytest.fail("it was pushed"))
-    (tmp_path / "after").mkdir()
-    assert changed.links_of([changed.Row(Changed("a.step", "a.step"), after=tmp_path / "after")], "pictures") == {}

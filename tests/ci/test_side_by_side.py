@@ -45,7 +45,7 @@ def written(folder, result, **changes):
     """The folder of a plan with its page, as the command leaves it."""
     folder.mkdir(parents=True)
     write_html(result, None, folder / "review.html")
-    told = FileEntry(name="review.html", sha256=hashlib.sha256((folder / "review.html").read_bytes()).hexdigest())
+    told = FileEntry(name="review.html", sha256=hashlib.sha256((folder / "review.html").read_bytes()).hexdigest(), size_bytes=1)
     document = result.plan.model_copy(update={"files": {"html": told}, **changes})
     (folder / "plan.json").write_text(dumps(document), encoding="utf-8")
     return folder

@@ -60,8 +60,6 @@ def repository(tmp_path_factory):
         Path("notes.txt").write_text("still no part")
         git("add", "-A")
         git("commit", "-qm", "head")
-        git("clone", "-q", "--bare", ".", "../remote.git") if not Path("../remote.git").exists() else None
-        git("remote", "add", "origin", str(folder.parent / "remote.git"))
     finally:
         os.chdir(before)
     return folder, base
@@ -93,7 +91,7 @@ def step(folder, base, temp, **inputs):
 @pytest.fixture(scope="module")
 def ran(repository, tmp_path_factory):
     temp = tmp_path_factory.mktemp("runner")
-    return temp, step(*repository, temp, options=OPTIONS, **{"pictures-branch": "pictures"})
+    return temp, step(*repository, temp, options=OPTIONS)
 
 
 @pytest.mark.slow("runs whole commands")
@@ -135,24 +133,12 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
 
 
 @pytest.mark.slow("runs whole commands")
-def test_pictures_are_on_their_branch_and_in_the_summary(repository, ran):
-    _, (_, summary, _) = ran
-    remote = repository[0].parent / "remote.git"
-    made = git("-C", str(remote), "rev-parse", "pictures")
-    names = git("-C", str(remote), "ls-tree", "--name-only", made).split()
-    assert names
-    for name in names:
-        assert f"(https://forge.test/us/parts/raw/{made}/{name})" in summary
-    assert git("-C", str(repository[0]), "status", "--porcelain") == ""
-
-
-@pytest.mark.slow("runs whole commands")
 def test_what_was_planned_is_not_planned_again(repository, ran):
     """Without a change of content the plans of the cache are taken, byte for byte; the rule alone makes the code."""
     temp, (_, summary, _) = ran
     kept = {path: path.stat().st_mtime_ns for path in (temp / "plan-cutters-plans").rglob("plan.json")}
     assert len(kept) == 3
-    done, again, _ = step(*repository, temp, options=OPTIONS, **{"pictures-branch": "pictures", "fail-on": "none"})
+    done, again, _ = step(*repository, temp, options=OPTIONS, **{"fail-on": "none"})
     assert done.returncode == 0
     assert {path: path.stat().st_mtime_ns for path in (temp / "plan-cutters-plans").rglob("plan.json")} == kept
     assert [line for line in again.splitlines() if "F" in line] == [

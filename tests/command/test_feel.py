@@ -251,7 +251,7 @@ def everywhere(value, text):
 
 def nasty(document):
     found = json.loads(document.model_dump_json())
-    return with_text(Plan.model_validate(everywhere(found, NASTY) | {"units": found["units"], "text": None}))
+    return with_text(Plan.model_validate(everywhere(found, NASTY) | {"units": found["units"], "text": found["text"]}))
 
 
 @pytest.mark.parametrize("verbose", [False, True])

@@ -89,15 +89,9 @@ def test_the_lines_fit_a_terminal(found):
     assert text_of(found.plan) == found.plan.text
 
 
-def test_the_file_holds_the_process_and_old_files_have_none(found):
+def test_the_file_holds_the_process(found):
     document = json.loads(found.plan.model_dump_json())
     assert Plan.model_validate(document).process == found.plan.process
-    del document["process"]
-    old = Plan.model_validate(document)
-    assert old.process is None
-    assert process_story(old, {}) is None
-    assert all(len(line) <= WIDTH for line in text_of(old).lines)
-    assert code_of(old) in (FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED)
 
 
 def test_operations_are_the_steps():

@@ -79,9 +79,9 @@ def test_headline_lines_and_cutters_are_those_of_the_plan(results, many, reason,
         cutter(f"R{6 - n}L80", {f"F{k}": verdicts(*each, reason=reason) for k, each in enumerate(left, 1)}, radius=6.0 - n)
         for n, left in enumerate(many)
     ]  # fmt: skip
-    plan = made(faces, entries)
-    text, story = text_of(plan), story_of(plan)
-    found = result(results, written(with_text(plan)))
+    plan = with_text(made(faces, entries))
+    text, story = plan.text, story_of(plan)
+    found = result(results, written(plan))
     assert found.headline() == text.headline
     assert found.summary() == [text.headline, *text.lines]
     for each in entries:

@@ -166,11 +166,6 @@ def test_a_raised_tolerance_says_from_where_to_where(block):
     assert "from 0.01 mm to 0.064 mm" in line
 
 
-def test_older_plans_have_no_doubts_that_they_do_not_know(block):
-    effective = block.plan.effective.model_copy(update={"tolerance_requested_mm": None})
-    assert doubts(block.plan.model_copy(update={"process": None, "effective": effective})) == []
-
-
 @pytest.mark.parametrize(("size", "cutters", "said"), [
     (4.0, ["D10L60"], "The part is smaller than any cutter is wide: "),
     (4.0, ["D10L60", "D3L60"], ""),

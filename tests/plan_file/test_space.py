@@ -22,7 +22,7 @@ def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
     assert process.left
     assert long.process.next
     for most in (30, 22, 16, 13):
-        lines = process_lines(long, story_of(long), most)
+        lines = process_lines(long, story_of(long), most=most)
         assert len(lines) <= most
         rows = sum(re.match(r" +\d+  ", line) is not None for line in lines)
         assert any(line.startswith("Left, ") for line in lines)

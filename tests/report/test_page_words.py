@@ -65,7 +65,8 @@ def test_the_reasons_name_the_holder_and_how_short_it_may_be(planned, text):
 
 def witness(**more):
     best = Posture(tilt=71.0, rotation=300.0, axis=(0.0, 0.0, 1.0))
-    return WitnessEntry(**({"point": (0, 0, 0), "face": "F1", "reason": "rear_gouge", "obstacle_face": "fixture:table",
+    return WitnessEntry(**({"sample": 0, "point": (0, 0, 0), "face": "F1", "reason": "rear_gouge",
+                            "obstacle_face": "fixture:table",
                             "obstacle_point": (0, 0, 0), "best_posture": best, "depth_mm": 2.9} | more))  # fmt: skip
 
 

@@ -1,7 +1,21 @@
 """Plans without a part: made of faces and of the shares that cutters reach of them."""
 
-from plan_cutters.plan_file.model import CutterEntry, Effective, FaceEntry, MachineEntry, Plan, Run, SampleCounts, Selection
-from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo
+from collections import Counter
+
+from plan_cutters.plan_file.model import (
+    NO_TEXT,
+    CutterEntry,
+    Effective,
+    FaceEntry,
+    MachineEntry,
+    Plan,
+    Run,
+    SampleCounts,
+    Selection,
+    nearest,
+)  # fmt: skip
+from plan_cutters.plan_file.operations import ProcessEntry, ProcessStep, RemainingEntry
+from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 
 #: Samples of each face.
@@ -31,10 +45,29 @@ def cutter(name, on_faces, *, radius=6.0, length=80.0, holder=""):
     count = max(1, SAMPLES * len(on_faces))
     share = AreaShare(accessible=1 - (lost + unsure) / count, inaccessible=lost / count, undecided=unsure / count,
                       lost_by={"holder": (lost + unsure) / count} if lost + unsure else {})  # fmt: skip
-    return CutterEntry(id=name, name="", radius=radius, corner_radius=0.0, length=length, holder=holder,
+    return CutterEntry(id=name, name="", group="flat", radius=radius, corner_radius=0.0, length=length, holder=holder,
                        feasible=False if lost else None if unsure else True, march_differs=0, by_reason={},
                        undecided_by_reason={}, faces=on_faces, area_share=share, witnesses=[], inaccessible=lost,
                        undecided=unsure, accessible=count - lost - unsure)  # fmt: skip
+
+
+def process_of(faces, cutter):
+    """The process of one cutter alone."""
+    area, reached = sum(f.area_mm2 for f in faces if f.target), cutter.area_share.accessible
+    names = [f.id for f in faces if f.target]
+    left = [RemainingEntry(cause=cause, area_mm2=share * area, share=share, samples=1, faces=names, place_mm=None)
+            for cause, share in cutter.area_share.lost_by.items()]  # fmt: skip
+    step = ProcessStep(setup=0, mode="any", angles_deg=None, axis=None, cutter=cutter.id, faces=names, area_mm2=reached * area,
+                       share=reached, seconds=None, clearance_mm=None)  # fmt: skip
+    return ProcessEntry(steps=[step], finished_share=reached, finished_mm2=reached * area, asked_mm2=area, left=left,
+                        seconds=None)  # fmt: skip
+
+
+def scope_of(faces):
+    """All faces by their kinds."""
+    kinds, area = Counter(f.kind for f in faces if f.target), sum(f.area_mm2 for f in faces if f.target)
+    return Scope(judged=kinds.total(), judged_mm2=area, not_judged=0, not_judged_mm2=0.0, judged_by_kind=kinds,
+                 not_judged_by_kind={})  # fmt: skip
 
 
 def made(faces, cutters, *, sha="a", size=(100.0, 100.0, 100.0), effective=None, **more):
@@ -45,7 +78,10 @@ def made(faces, cutters, *, sha="a", size=(100.0, 100.0, 100.0), effective=None,
                       chord_error_mm=0.001, obstacle_triangles=1, flip=False, area_budget=0, posture_maps=False,
                       answers=[])  # fmt: skip
     chosen = min((c.id for c in cutters if c.feasible), default=None)
+    shown = next((c for c in cutters if c.id == chosen), None) or nearest(cutters)
+    more = {"process": process_of(faces, shown), "scope": scope_of(faces), "shown": shown.id, "note_codes": []} | more
     return Plan(
+        text=NO_TEXT,
         part=PartInfo(file="part.step", sha256=sha, size_mm=size, solids=1, faces=len(faces),
                       orientation=OrientationInfo(method="solid", confident=True), warnings=[]),
         effective=asked.model_copy(update=effective or {}), versions={"plan_cutters": "0"},

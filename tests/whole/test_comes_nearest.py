@@ -1,6 +1,5 @@
 """Where no cutter finishes, all who speak of a plan name one: the cutter that leaves the least area, not the fewest samples."""
 
-import json
 import math
 
 import pytest
@@ -10,7 +9,7 @@ from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import leaves, nearest
 from plan_cutters.plan_file.words.cutters import remaining_text
-from plan_cutters.plan_file.words.text import shown as shown_of
+from plan_cutters.plan_file.words.headline import shown_cutter as shown_of
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from plan_cutters_agents.plan_answers import planned, ranked
@@ -50,12 +49,10 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
     row = row_of(document, name="part", file="part.step", code=1)
     # A row has one share, that of its sentence.
     assert (row.cutter, row.share) == (story.names[wide.id], document.process.finished_share)
-    # An agent reads the file alone, and so it does where an older one does not say which cutter is shown.
-    for read in (document.model_dump(mode="json"), document.model_dump(mode="json", exclude={"shown"})):
-        read["part"]["file"] = "part.step"
-        found = plan_of(json.dumps(read), "plan.json")
-        assert (shown_of(found).id, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
-        assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, {}).told
+    # An agent reads the file alone.
+    found = plan_of(document.model_dump_json(), "plan.json")
+    assert (shown_of(found).id, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
+    assert "Each alone reaches: flat end D10 x 60 99 %" in planned(found, 0, {}).told
     summary(document, verbose=True)
     said = " ".join(capsys.readouterr().out.split())
     assert "Where flat end D10 x 60 fails" in said

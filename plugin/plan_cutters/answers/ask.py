@@ -15,13 +15,13 @@ from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.answers.state import OtherSetups
 from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.stick_out import least_stick_out
-from plan_cutters.domain.answers import LeastSet, RadiusMap, Shape
+from plan_cutters.domain.answers import RadiusMap, Shape
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import mm, reporting
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, UNJUDGED, Verdicts, over_setups
 from plan_cutters.option_table import EFFORT
-from plan_cutters.outcome import Advice, Answers
+from plan_cutters.outcome import Advice, Answers, LeastSet
 from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.words.answers import samples
 from plan_cutters.scene.preparation import Prepared

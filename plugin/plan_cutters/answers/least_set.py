@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
-from plan_cutters.domain.answers import LeastSet, Run, essential_rows
+from plan_cutters.domain.answers import essential_rows
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
+from plan_cutters.outcome import LeastSet, Run
+from plan_cutters.plan_file.answers import LeastSetEntry, RunEntry
 from plan_cutters.scene.preparation import Axis, Prepared, stood_on
 
 #: Seconds that the proof may take; then the best set found so far is told as such.
@@ -43,20 +45,22 @@ def least_set(
         more, _ = cover(rest, [columns[k][0] for k in usable], [columns[k][1] for k in usable])
         chosen = sorted({*chosen, *(usable[k] for k in more)})
     whole, done = reached[:, chosen], np.zeros(len(reached), bool)
-    runs = []
+    entries = list[RunEntry]()
     for k, column in enumerate(chosen):
         s, c = columns[column]
         mine = np.flatnonzero(reached[:, column] & ~done)
         done[mine] = True
-        runs.append(Run(
-            cutters[c], setups[s][0], s, len(mine), float(finished.area[mine].sum()), finished.of_rows(mine),
-            tuple(f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()),
-            int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
+        entries.append(RunEntry(
+            cutter=cutters[c].id, setup=setups[s][0], samples=len(mine), area_mm2=float(finished.area[mine].sum()),
+            share=finished.of_rows(mine), faces=[f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()],
+            alone=int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
         ))  # fmt: skip
     open_rows = np.flatnonzero(finished.wanted & ~done)
-    return LeastSet(
-        tuple(runs), int(done.sum()), len(open_rows), finished.of_rows(np.flatnonzero(done)), finished.of_rows(open_rows), proven
-    )
+    entry = LeastSetEntry(
+        runs=entries, reached=int(done.sum()), left=len(open_rows), share=finished.of_rows(np.flatnonzero(done)),
+        left_share=finished.of_rows(open_rows), proven=proven, doubtful=ready.conditions.surroundings.doubtful,
+    )  # fmt: skip
+    return LeastSet(entry, tuple(Run(cutters[c], s) for s, c in (columns[column] for column in chosen)))
 
 
 def by_kind(

@@ -55,8 +55,10 @@ def option(
         if options.placement is not None or any(options.other_placements):
             return None
         words += [word for axis in setups for word in ("--setup", ",".join(f"{each:.6g}" for each in axis))]
-    if conditions is not None:
-        words += _within(ready.conditions, conditions)
+    if conditions is not None and conditions.machine != ready.conditions.machine:
+        words += ["--machine", conditions.machine.name]
+    if conditions is not None and conditions.postures.tilt != ready.conditions.postures.tilt:
+        words += ["--tilt", ":".join(f"{round(float(np.degrees(tilt)), 6):g}" for tilt in conditions.postures.tilt)]
     if tolerance is not None:
         words += ["--tolerance", f"{tolerance:.6g}"]
     if auto and (words or faces is not None):
@@ -104,15 +106,6 @@ def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:
         if text is None and each.id not in options.sources:
             return None
         words += [] if text is None else ["--cutter", text]
-    return words
-
-
-def _within(now: Conditions, then: Conditions) -> list[str]:
-    words = []
-    if then.machine != now.machine:
-        words += ["--machine", then.machine.name]
-    if then.postures.tilt != now.postures.tilt:
-        words += ["--tilt", ":".join(f"{round(float(np.degrees(tilt)), 6):g}" for tilt in then.postures.tilt)]
     return words
 
 

@@ -13,6 +13,7 @@ from urllib.parse import quote
 from xml.etree import ElementTree as ET
 
 from plan_cutters import __version__
+from plan_cutters.domain.figures import capital
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.reasons import reason
 from plan_cutters_base.whole import refusal, whole
@@ -107,7 +108,7 @@ def sarif(name: str, cases: Iterable[Case]) -> bytes:
     """
     findings = [case for case in cases if case.outcome in _LEVELS]
     kinds = list(dict.fromkeys(_kind(case) for case in findings))
-    rules = [{"id": kind, "shortDescription": {"text": _named(kind)}} for kind in kinds]
+    rules = [{"id": kind, "shortDescription": {"text": f"{capital(reason(kind))}."}} for kind in kinds]
     run = {
         "tool": {"driver": {"name": "plan-cutters", "version": __version__, "rules": rules}},
         "automationDetails": {"id": f"{written(name)}/"},
@@ -135,11 +136,6 @@ def _result(case: Case, rule: int) -> dict[str, Any]:
 
 def _kind(case: Case) -> str:
     return written(case.kind) or case.outcome
-
-
-def _named(kind: str) -> str:
-    text = reason(kind)
-    return f"{text[:1].upper()}{text[1:]}."
 
 
 def uri(file: str) -> str:

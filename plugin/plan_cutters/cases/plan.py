@@ -27,7 +27,7 @@ def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
     `code` is the exit code that the plan asks for; `file` the part's, as it was given.
     """
     names = short_names(plan)
-    left = [each for each in plan.process.left if each.cause != UNJUDGED_CAUSE] if plan.process else []
+    left = [each for each in plan.process.left if each.cause != UNJUDGED_CAUSE]
     open_faces = {face for each in left for face in each.faces}
     # Grouped once: a part may have thousands of faces, and a cutter as many witnesses.
     places: dict[tuple[str, str], list[WitnessEntry]] = {}
@@ -37,15 +37,14 @@ def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
                 places.setdefault((cutter.id, each.face), []).append(each)
     # All steps together: what the exit code is about.
     outcome = _OUTCOMES.get(code, "error")
-    title, lines = (plan.text.headline, plan.text.lines) if plan.text is not None else (f"exit code {code}", [])
     kind = {"failure": "not_finished", "error": "not_sure"}.get(outcome, "")
-    cases = [Case(file, PROCESS, outcome, kind, title, "\n".join(lines), plan.run.total)]
+    cases = [Case(file, PROCESS, outcome, kind, plan.text.headline, "\n".join(plan.text.lines), plan.run.total)]
     for face in plan.faces:
         if not face.target:
             continue
         whole = [names[c.id] for c in plan.cutters if _whole(face, c.faces.get(face.id))]
         finished = f"reached by {listed(whole, _NAMED)}" if whole else ""
-        if not whole and plan.process is not None and face.id not in open_faces:
+        if not whole and face.id not in open_faces:
             finished = "finished by several steps together"
         for cutter in plan.cutters:
             case = _case(plan, face, cutter, Case(file, f"{face.id} {names[cutter.id]}"), finished)

@@ -48,10 +48,9 @@ def code_of(plan: "Plan", fail_under: float | None = None) -> int:
     process = plan.process
     # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
     unsure = bool(plan.missing) or unseen(plan)
-    if fail_under is not None and process is not None and 100.0 * process.finished_share >= fail_under:
+    if fail_under is not None and 100.0 * process.finished_share >= fail_under:
         return NOT_ALL_JUDGED if unsure else FEASIBLE
-    finished = process.finished if process is not None else bool(plan.selected or plan.selected_over_setups)
-    if not finished:
+    if not process.finished:
         return NONE_FEASIBLE
     unjudged = plan.samples.unjudged or any(f.target and f.unjudged for f in plan.faces)
     return NOT_ALL_JUDGED if unsure or unjudged else FEASIBLE

@@ -20,6 +20,7 @@ TAKEN_OUT: dict[str, str] = {
     "--answers mend-all": "give --answers mend, for the three nearest cutters, and plan with another one alone to ask for it",
     "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts on others",
     "--verdicts": "leave it out: verdicts are stored in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
+    "--pictures-branch": "leave it out: pictures are in the folder of -o, and in the artifact of the job that keeps it",
     "--verdicts-key": "leave it out: what is stored in a folder that others may write to is not read",
 }
 

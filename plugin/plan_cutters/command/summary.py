@@ -15,7 +15,7 @@ from plan_cutters.domain.figures import reporting, unit
 from plan_cutters.plan_file.model import leaves
 from plan_cutters.plan_file.words.cutters import FEASIBLE, details, scene, unjudged_share, worst_face_text
 from plan_cutters.plan_file.words.names import typed
-from plan_cutters.plan_file.words.text import MOST, Story, process_lines, story_of
+from plan_cutters.plan_file.words.text import Story, process_lines, story_of
 from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
@@ -139,9 +139,10 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
     """Tell the process; with `verbose` all that is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline
-    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, process_lines(plan, story, MOST, typed)))
+    tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, process_lines(plan, story, typed)))
     if not verbose:
         return
+    doubts = [_marked(line.mark, line.text) for lines in story.doubts.values() for line in lines]
     tells(
         "",
         *([_marked("Inside other bodies:", story.inside[0]), *map(cell, story.inside[1:]), ""] if story.inside else []),
@@ -154,7 +155,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
         *_apart(list(_lines(story.setups))),
         *_apart([cell(line.text) for line in story.operations]),
         *_apart([cell(line.text + line.typed) for line in story.answers]),
-        *_apart([*_doubts(story), *_lines(story.notes), *map(cell, details(plan))]),
+        *_apart([*doubts, *_lines(story.notes), *map(cell, details(plan))]),
     )
 
 
@@ -165,9 +166,7 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str], *, verbose: 
     lines: list[Any] = []
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
     if files and verbose:
-        sizes = {
-            f.name: f" ({f.size_bytes / 1e6:.1f} MB)" for f in plan.files.values() if f.size_bytes and f.size_bytes >= _LARGE
-        }
+        sizes = {f.name: f" ({f.size_bytes / 1e6:.1f} MB)" for f in plan.files.values() if f.size_bytes >= _LARGE}
         each = ", ".join(f"{name}{sizes.get(name, '')}" for name in files)
         lines.append(f"Written to {out}: {each} ({plan.run.total:.0f} s in all).")
     if verbose:
@@ -199,12 +198,6 @@ def _apart(lines: Sequence[Any]) -> list[Any]:
 def _lines(lines: "Iterable[Line]") -> Iterator[Text]:
     for line in lines:
         yield Text.assemble(cell(f"{line.mark} " if line.mark else ""), cell(line.text + line.typed))
-
-
-def _doubts(story: Story) -> Iterator[Text]:
-    """Give the causes that make verdicts unsure."""
-    for lines in story.doubts.values():
-        yield from (_marked(line.mark, line.text) for line in lines)
 
 
 def _marked(word: str, rest: str) -> Text:

@@ -87,10 +87,11 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
         thread = threads[_in_order(number)[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
+        strokes = [StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
         steps.append(
             DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
-                holes=[_stroke(place, each) for place, each in same[key]],
+                holes=strokes,
                 setup=use.setup, axis=vector(use.axis + 0.0), **_turned(ready, use.setup, use.axis),
                 diameter_mm=round(use.diameter, _DIGITS), depth_mm=deep,
                 thread="" if thread is None else thread.name, pitch_mm=use.drill.pitch,
@@ -98,19 +99,10 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
-    return [step for group in _by_tool(steps) for step in _indexed(ready, group, index_times)]
-
-
-def _stroke(hole: int, use: Drilled) -> StrokeEntry:
-    return StrokeEntry(hole=hole, mouth_mm=_rounded(use.mouth), tip_mm=_rounded(use.tip))
-
-
-def _by_tool(steps: Sequence[DrillingStep]) -> list[list[DrillingStep]]:
-    """Steps of one tool in one setup together, in their order."""
-    each: dict[tuple[int, str], list[DrillingStep]] = {}
+    together: dict[tuple[int, str], list[DrillingStep]] = {}
     for step in steps:
-        each.setdefault((step.setup, step.tool), []).append(step)
-    return [*each.values()]
+        together.setdefault((step.setup, step.tool), []).append(step)
+    return [step for group in together.values() for step in _indexed(ready, group, index_times)]
 
 
 def _indexed(ready: Prepared, steps: Sequence[DrillingStep], index_times: IndexTimes) -> list[DrillingStep]:

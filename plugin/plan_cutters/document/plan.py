@@ -31,7 +31,7 @@ from plan_cutters.document.process import (
     process_entry,
     travel_entry,
 )
-from plan_cutters.domain.answers import LeastSet, RadiusMap
+from plan_cutters.domain.answers import RadiusMap
 from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.kinematics import positions
 from plan_cutters.domain.operations import INDEX_TIME
@@ -42,11 +42,12 @@ from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED, effective_tolerance
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.answers import Beyond, LeastSetEntry, RadiusEntry, RunEntry, StickOutEntry
+from plan_cutters.plan_file.answers import Beyond, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import (
     ANOTHER_SETUP,
+    NO_TEXT,
     AreaEntry,
     CutterEntry,
     LibraryEntry,
@@ -192,12 +193,6 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
     )
 
 
-def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
-    """The fewest runs."""
-    runs = [filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs]
-    return filled(LeastSetEntry, least, runs=runs, doubtful=doubtful)
-
-
 @reporting(lambda ready: ready.options.reported_unit)
 def plan_of(
     ready: Prepared,
@@ -225,6 +220,7 @@ def plan_of(
     shown = selected or nearest(entries).id
     process = process_entry(ready, entries, answers, over, shown, fitting)
     return Plan(
+        text=NO_TEXT,
         process=process,
         part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),
@@ -272,7 +268,7 @@ def plan_of(
         inside_radii=list(inside_radii),
         patterns=list(patterns),
         setups=list(setups),
-        least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
+        least_set=None if answers.least_set is None else answers.least_set.entry,
         operations=None if answers.operations is None else in_colours_of_steps(answers.operations.entry, process),
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.domain.answer_kinds import ANSWERS
 from plan_cutters.domain.checks import items, shown
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Bytes
 from plan_cutters.errors import OptionError
 
@@ -52,35 +51,6 @@ MEANS = (
     "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
     "tilt_limit", "area"
 )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """A cutter in a setup, and what it takes: what no run before it reaches."""
-
-    cutter: Cutter
-    setup: tuple[float, float, float]  #: Its axis.
-    number: int  #: Of the setup, 0 for the first one.
-    samples: int
-    #: `area`, `share`: mm2, and of the finished area, 0 to 1.
-    area: float
-    share: float
-    faces: tuple[str, ...]  #: Ids of those on which it takes samples, ascending.
-    alone: int  #: Samples that it reaches and no other run of the set.
-
-
-@dataclass(frozen=True, slots=True)
-class LeastSet:
-    """The fewest runs; of sets of as many that in fewer setups, then that of the more wanted cutters."""
-
-    runs: tuple[Run, ...]  #: In the order of setups, then of rank; none where nothing is reached.
-    #: `reached`, `left`: samples of the finished surface that they reach, and that nothing given reaches for sure.
-    reached: int
-    left: int
-    #: `share`, `left_share`: of the finished area, 0 to 1.
-    share: float
-    left_share: float
-    proven: bool  #: Whether it is proved that no fewer do.
 
 
 #: Rows that are compared with each other, at most.

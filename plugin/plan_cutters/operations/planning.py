@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.answers import LeastSet
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, duration, percent, reporting
 from plan_cutters.domain.operations import Columns, columns_of
@@ -51,7 +50,7 @@ from plan_cutters.operations.proof import proved
 from plan_cutters.operations.task import Problems, Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
-from plan_cutters.outcome import OperationPlan, Operations
+from plan_cutters.outcome import LeastSet, OperationPlan, Operations
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.work import Progress, part_of
 

@@ -1,4 +1,4 @@
-"""A plan file is read; one of an older program is put into words here."""
+"""A plan file is read."""
 
 import json
 import math
@@ -10,7 +10,6 @@ from pydantic import ValidationError
 
 from plan_cutters.errors import PlanError
 from plan_cutters.plan_file.model import FORMAT_VERSION, Plan
-from plan_cutters.plan_file.words.text import with_text
 
 #: Name of the file in the folder of a plan.
 PLAN = "plan.json"
@@ -55,11 +54,8 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
         first = fault.errors()[0]
         place = ".".join(str(word) for word in first["loc"]) or "the plan"
         raise error(
-            f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again", file=file
+            f"{place}: {first['msg'].lower()}; it was damaged, or made by another version: plan the part again", file=file
         ) from None
-    if not plan.cutters:
-        raise error("cutters: none was judged; plan the part again", file=file)
-    try:
-        return plan if plan.text else with_text(plan)
-    except (LookupError, ArithmeticError, ValueError):
-        raise error("contradicts itself: it was damaged; plan the part again", file=file) from None
+    if plan.shown not in [cutter.id for cutter in plan.cutters]:
+        raise error("cutters: the one shown is none of them; plan the part again", file=file)
+    return plan

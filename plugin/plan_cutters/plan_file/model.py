@@ -81,10 +81,9 @@ class FaceEntry(Frozen):
     area_mm2: float
     centre_mm: Vector | None = Field(
         default=None,
-        description="middle of its bounding box, by which it is known again in another plan; null where it has no finite size, "
-        "and in older files",
+        description="middle of its bounding box, by which it is known again in another plan; null where it has no finite size",
     )
-    carrier: CarrierEntry | None = Field(default=None, description="null of a sculptured face, and in older files")
+    carrier: CarrierEntry | None = Field(default=None, description="null of a sculptured face")
     neighbours: list[str] | None = Field(default=None, description="ids of the faces across its edges; null in older files")
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int
@@ -112,7 +111,7 @@ class MissingEntry(Frozen):
 class WitnessEntry(Frozen):
     """A sample that is not reached and the posture that comes nearest to reaching it."""
 
-    sample: int | None = Field(default=None, description="its row in samples.npz; null in older files")
+    sample: int = Field(description="its row in samples.npz")
     point: Vector
     face: str
     verdict: Literal["inaccessible", "undecided"] = "inaccessible"
@@ -237,9 +236,8 @@ class CutterEntry(VerdictCounts):
     shape: str = Field(default="end", description="end, lollipop, barrel, lens or form")
     taper_deg: float = Field(default=0.0, description="half angle")
     group: str = Field(
-        default="",
         description="how its kind is ranked: ball, bull, flat, special (tapered with a round tip, barrel, lens, lollipop) or "
-        "last (engraving, chamfer and form cutters, dovetails)",
+        "last (engraving, chamfer and form cutters, dovetails)"
     )
     flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
     holder: str = Field(default="", description="its holder's name; empty where it has none, or one without a name")
@@ -331,10 +329,14 @@ class TextEntry(Frozen):
     )
 
 
+#: Of a plan that is not yet put into words.
+NO_TEXT = TextEntry(headline="", tone="unsure", lines=[], cutters={}, verdicts={}, shares={})
+
+
 class FileEntry(Frozen):
     name: str
     sha256: str
-    size_bytes: int | None = Field(default=None, description="null in older files")
+    size_bytes: int
 
 
 class Run(Frozen):
@@ -342,9 +344,7 @@ class Run(Frozen):
 
     time: str
     seconds: dict[str, float] = Field(description="by stage; those of a cutter, by its id, are its judging")
-    boxes: dict[str, int] = Field(
-        default={}, description="boxes of obstacle trees that were looked at, by stage; empty in older files"
-    )
+    boxes: dict[str, int] = Field(default={}, description="boxes of obstacle trees that were looked at, by stage")
     total: float = Field(
         default=0.0,
         description="seconds from the start of the command (from Python: of the planning, without what lies between it and the "
@@ -358,13 +358,13 @@ class Plan(Frozen):
     format: Literal["plan-cutters-plan"] = "plan-cutters-plan"
     format_version: int = FORMAT_VERSION
     units: Units = Units()
-    text: TextEntry | None = Field(default=None, description="null in older files")
-    process: ProcessEntry | None = Field(default=None, description="null in older files")
+    text: TextEntry
+    process: ProcessEntry
     part: PartInfo
     effective: Effective
     versions: dict[str, str]
     samples: SampleCounts
-    scope: Scope | None = Field(default=None, description="which faces were judged; null in older files")
+    scope: Scope = Field(description="which faces were judged")
     inside_other_bodies: InsideEntry = InsideEntry()
     faces: list[FaceEntry]
     missing: list[MissingEntry]
@@ -375,9 +375,7 @@ class Plan(Frozen):
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
-    shown: str | None = Field(
-        default=None, description="id of the cutter that models show: `selected`, else the one that leaves the least area"
-    )
+    shown: str = Field(description="id of the cutter that models show: `selected`, else the one that leaves the least area")
     selected_over_setups: str | None = Field(
         default=None,
         description="where several setups were requested: the first cutter that reaches every judged sample in one or another",
@@ -414,7 +412,7 @@ class Plan(Frozen):
         default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer"
     )
     notes: list[str] = Field(description="what these verdicts do not say")
-    note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")
+    note_codes: list[str] = Field(description="what each note is about")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")

@@ -121,9 +121,8 @@ def _machined(result: Judged) -> set[str]:
     plan = result.plan
     if len(result.reaches) <= _MACHINE_CUTTERS:
         return set(result.reaches)
-    steps = plan.process.steps if plan.process is not None else []
     operations = [each for one in (plan.operations.plans if plan.operations else []) for each in one.operations]
-    return {result.shown, *(each.cutter for each in steps), *(each.cutter for each in operations)}
+    return {result.shown, *(each.cutter for each in plan.process.steps), *(each.cutter for each in operations)}
 
 
 def write_postures(result: Judged, _split: object, path: Path) -> None:

@@ -272,7 +272,7 @@ def write_all(
         )
         stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
-        steps = result.plan.process is not None and bool(result.plan.process.steps)
+        steps = bool(result.plan.process.steps)
         stands = "npz" in formats and _has_samples(staging, result)
         arrays = [*(["npz"] if "npz" in formats and not stands else []), *_setup_files(result)]
         arrays += ["process"] if steps and not _edited(result, out) else []

@@ -20,7 +20,6 @@ from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.names import typed
 from plan_cutters.plan_file.words.text import Story, further, of_the_plan, story_of
-from plan_cutters.plan_file.words.text import text_of as made_of
 from plan_cutters.report.page.write import page
 from plan_cutters.report.protocol import Judged
 
@@ -53,8 +52,7 @@ _CHIPS = {True: _Chip("✓", "#00664b", "#ffffff"), False: _Chip("✗", "#a33c00
 def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
-    text = plan.text or made_of(plan)
-    lines = [text.headline, *text.lines, "", *story.inside, *of_the_plan(story), "", *_table(story), ""]
+    lines = [plan.text.headline, *plan.text.lines, "", *story.inside, *of_the_plan(story), "", *_table(story), ""]
     lines += [each.left for each in story.cutters if each.left]
     lines += further(story)
     return "\n".join(plain(typed(line)).rstrip() for line in lines).strip() + "\n"
@@ -173,7 +171,7 @@ def _rendered(
     ]
     return _TEMPLATE.render(
         chip=_CHIPS[story.headline.good], headline=story.headline,
-        text="\n".join((result.plan.text or made_of(result.plan)).lines),
+        text="\n".join(result.plan.text.lines),
         told=[*map(typed, (*story.inside, *of_the_plan(story)))], columns=list(_COLUMNS.values()),
         cutters=cutters[:most], unlisted=max(0, len(cutters) - most) if most else 0, kind=kind,
         taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,

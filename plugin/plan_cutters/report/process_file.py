@@ -17,7 +17,6 @@ from plan_cutters.report.protocol import Judged
 def process_toml(plan: Plan) -> str:
     """Write the process of a plan as TOML: a `[[step]]` each, in their order, with what it does as a comment."""
     process = plan.process
-    assert process is not None, "every new plan has one"
     setups = ""
     if plan.setup_proposal is not None:
         files = " ".join(f"--setup setup-{number}.toml" for number in range(1, 1 + len(plan.setup_proposal.setups)))
@@ -45,8 +44,8 @@ def process_toml(plan: Plan) -> str:
 
 def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
     """A step as often as it is done: each time has angles of its own, which the file writes out."""
-    plans = [] if plan.operations is None or plan.process is None else plan.operations.plans
-    operations = [each for one in plans if plan.process and one.name == plan.process.plan for each in one.operations]
+    plans = [] if plan.operations is None else plan.operations.plans
+    operations = [each for one in plans if one.name == plan.process.plan for each in one.operations]
     orbit = next((each.orbit for each in operations if each.id == step.operation), None)
     if step.repeat == 1 or orbit is None:
         return [step]

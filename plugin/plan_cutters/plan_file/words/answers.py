@@ -143,7 +143,7 @@ def together(plan: Plan) -> str:
     if least.left:
         other = "the other" if judged else "another"
         rest = f"{other} {percent(least.left_share, some=True, whole=False)}"
-        stood = plan.process is not None and any(each.cause == ANOTHER_SETUP for each in plan.process.left)
+        stood = any(each.cause == ANOTHER_SETUP for each in plan.process.left)
         text += f"; they leave {rest}, also for another setup" if stood else f"; nothing given reaches {rest}"
     if not least.proven:
         text += " (a smaller set may do: the search ended before the proof)"
@@ -234,7 +234,7 @@ def _fillets(plan: Plan, entry: RemainingEntry) -> str:
     by_id = {each.id: each for each in plan.cutters}
     for edge in [each for each in plan.sharp_edges if faces & {*each.faces}] or plan.sharp_edges[:1]:
         by_corner = abs(edge.radius_mm - shown.allowance_mm - shown.corner_radius) < ROUNDING
-        used = [by_id[step.cutter] for step in plan.process.steps if {*step.faces} & {*edge.faces}] if plan.process else []
+        used = [by_id[step.cutter] for step in plan.process.steps if {*step.faces} & {*edge.faces}]
         left = [each.allowance_mm + ((by_corner and each.corner_radius) or each.radius) for each in used]
         radii.add(reported(min(left, default=edge.radius_mm)))
     least, most = f"R{min(radii):.4g}", f"R{max(radii):.4g}"

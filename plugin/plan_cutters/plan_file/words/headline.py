@@ -13,7 +13,7 @@ from plan_cutters.plan_file.model import CutterEntry, Plan, nearest
 from plan_cutters.plan_file.operations import NOT_PLANNED, SHORT_STEP, UNJUDGED_CAUSE, ProcessEntry
 from plan_cutters.plan_file.part_info import CoveringBody, PatternEntry, ProposedSetup, Scope
 from plan_cutters.plan_file.reasons import reason
-from plan_cutters.plan_file.shares import part_of, reached_share
+from plan_cutters.plan_file.shares import part_of
 from plan_cutters.plan_file.words.names import described
 
 #: Choices that name kinds of faces, not faces.
@@ -23,14 +23,14 @@ _BY_KIND = frozenset({"sculptured", "blends", "all"})
 def judged(plan: Plan) -> str:
     """The part with its size, or what of it was judged: `the 6 fillets of part.step, 40 x 40 x 20 mm (23 % of the area)`."""
     part, scope = sized(plan, plan.part.file or "the part"), plan.scope
-    if scope is None or not scope.not_judged:
+    if not scope.not_judged:
         return part
     return f"{_requested(plan, scope)} of {part} ({_share(scope)} of the area)"
 
 
 def requested(plan: Plan) -> str:
     """Name what of the part was judged, below a line with its name: `the 6 fillets (23 % of the area)`."""
-    return f"{_requested(plan, plan.scope)} ({_share(plan.scope)} of the area)" if plan.scope else "the part"
+    return f"{_requested(plan, plan.scope)} ({_share(plan.scope)} of the area)"
 
 
 def _requested(plan: Plan, scope: Scope) -> str:
@@ -53,13 +53,13 @@ def headline_cutter(plan: Plan) -> CutterEntry:
 
 def shown_cutter(plan: Plan) -> CutterEntry:
     """The cutter that models and pictures show."""
-    return next((c for c in plan.cutters if c.id == plan.shown), None) or nearest(plan.cutters)
+    return next(c for c in plan.cutters if c.id == plan.shown)
 
 
 def not_judged(plan: Plan) -> list[str]:
     """Say in a sentence which faces were not judged, and which option requests them."""
     scope = plan.scope
-    if scope is None or not scope.not_judged:
+    if not scope.not_judged:
         return []
     many = scope.not_judged > 1
     what = _listed(scope.not_judged_by_kind)
@@ -84,7 +84,7 @@ def unseen(plan: Plan) -> bool:
     """Whether a cutter of the process may miss what lies between the samples; who says how densely to sample asked for that."""
     if plan.effective.sampled_by != "default":
         return False
-    used = {step.cutter for step in plan.process.steps} if plan.process else set()
+    used = {step.cutter for step in plan.process.steps}
     taken = plan.selected or plan.selected_over_setups
     return any(not c.seen for c in plan.cutters if c.id == taken or (taken is None and c.id in used))
 
@@ -223,7 +223,7 @@ def _called(body: CoveringBody) -> str:
 def inside_radii(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
     """One sentence on all of them; nothing where no face bends more than the cutter shown."""
     faces = plan.inside_radii
-    if not faces or plan.shown is None:
+    if not faces:
         return
     smallest = faces[0]
     fits = f"the largest usual size that fits is D{smallest.fits_mm:g}" if smallest.fits_mm else "no usual size is that small"
@@ -240,7 +240,7 @@ _PAIRS = 3
 def sharp_edges(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
     """One sentence on all of them; nothing where the cutter shown leaves nothing at such edges."""
     edges = plan.sharp_edges
-    if not edges or plan.shown is None:
+    if not edges:
         return
     pairs = [f"{one} meets {other}" for one, other in (each.faces for each in edges[:_PAIRS])]
     more = len(edges) - len(pairs)
@@ -379,19 +379,13 @@ def first_looked(setup: Sequence[float], samples: int, of: int, shares: Sequence
     return f"First look {where}: {', '.join(each)}{rest}{together_too}"
 
 
-def _by_others(plan: Plan) -> str:
-    """The cutter that does alone, or over all setups, where the process has other cutters; else empty."""
-    does = plan.selected or plan.selected_over_setups
-    return does if does and plan.process and {step.cutter for step in plan.process.steps} - {does} else ""
-
-
 def _alone_too(plan: Plan, cutter: str, called: str) -> str:
     """A sentence on the cutter that does alone, and why the process has others."""
     if not cutter:
         return ""
     entry = next(each for each in plan.cutters if each.id == cutter)
     # Operations are chosen by their time or number: there only what comes last in any case gives way by its kind.
-    timed = any(step.mode != "any" for step in plan.process.steps) if plan.process else False
+    timed = any(step.mode != "any" for step in plan.process.steps)
     why = "" if timed and entry.group != "last" else ", but its kind comes after that of step 1"
     return f" {capital(called)} does alone{why or ', too'}."
 
@@ -405,11 +399,8 @@ def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
     if number == 1:
         return f"It reaches {every}."
     largest, share = f"It is the largest of {number} cutters that reaches {every}.", plan.selection.free_form
-    if not chosen.group:
-        # A plan of an earlier version ranked by size alone.
-        return largest
     mine = _rank(chosen, share)
-    present = {_rank(each, share) for each in plan.cutters if each.group}
+    present = {_rank(each, share) for each in plan.cutters}
     groups = {each.group for each in plan.cutters}
     order = [[group for group in rank_ if group in groups] for rank_ in ranks(free_form=share)]
     if present == {mine}:
@@ -463,11 +454,13 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 
     def take(name: str, why: str, *, where: str = "") -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
-        whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process and process.finished_share >= 1.0 else ""
+        whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process.finished_share >= 1.0 else ""
         return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
 
-    others = _by_others(plan)
-    if process is None or process.finished:
+    # The cutter that does alone, or over all setups, where the process has other cutters.
+    does = plan.selected or plan.selected_over_setups
+    others = does if does and {step.cutter for step in process.steps} - {does} else ""
+    if process.finished:
         if plan.selected and not others:
             # Of several setups one may do by itself.
             alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
@@ -479,18 +472,15 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         if plan.selected_over_setups and not others:
             why = f"It reaches {every(plan)} in {setups} setups, and in none of them alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
-    best = nearest(plan.cutters)
-    finished = process.finished if process else not best.not_reached
-    share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
-    title = _title(plan, share, finished=finished)
+    share, title = process.finished_share, _title(process)
     machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
     about = f"{sized(plan, plan.part.file or 'part')}{machine}."
-    if plan.scope is not None and plan.scope.not_judged:
+    if plan.scope.not_judged:
         about += f" Judged: {requested(plan)}."
-    if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
+    if len(used := {step.cutter for step in process.steps}) == 1:
         (only,) = used
         about += f" {capital(names[only])}: {described(entries[only], names[only])}."
-    if finished:
+    if process.finished:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
@@ -500,14 +490,10 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
 
 
-def _title(plan: Plan, share: float, *, finished: bool) -> str:
+def _title(process: ProcessEntry) -> str:
     """In how many steps and setups how much is finished, and in what time; how much stays, and mostly why."""
-    process = plan.process
-    whole = process.asked_mm2 if process else math.nan
-    of = mm2(whole) if math.isfinite(whole) else "the area to machine"
-    much = percent(share, some=share > 0.0, whole=finished and share >= 1.0 and not (process and process.left))
-    if process is None:
-        return f"The cutters finish {much} of {of}"
+    share, of = process.finished_share, mm2(process.asked_mm2) if math.isfinite(process.asked_mm2) else "the area to machine"
+    much = percent(share, some=share > 0.0, whole=process.finished and share >= 1.0 and not process.left)
     if not process.steps:
         return f"No step finishes any of {of}{_stays(process)}"
     setups = count(len({step.setup for step in process.steps}), "setup")

@@ -40,7 +40,7 @@ def holes(plan: Plan) -> Iterator[str]:
 def _made(plan: Plan) -> str:
     """Say how many of them tools of the libraries make, in which time, and what is missing, by its usual size."""
     made = sum(each.drilled for each in plan.holes)
-    steps = [] if plan.process is None else plan.process.drilling
+    steps = plan.process.drilling
     times = [None if step.seconds is None else step.seconds + step.link_seconds for step in steps]
     took = f", {duration(math.fsum(each or 0.0 for each in times))}" if times and None not in times else ""
     setups = sorted({step.setup + 1 for step in steps})

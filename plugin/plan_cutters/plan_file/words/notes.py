@@ -4,7 +4,6 @@ To add a note, add its code and its text here, and the call where it is found.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import zip_longest
 from typing import Any, Literal, NamedTuple
 
 from plan_cutters.domain.figures import (
@@ -314,7 +313,7 @@ def _travel(plan: Plan) -> Iterator[str]:
 def _held(plan: Plan) -> Iterator[str]:
     """Steps from below, at rotary angles, in setups in which nothing holds the part."""
     process = plan.process
-    if process is None or not plan.machine.rotary:
+    if not plan.machine.rotary:
         return
     # A table lies below the part, and holds it against nothing that comes from there.
     holds = {each.number - 1 for each in process.setups if each.held not in (None, "table")}
@@ -372,7 +371,7 @@ def _runs(numbers: Sequence[int]) -> str:
 
 
 #: Notes that say what the first lines say, or in other words; those of the area between samples, where it was looked at.
-_STATED_ABOVE: frozenset[NoteCode | None] = frozenset(
+_STATED_ABOVE: frozenset[str] = frozenset(
     {"samples_apart", "area_proved", "area_left", "setup_proposed", "run_unfinished", "coarser_than_requested"}
 )
 #: What stands for an obstacle that is not known.
@@ -388,8 +387,7 @@ _TOOLS = 3
 
 def notes(plan: Plan) -> Iterator[Line]:
     """The notes of the plan."""
-    # Older plans have no codes: all of their notes are shown.
-    for code, text in zip_longest(plan.note_codes, plan.notes):
+    for code, text in zip(plan.note_codes, plan.notes, strict=False):
         yield Line(named(plan, text), "Note:", minor=code in _STATED_ABOVE)
 
 

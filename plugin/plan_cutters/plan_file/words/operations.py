@@ -39,7 +39,7 @@ def operations(plan: Plan) -> list[Line]:
 
 def operation_names(plan: Plan) -> dict[str, str]:
     """Number the operations of the process, by their ids, as their steps: `3`, or `3.2` where that is done several times."""
-    return {} if plan.operations is None or plan.process is None else numbered(plan.operations, plan.process)
+    return {} if plan.operations is None else numbered(plan.operations, plan.process)
 
 
 def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, str]:

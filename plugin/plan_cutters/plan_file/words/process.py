@@ -79,6 +79,14 @@ class StepRow(NamedTuple):
     holes: int = 0
 
 
+class Stays(NamedTuple):
+    """An area that no step finishes: `lead` and `share` are empty where it is not required; `text` ends the sentence."""
+
+    lead: str
+    share: str
+    text: str
+
+
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
     """A process in words: rows of steps, how the part stands in each setup, how many more steps there are, and the time between
@@ -92,7 +100,7 @@ class ProcessStory:
     more: str
     besides: str
     own: tuple[str, ...]
-    remaining: tuple[str, ...]
+    remaining: tuple[Stays, ...]
     much: int
     next: tuple[str, ...]
     clearance: str
@@ -124,11 +132,9 @@ class ProcessStory:
         return [*lines, *(idle or wrapped(list(stands.values()), 2))]
 
 
-def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> ProcessStory | None:
-    """Tell the process of a plan, about so many steps of it; None where an older file has none."""
+def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> ProcessStory:
+    """Tell the process of a plan, about so many steps of it."""
     process = plan.process
-    if process is None:
-        return None
     setups = len({*(step.setup for step in process.steps), *(step.setup for step in process.drilling)}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
     steps = dict(enumerate(process.steps, 1))
@@ -170,8 +176,6 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
 
 def with_process_words(plan: Plan) -> Plan:
     """The plan with the words of its process made anew: of steps, of what each area that is left needs, and what to do next."""
-    if plan.process is None:
-        return plan
     needed = [each.model_copy(update={"needs": needs(plan, each)}) for each in plan.process.left]
     steps = [
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
@@ -246,7 +250,7 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     else:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
-    if on == "stock" and plan.process is not None and plan.process.stock is not None:
+    if on == "stock" and plan.process.stock is not None:
         stock = plan.process.stock
         wide = stock.size_mm[2] if _lies(stock) else stock.size_mm[0]
         long = max(stock.size_mm) if _lies(stock) else stock.size_mm[2]
@@ -309,20 +313,22 @@ def _fitting(faces: list[str], width: int) -> str:
     return ""
 
 
-def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
+def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[Stays]:
     listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
         needs = f": {named(plan, each.needs)}" if each.needs else ""
         some = percent(each.share, some=True, whole=False) if each.samples else percent(each.share)
-        yield f"Left, {some}, {area(each.area_mm2)}, {_OTHER_CAUSES.get(each.cause) or reason(each.cause)}: {faces}{near}{needs}."
+        cause = _OTHER_CAUSES.get(each.cause) or reason(each.cause)
+        yield Stays("Left", some, f"{area(each.area_mm2)}, {cause}: {faces}{near}{needs}.")
     if len(process.left) > len(listed_causes):
         rest = [each for each in process.left if each not in listed_causes]
-        yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
+        yield Stays("Left besides", percent(sum(each.share for each in rest), some=True, whole=False), "for other causes.")
     if process.exempt is not None:
         where = listed(process.exempt.faces, _FACES)
-        yield f"Not required (`--sharp-edges left`): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
+        text = f"Not required (`--sharp-edges left`): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
+        yield Stays("", "", text)
 
 
 def _is_minor(each: RemainingEntry) -> bool:

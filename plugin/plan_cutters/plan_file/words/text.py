@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, reporting, sentence
-from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, Tone, VerdictText, nearest
+from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
@@ -21,6 +21,7 @@ from plan_cutters.plan_file.words.headline import (
     patterns,
     proposal,
     sharp_edges,
+    shown_cutter,
     undecided,
     unseen,
 )
@@ -39,8 +40,7 @@ class Story:
     if any, and of the one that the models show. `inside` is surface that does not belong to the finished part, which comes
     first; `scope` what is undecided, which faces were not judged or not seen, and how much the cutters reach together;
     `between` how much is known between the samples; `in_short` what the plan of operations leaves, and how many orientations it
-    needs; `doubts` causes that make verdicts unsure, by their kind in the plural. `process` is None where an older file has
-    none.
+    needs; `doubts` causes that make verdicts unsure, by their kind in the plural.
     """
 
     names: Mapping[str, str]
@@ -48,7 +48,7 @@ class Story:
     shown: str
     inside: tuple[str, ...]
     headline: Headline
-    process: ProcessStory | None
+    process: ProcessStory
     proposal: tuple[str, ...]
     in_short: tuple[str, ...]
     scope: tuple[str, ...]
@@ -68,7 +68,7 @@ class Story:
 @reporting(lambda plan: plan.effective.units)
 def story_of(plan: Plan) -> Story:
     """Tell a plan."""
-    names, best = short_names(plan), shown(plan)
+    names, best = short_names(plan), shown_cutter(plan)
     cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
     finished = plan.selected or plan.selected_over_setups
     pair = "" if finished else together(plan)
@@ -100,11 +100,6 @@ def story_of(plan: Plan) -> Story:
     )
 
 
-def shown(plan: Plan) -> CutterEntry:
-    """The cutter that the models show: the selected, else the one that leaves the least area."""
-    return next((c for c in plan.cutters if c.id == plan.selected), None) or nearest(plan.cutters)
-
-
 class Chip(NamedTuple):
     """A kind (`good`, `unsure` or `bad`: its colours), a sign, and a word."""
 
@@ -133,7 +128,7 @@ def chip(plan: Plan, story: Story) -> Chip:
     good = story.headline.good
     if good:
         return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
-    if good is None and not (plan.process is not None and plan.process.finished) and any(c.blocked for c in plan.cutters):
+    if good is None and not plan.process.finished and any(c.blocked for c in plan.cutters):
         return _IN_PART
     return CHIPS[good]
 
@@ -168,14 +163,14 @@ def text_of(plan: Plan) -> TextEntry:
     return TextEntry(
         headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],
-        lines=process_lines(plan, story, MOST),
+        lines=process_lines(plan, story),
         cutters={each.id: each.sentence for each in story.cutters},
         verdicts={name: VerdictText(tone=TONES[each], word=each.word) for name, each in chips.items()},
         shares={each.id: each.shares for each in story.cutters},
     )
 
 
-def process_lines(plan: Plan, story: Story, most: int, write: Callable[[str], str] = as_fields) -> list[str]:
+def process_lines(plan: Plan, story: Story, write: Callable[[str], str] = as_fields, most: int = MOST) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
 
     What is left comes before the last steps of a long table, if there is no space for both. `write`: how options are written:
@@ -198,26 +193,25 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     def each(texts: Iterable[str], most: int, rank: int = 2) -> list[tuple[int, list[str]]]:
         return [(rank, wrapped([write(text)], most)) for text in texts if text]
 
-    yield from each(plan.process.doubts if plan.process else (), 2, 0)
+    yield from each(plan.process.doubts, 2, 0)
     yield from each([f"Inside other bodies: {text}" for text in story.inside[:1]], _LEFT, 1)
     yield from each([" ".join(story.inside[1:])], 5)
     yield from each(_doubts(plan, story)[:_DOUBTS], 1, 1)
     yield from each([" ".join(filter(None, (story.headline.about, *not_judged(plan))))], 3, 1)
-    if process:
-        yield from each([in_summary(plan)], 2, 1)
-        yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
+    yield from each([in_summary(plan)], 2, 1)
+    yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
     yield from each(holes(plan), 2, 1)
-    if plan.process and plan.process.plan == "fewest":
+    if plan.process.plan == "fewest":
         yield from each([named(plan, one_more(plan.operations))], 3)
-    if process:
-        left = [*shortened(process.own), *process.remaining[: process.much]]
-        yield from each(left[:1], _LEFT, 0)
-        yield from each(left[1:], _LEFT)
-        yield from each(process.next[:1], 3, 0)
-        yield from each(process.next[1:], 3)
-        yield from each(process.remaining[process.much :], _LEFT)
+    stays = [", ".join(filter(None, each)) for each in process.remaining]
+    left = [*shortened(process.own), *stays[: process.much]]
+    yield from each(left[:1], _LEFT, 0)
+    yield from each(left[1:], _LEFT)
+    yield from each(process.next[:1], 3, 0)
+    yield from each(process.next[1:], 3)
+    yield from each(stays[process.much :], _LEFT)
     yield from each([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
-    yield from each([process.clearance if process else ""], 1, 1)
+    yield from each([process.clearance], 1, 1)
     yield from each(_alone(story), _ALONE)
     yield from each([story.headline.why], 2)
     yield from each(story.between[:1], 2)
@@ -241,7 +235,7 @@ def _fitting(paragraphs: Sequence[tuple[int, list[str]]], most: int, more: str) 
 
 def _doubts(plan: Plan, story: Story) -> list[str]:
     """What makes the verdicts unsure, but for warnings that stand above in other words."""
-    above = {f"{text}." for text in repeated_warnings(plan)} if plan.process else set()
+    above = {f"{text}." for text in repeated_warnings(plan)}
     return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines if line.text not in above]
 
 

@@ -25,21 +25,13 @@ from plan_cutters.scene.surroundings import PlacedFixture
 
 
 def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:
-    """Find the row of a witness's sample; a ValueError where the samples have none such: the witness is of another plan.
-
-    The plan says it. Older plans do not: there it is the sample of the witness's own face that lies at its point.
-    """
-    face, point = int(witness.face[1:]), np.array(witness.point)
-    if witness.sample is not None:
-        mine = np.arange(witness.sample, min(witness.sample + 1, len(samples)))
-    else:
-        mine = np.arange(len(samples))
-    mine = mine[samples.face[mine] == face]
-    away = np.linalg.norm(samples.point[mine] - point, axis=1)
+    """The row of a witness's sample; a ValueError where the samples have none such: the witness is of another plan."""
+    point, row = np.array(witness.point), witness.sample
+    there = 0 <= row < len(samples) and samples.face[row] == int(witness.face[1:])
     # A point without coordinates is at no distance.
-    if not (away <= 1e-6 * max(1.0, float(np.abs(point).max()))).any():
+    if not there or not np.linalg.norm(samples.point[row] - point) <= 1e-6 * max(1.0, float(np.abs(point).max())):
         raise ValueError(f"no sample of {witness.face} lies at the point of this witness: it is of another plan")
-    return int(mine[int(np.nanargmin(away))])
+    return row
 
 
 #: Spots of the cutter that is shown, and of each other one.

@@ -1,6 +1,5 @@
 """The process as the page shows it: which step finishes each sample, and what is said of steps, setups and of what is left."""
 
-import re
 import shlex
 from typing import Any
 
@@ -19,8 +18,6 @@ from plan_cutters.plan_file.words.text import Story
 from plan_cutters.report.page.arrays import Arrays, Stored
 from plan_cutters.report.protocol import Judged
 
-#: What stays, with its share, at the beginning of a sentence.
-_REMAINING = re.compile(r"Left(?: besides)?, ([<>]?[\d.]+ %), ")
 #: Patterns of steps, another one each time that the colours come round.
 PATTERNS = ("plain", "cross", "dots", "bars")
 
@@ -30,8 +27,6 @@ def step_of(result: Judged) -> NDArray[np.uint16]:
     plan, samples = result.plan, result.samples
     number = np.zeros(len(samples), np.uint16)
     process, operations = plan.process, result.answers.operations
-    if process is None:
-        return number
     mine = None if operations is None else next((each for each in operations.plans if each.name == process.plan), None)
     if mine is not None and plan.operations is not None:
         entry = next(each for each in plan.operations.plans if each.name == process.plan)
@@ -56,7 +51,7 @@ def _finished(result: Judged, step: ProcessStep) -> NDArray[np.bool_]:
 def step_arrays(result: Judged, number: NDArray[np.uint16]) -> Arrays:
     """The array `step`: the number of the step that finishes each sample, 0 where none does."""
     few = number.max(initial=0) < 256
-    return {"step": Stored.of(number.astype(np.uint8 if few else np.uint16))} if result.plan.process else {}
+    return {"step": Stored.of(number.astype(np.uint8 if few else np.uint16))}
 
 
 def colour(number: int) -> dict[str, str]:
@@ -65,9 +60,9 @@ def colour(number: int) -> dict[str, str]:
 
 
 def process_of(result: Judged, story: Story, number: NDArray[np.uint16]) -> dict[str, Any] | None:
-    """Collect what the script needs of the process beside its table; None where an older plan has none."""
+    """Collect what the script needs of the process beside its table; None where it has no step."""
     process = result.plan.process
-    if process is None or not process.steps:
+    if not process.steps:
         return None
     return {
         "plan": process.plan.replace(" ", "_"), "left_share": 1.0 - process.finished_share,
@@ -85,12 +80,10 @@ def process_of(result: Judged, story: Story, number: NDArray[np.uint16]) -> dict
 def process_tables(plan: Plan, story: Story) -> dict[str, Any]:
     """Lay out the process for the template: by setup the rows of its steps; what stays, by cause; what to do next.
 
-    `process`: its story with all steps, None where there is nothing to lay out. `setups`: (setup from 0, sentence, rows).
+    `process`: its story with all steps. `setups`: (setup from 0, sentence, rows).
     `remaining`: (entry or None, sentence, share). `next`: (sentence, what one would type).
     """
-    entry, whole = plan.process, process_story(plan, story.names, len(plan.process.steps) if plan.process else 0)
-    if entry is None or whole is None:
-        return {"process": None}
+    entry, whole = plan.process, process_story(plan, story.names, len(plan.process.steps))
     stands, setups = dict(enumerate(whole.stands)), list[tuple[int, str, list[StepRow]]]()
     for row in whole.rows:
         if not setups or setups[-1][0] != row.at:
@@ -98,7 +91,9 @@ def process_tables(plan: Plan, story: Story) -> dict[str, Any]:
         setups[-1][2].append(row)
     setups += [(at, f"{text} No step.", []) for at, text in stands.items()]
     entries = [*entry.left[: len(whole.remaining)], *[None] * len(whole.remaining)]
-    remaining = [(each, *_parted(text)) for each, text in zip(entries, whole.remaining, strict=False)]
+    remaining = [
+        (each, as_fields(capital(stays.text)), stays.share) for each, stays in zip(entries, whole.remaining, strict=False)
+    ]
     following = [
         (as_fields(text.removeprefix("Next: ").partition(" [`")[0]), shlex.join(each.argv))
         for text, each in zip(whole.next, entry.next, strict=False)
@@ -106,21 +101,11 @@ def process_tables(plan: Plan, story: Story) -> dict[str, Any]:
     return {"process": whole, "setups": setups, "remaining": remaining, "next": following}
 
 
-def _parted(text: str) -> tuple[str, str]:
-    """A sentence on what stays, without its share, and that.
-
-    >>> _parted("Left, 18.7 %, 38 mm², rear gouge: F8."), _parted("Not required: F8.")
-    (('38 mm², rear gouge: F8.', '18.7 %'), ('Not required: F8.', ''))
-    """
-    match = _REMAINING.match(text)
-    return (as_fields(text), "") if match is None else (as_fields(capital(text[match.end() :])), match[1])
-
-
 def step_text(plan: Plan, story: Story, number: int, step: ProcessStep) -> str:
     """A step in a sentence, with how the part stands."""
-    row = next((each for each in story.process.rows if each.number == str(number)), None) if story.process else None
+    row = next((each for each in story.process.rows if each.number == str(number)), None)
     what = [story.names.get(step.cutter, step.cutter)] if row is None else [row.turned, row.cutter, row.share, row.took]
-    stands = plan.process.setups[step.setup].text if plan.process and step.setup < len(plan.process.setups) else ""
+    stands = plan.process.setups[step.setup].text if step.setup < len(plan.process.setups) else ""
     return as_fields(" ".join(filter(None, (f"Step {number}: {', '.join(filter(None, what))}.", stands))))
 
 

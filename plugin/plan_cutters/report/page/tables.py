@@ -86,9 +86,7 @@ def _in_order(plan: Plan, of: OperationPlanEntry, texts: list[OperationText]) ->
     """Rows with their places in the plan: those of the process in the order of its steps."""
     number = {name: tuple(map(int, step.split("."))) for name, step in operation_names(plan).items()}
     rows = list(enumerate(texts))
-    return (
-        sorted(rows, key=lambda row: number.get(row[1].entry.id, (0,))) if plan.process and of.name == plan.process.plan else rows
-    )
+    return sorted(rows, key=lambda row: number.get(row[1].entry.id, (0,))) if of.name == plan.process.plan else rows
 
 
 class OperationTables(NamedTuple):
@@ -247,7 +245,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     shown = next(c for c in plan.cutters if c.id == story.shown)
     rows = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
-    warnings = [text for text in plan.part.warnings if not plan.process or text not in repeated_warnings(plan)]
+    warnings = [text for text in plan.part.warnings if text not in repeated_warnings(plan)]
     faces, bars = _faces(plan, shown), dict[str, list[tuple[str, float, float, str]]]()
     for c in plan.cutters:
         # Shares as bars (word, from, width, colour) of 100 in all.
@@ -262,9 +260,8 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "header": _header(plan, story, shown),
         "plain": as_fields,
         "size": numbers.size(plan.part.size_mm),
-        "stands": story.process.stands if story.process else (),
+        "stands": story.process.stands,
         "check": as_fields(" ".join(before_approval(story))),
-        "heeded": len(warnings) + (not plan.process and not plan.part.orientation.confident),
         **process_tables(plan, story),
         "names": story.names,
         "named": lambda text: named(plan, text),
@@ -302,8 +299,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
 
 
 def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
-    p = story.process
-    return [*(p.own if p else ()), _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
+    return [*story.process.own, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
