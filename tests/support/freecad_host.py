@@ -16,7 +16,8 @@ HEAD = f"""
 import json, os, shutil, sys
 import FreeCAD as App, Part
 macro, said, found = {{"__name__": "macro"}}, [], {{}}
-exec(compile(open({str(ROOT / "freecad" / "PlanOperations.FCMacro")!r}, encoding="utf-8").read(), "PlanOperations.FCMacro", "exec"), macro)
+text = open({str(ROOT / "freecad" / "PlanOperations.FCMacro")!r}, encoding="utf-8").read()
+exec(compile(text, "PlanOperations.FCMacro", "exec"), macro)
 macro["say"] = said.append
 FOLDER = os.environ["PLAN_FOLDER"]
 """
