@@ -43,7 +43,7 @@ class _Sizes:
 
     @cached_property
     def statements(self) -> dict[str, str]:
-        """What stands behind each number."""
+        """Return the text behind each number."""
         return {key.decode(): text.decode("utf-8", "replace").strip() for key, text in _STATEMENT.findall(self.data)}
 
     @cached_property

@@ -5,9 +5,8 @@ import math
 import pytest
 
 from plan_cutters import plan
-from tests.hosts.test_freecad_operations import HEAD
 from tests.support.drills import drill, library_of, tap
-from tests.support.freecad_host import CONSOLE, run
+from tests.support.freecad_host import CONSOLE, HEAD, run
 from tests.support.plates import block, drilled
 from tests.support.stated import stated
 

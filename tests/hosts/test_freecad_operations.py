@@ -9,21 +9,10 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.plan_file.words.operations import stepped
-from tests.support.freecad_host import CONSOLE, run
-from tests.support.places import ROOT, SAMPLES
+from tests.support.freecad_host import CONSOLE, HEAD, run
+from tests.support.places import SAMPLES
 
 pytestmark = pytest.mark.slow("needs FreeCAD", together="FreeCAD")
-
-MACRO = ROOT / "freecad" / "PlanOperations.FCMacro"
-
-HEAD = f"""
-import json, os, shutil, sys
-import FreeCAD as App, Part
-macro, said, found = {{"__name__": "macro"}}, [], {{}}
-exec(compile(open({str(MACRO)!r}, encoding="utf-8").read(), "PlanOperations.FCMacro", "exec"), macro)
-macro["say"] = said.append
-FOLDER = os.environ["PLAN_FOLDER"]
-"""
 
 INSIDE = (
     HEAD

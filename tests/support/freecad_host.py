@@ -11,6 +11,17 @@ from tests.support.places import ROOT
 
 CONSOLE = next(filter(None, map(shutil.which, ("freecadcmd", "FreeCADCmd", "freecad.cmd"))), None)
 
+#: A script begins with the macro of operations, whose lines are in `said`.
+HEAD = f"""
+import json, os, shutil, sys
+import FreeCAD as App, Part
+macro, said, found = {{"__name__": "macro"}}, [], {{}}
+text = open({str(ROOT / "freecad" / "PlanOperations.FCMacro")!r}, encoding="utf-8").read()
+exec(compile(text, "PlanOperations.FCMacro", "exec"), macro)
+macro["say"] = said.append
+FOLDER = os.environ["PLAN_FOLDER"]
+"""
+
 #: What a session in FreeCAD's window begins with: it defines `session`, which fills `found`, and lets the event loop call `work`.
 IN_WINDOW = """
 import json, os, sys, time, traceback

@@ -18,7 +18,7 @@ _SAME = 0.0004
 
 
 def inch_name(diameter: float) -> str:
-    """What a drill of a diameter, inch, is called: a whole number of 1/64, a number or a letter; empty where it has no name.
+    """Name a drill of a diameter, inch: by a whole number of 1/64, a number or a letter; empty where it has no name.
 
     >>> inch_name(0.125), inch_name(0.201), inch_name(0.257), inch_name(0.25), inch_name(0.1299)
     ('1/8', '#7', 'F', '1/4', '')

@@ -103,7 +103,7 @@ def thread_in(sizes: Iterable[SizeNote], diameter: float) -> Thread | None:
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """What the diameter of a hole may be."""
+    """The diameter of a hole lies within this."""
 
     nominal: float  #: mm
     lower: float | None  #: mm; deviations, None where none are stated.

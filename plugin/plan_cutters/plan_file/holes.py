@@ -45,7 +45,7 @@ class ThreadEntry(Frozen):
 
 
 class ToleranceEntry(Frozen):
-    """What the part's file says that the diameter of a hole may be."""
+    """The diameter of a hole lies within this, as the part's file states it."""
 
     nominal_mm: float
     lower_mm: float | None = Field(description="deviation; null where the file states the class alone")

@@ -105,7 +105,7 @@ def size(diameter: float) -> str:
 
 @reporting(lambda plan: plan.effective.units)
 def missing_tools(plan: Plan) -> list[str]:
-    """What no tool of the libraries makes of any hole, each once; nothing where they have no tools for holes."""
+    """List what no tool of the libraries makes of any hole, each once; nothing where they have no tools for holes."""
     needed = any(library.drills for library in plan.libraries)
     return [*dict.fromkeys(missing_words(each) for hole in plan.holes for each in hole.missing)] if needed else []
 
