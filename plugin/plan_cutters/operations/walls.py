@@ -208,12 +208,12 @@ class Walls:
         # A window in a wall is no wall: strips are as high as what there is along them.
         there = self._paths.extents.along(rows[good], tangent)[2]
         there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
-        samples, cutter = self._probes.samples, self._probes.cutters[c]
+        samples, radius = self._probes.samples, self._probes.cutters[c].radius
         feed = cross(samples.normal[rows[good]], tangent)
         shape = samples.normal[rows[good]], samples.direction_max[rows[good]], samples.curvature[rows[good]]
-        side = np.full(len(good), cutter.radius), np.zeros(len(good))
+        side = np.full(len(good), radius), np.zeros(len(good))
         axes = np.broadcast_to(axis, (len(good), 3))
-        result.path[good] = np.maximum(centre_path(cutter, *shape, axes, feed, side), _STANDS_STILL) / there
+        result.path[good] = np.maximum(centre_path(*shape, axes, feed, side), _STANDS_STILL) / there
         length = self._paths.extents.along(rows[good], feed)[0]
         result.links[good] = np.where(np.isfinite(length), 1.0 / (there * length), 0.0)
         return result
