@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples, cross
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.kernels.linear.strips import NOTHING, PLANE, Laid, centre_paths, cuts
+from plan_cutters.kernels.linear.strips import NOTHING, PLANE, Laid, cuts
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.obstacles import Obstacles
 
@@ -114,26 +114,6 @@ class Extents:
             with np.errstate(divide="ignore", invalid="ignore"):
                 least = np.nan_to_num(samples.area[known] / longest, posinf=0.0)
             self._length[:, known] = np.maximum(self._length[:, known], least[:, None])
-
-
-def centre_path(
-    normal: Floats, direction: Floats, curvature: Floats, axis: Floats, feed: Floats, mode: tuple[Floats, Floats], *,
-    turning: bool = False,
-) -> Floats:  # fmt: skip
-    """How far the centre of a tool runs for each mm that its contact runs, (n,); 0 where it stands still.
-
-    A contact p with the normal n is cut by a circle of the corner: its centre is p + r n, and the axis is o farther along h, the
-    unit part of n across the axis. So the centre runs by t + r dn + o dh where the contact runs by t. At a fixed axis h turns
-    with n; where the tool turns with the surface, both turn by n x dn, and with them the way from the centre of the tip to the
-    contact. `docs/operations_proof.md`, lemma O11.
-
-    `normal`, `direction`, `axis`, `feed` (n, 3) float: unit normals, directions of the larger curvature, tool axes, and feed
-    directions in the surface. `curvature` (n, 2) float: of the surface, the larger first, concave positive, 1/mm. `mode` ((n,)
-    float, (n,) float): o and r, mm. `turning`: whether the tool turns with the surface: simultaneous motion.
-    """
-    path = np.empty(len(normal))
-    centre_paths(np.ascontiguousarray(axis), feed, Contacts(normal, normal, direction, curvature), *mode, turning, path)
-    return path
 
 
 @dataclass(frozen=True, slots=True)

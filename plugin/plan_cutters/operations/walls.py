@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, cross
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, centre_path, flank_of
+from plan_cutters.kernels.linear.strips import centre_paths
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.fixed_axis import leaning
 from plan_cutters.scene.obstacles import Obstacles
@@ -209,11 +211,11 @@ class Walls:
         there = self._paths.extents.along(rows[good], tangent)[2]
         there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
         samples, radius = self._probes.samples, self._probes.cutters[c].radius
-        feed = cross(samples.normal[rows[good]], tangent)
-        shape = samples.normal[rows[good]], samples.direction_max[rows[good]], samples.curvature[rows[good]]
-        side = np.full(len(good), radius), np.zeros(len(good))
-        axes = np.broadcast_to(axis, (len(good), 3))
-        result.path[good] = np.maximum(centre_path(*shape, axes, feed, side), _STANDS_STILL) / there
+        normal, direction, curvature = (each[rows[good]] for each in (samples.normal, samples.direction_max, samples.curvature))
+        feed, path = cross(normal, tangent), np.empty(len(good))
+        side, axes = (np.full(len(good), radius), np.zeros(len(good))), np.tile(axis, (len(good), 1))
+        centre_paths(axes, feed, Contacts(normal, normal, direction, curvature), *side, False, path)
+        result.path[good] = np.maximum(path, _STANDS_STILL) / there
         length = self._paths.extents.along(rows[good], feed)[0]
         result.links[good] = np.where(np.isfinite(length), 1.0 / (there * length), 0.0)
         return result

@@ -142,7 +142,13 @@ def strip_at(at, touch, laid, work):
 
 @kernel
 def _run(at, feed, touch, turning, work):
-    """How far the centre of a tool runs for each mm that its contact runs along a feed direction; 0 where it stands still."""
+    """How far the centre of a tool runs for each mm that its contact runs along a feed direction; 0 where it stands still.
+
+    A contact p with the normal n is cut by a circle of the corner: its centre is p + r n, and the axis is o farther along h, the
+    unit part of n across the axis. So the centre runs by t + r dn + o dh where the contact runs by t. At a fixed axis h turns
+    with n; where the tool turns with the surface, both turn by n x dn, and with them the way from the centre of the tip to the
+    contact.
+    """
     h, dn, path, arm = work.across, work.dn, work.path, work.arm
     cosine = dot(at.normal, at.axis)
     for k in range(3):
@@ -199,7 +205,12 @@ def workspace():
 
 @entry
 def centre_paths(axis, feed, contacts, offset, radius, turning, path):
-    """Find how far the centre runs (n,) at contacts (n,) with axes and feed directions (n, 3), by what touches (n,)."""
+    """Find how far the centre runs for each mm that the contact does.
+
+    `axis`, `feed` (n, 3) float64: unit tool axes at contacts (n,), and feed directions in the surface.
+    `offset`, `radius` (n,) float64: of the part of the tip that touches, mm. `turning`: simultaneous motion.
+    `path` (n,) float64, written.
+    """
     work = workspace()
     for i in range(len(axis)):
         normal, direction, bend = contacts.normal[i], contacts.direction_max[i], contacts.curvature[i]
