@@ -120,7 +120,7 @@ class Walls:
         cutter, samples, result = self._probes.cutters[c], self._probes.samples, Passes.none(len(rows))
         flank, normal = flank_of(cutter), samples.normal[rows]
         able = self._side(cutter, normal @ axis) & self._probes.outside[s][rows] & ~self._turned_away(c, s, axis, rows)
-        if flank is None or not able.any():
+        if flank is None or not able.any() or not self._probes.setups[s].allows(axis[None])[0]:
             return result
         at = np.flatnonzero(able)
         # Of the flutes: unit normals on the face's side, and directions up them.
@@ -234,7 +234,7 @@ class Walls:
             direction_max=samples.direction_max[rows], curvature=samples.curvature[rows],
         )  # fmt: skip
         self._probes.made += len(rows)
-        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s])
+        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s], held=True)
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""
