@@ -115,22 +115,17 @@ def strip_at(at, touch, laid, work):
     # The second fundamental form in the frame of f and n x f, concave positive.
     c, s = dot(f, at.direction), dot(at.second, f)
     form, side, over = at.high * c**2 + at.low * s**2, (at.low - at.high) * s * c, at.high * s**2 + at.low * c**2
-    # D, and the inverse of it, made symmetric.
+    # D, and the inverse of it, made symmetric; with no negative zero, which would turn the feed round.
     a, b, d, e = 1.0 - radius * form, -(radius * side), -(wide * side), 1.0 - wide * over
     det, trace = a * e - b * d, a + e
-    first, both, last = e * radius / det, 0.5 * (-b * wide / det - d * radius / det), a * wide / det
+    first, both, last = e * radius / det, 0.5 * (-b * wide / det - d * radius / det) + 0.0, a * wide / det
     known = math.isfinite(first) and math.isfinite(both) and math.isfinite(last)
     middle, half, both = (0.5 * (first + last), 0.5 * (first - last), both) if known else (0.0, 0.0, 0.0)
     apart = math.hypot(half, both)
     largest = middle + apart
-    # Cosine and sine of half the angle of (half, both): the eigenvector of the largest.
-    c, s = 1.0, 0.0
-    if apart > 0.0 and half >= 0.0:
-        c = math.sqrt(0.5 * (1.0 + half / apart))
-        s = 0.5 * both / (apart * c)
-    elif apart > 0.0:
-        s = math.copysign(math.sqrt(0.5 * (1.0 - half / apart)), both)
-        c = 0.5 * both / (apart * s)
+    # The eigenvector of the largest lies at half the angle of (half, both).
+    turn = 0.5 * math.atan2(both, half)
+    c, s = math.cos(turn), math.sin(turn)
     for k in range(3):
         feed[k] = c * t[k] - s * f[k]
     # Where D is not positive the curvatures match within the tolerance: the strip is as wide as is allowed.
@@ -180,13 +175,20 @@ def _run(at, feed, touch, turning, work):
 
 
 @kernel
-def _passes(at, feed, which, apart, floor, touch, laid, length, work):
+def _sector(at, way, many):
+    """Which of the directions in which faces are measured, so many over half a turn, is the nearest to one."""
+    turn = math.atan2(dot(way, at.second), dot(way, at.direction))
+    return int(np.rint(turn * (many / math.pi))) % many if math.isfinite(turn) else 0
+
+
+@kernel
+def _passes(at, feed, sectors, apart, floor, touch, laid, length, work):
     """What passes in a feed direction take: the strip, the path, links, and what a mm of path cuts.
 
-    `which`: of the directions in which faces are measured, an even number over half a turn, that of the feed.
+    `sectors`: of the directions in which faces are measured, that of the feed and that across it.
     """
-    kind, many = 0 if floor else 1, length.shape[1]
-    breadth, long = length[kind, (which + many // 2) % many], length[kind, which]
+    kind, (which, across) = 0 if floor else 1, sectors
+    breadth, long = length[kind, across], length[kind, which]
     # On a floor the outer passes cut all of the flat.
     count = math.ceil((breadth - (laid.flat if floor else apart)) / apart - NOTHING) + 1.0
     share = breadth / max(1.0, count)
@@ -239,8 +241,8 @@ def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
         cross(normal, direction, work.second)
         at = Contact(normal, direction, work.second, bend[0], bend[1], axis[i])
         touch = touch_at(at, mode, work)
-        # A ball cuts the same however it leans.
-        if row == before and touch.offset == 0.0 and was.offset == 0.0 and touch.radius == was.radius:
+        # A ball cuts the same however it leans; axes for simultaneous motion are many at each contact.
+        if laid.turning and row == before and touch.offset == 0.0 and was.offset == 0.0 and touch.radius == was.radius:
             strip[i], path[i], links[i] = strip[i - 1], path[i - 1], links[i - 1]
             continue
         before, was = row, touch
@@ -257,14 +259,14 @@ def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
             turn = which * (math.pi / many)
             for k in range(3):
                 work.feed[k] = math.cos(turn) * direction[k] + math.sin(turn) * work.second[k]
-        else:
-            turn = math.atan2(dot(work.feed, work.second), dot(work.feed, direction))
-            which = int(np.rint(turn * (many / math.pi))) % many if math.isfinite(turn) else 0
+        cross(normal, work.feed, work.t)
+        sectors = _sector(at, work.feed, many), _sector(at, work.t, many)
         apart = laid.flat_apart if floor[i] else width
-        strip[i], path[i], links[i], pace = _passes(at, work.feed, which, apart, floor[i], touch, laid, own, work)
+        strip[i], path[i], links[i], pace = _passes(at, work.feed, sectors, apart, floor[i], touch, laid, own, work)
         # The centre may run less far in narrower strips: along a round edge and not across it.
         if not either and narrow > 0.0:
-            cross(normal, work.feed, work.t)
-            other = _passes(at, work.t, (which + many // 2) % many, narrow, False, touch, laid, own, work)
+            cross(normal, work.t, work.f)
+            sectors = sectors[1], _sector(at, work.f, many)
+            other = _passes(at, work.t, sectors, narrow, False, touch, laid, own, work)
             if other[3] > pace:
                 strip[i], path[i], links[i] = other[:3]
