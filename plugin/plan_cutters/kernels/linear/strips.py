@@ -87,7 +87,7 @@ def _width(free, first, other, touch, laid):
 
 @kernel
 def touch_at(at, mode, work):
-    """What of a tip touches at a contact, nan where nothing does; the unit direction in which the tool leans is written."""
+    """Find what of a tip touches at a contact, nan where nothing does; the unit direction in which the tool leans is written."""
     cosine = min(1.0, max(-1.0, dot(at.normal, at.axis)))
     for k in range(3):
         work.f[k] = at.axis[k] - cosine * at.normal[k]
@@ -176,14 +176,14 @@ def _run(at, feed, touch, turning, work):
 
 @kernel
 def _sector(at, way, many):
-    """Which of the directions in which faces are measured, so many over half a turn, is the nearest to one."""
+    """Find the nearest to one of the directions in which faces are measured, so many over half a turn."""
     turn = math.atan2(dot(way, at.second), dot(way, at.direction))
     return int(np.rint(turn * (many / math.pi))) % many if math.isfinite(turn) else 0
 
 
 @kernel
 def _passes(at, feed, sectors, apart, floor, touch, laid, length, work):
-    """What passes in a feed direction take: the strip, the path, links, and what a mm of path cuts.
+    """Find what passes in a feed direction take: the strip, the path, links, and what a mm of path cuts.
 
     `sectors`: of the directions in which faces are measured, that of the feed and that across it.
     """
