@@ -17,7 +17,6 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import canonical, fastest, fewest, moving_axes, passes, symmetry
 from plan_cutters.operations import fewest as cover
-from plan_cutters.operations import passes as strips
 from plan_cutters.operations import proof as moving_proof
 from plan_cutters.operations import task as timing
 from plan_cutters.operations.choices import largest_first, with_and_without
@@ -37,6 +36,7 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.setups import solids
+from tests.support.strips import strips_at
 from tests.support.tool_kinds import TOOLS
 from tests.support.traced import traced
 
@@ -363,13 +363,13 @@ def test_strips(keeps):
     for name, cutter in KINDS.items():
         normal, along, bend, axis = contacts(cutter)
         for scallop, stepover in ((0.013, 0.75), (0.7 * cutter.radius, 3.0), (2.1 * cutter.radius, 0.41)):
-            own = strips.strips_at(cutter, normal, along, bend, axis, scallop, stepover)
+            own = strips_at(cutter, normal, along, bend, axis, scallop, stepover)
             by_place = [own.width, own.free_width, np.abs((own.feed * axis).sum(axis=1))]
             found[f"{name} {scallop:.3f}"] = by_place
         samples = SimpleNamespace(normal=normal, curvature=bend, direction_max=along)
         for accuracy, scallop in ((math.radians(0.1), 0.013), (0.31, 1.9)):
             # Faces whose extents are not known.
-            endless = SimpleNamespace(along=lambda rows, way: np.full((3, len(rows)), np.nan), longest=along.__getitem__)
+            endless = SimpleNamespace(measured=lambda rows: np.full((3, len(rows), passes.DIRECTIONS), np.nan))
             paths = passes.Paths(scallop, 0.61, {cutter: 870.0}, accuracy, endless)
             cut = passes.cut_by_tip(cutter, samples, np.arange(len(normal)), axis, paths)
             found[f"{name} tip {scallop}"] = [*cut, passes.flat_of(cutter), passes.flank_of(cutter)]

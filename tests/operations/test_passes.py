@@ -14,8 +14,10 @@ from scipy.spatial import Delaunay
 from plan_cutters import Cutter, plan
 from plan_cutters.domain.machine import Machine
 from plan_cutters.kernels.linear.sections import sections
+from plan_cutters.kernels.linear.strips import centre_paths
+from plan_cutters.kernels.rows import Contacts
 from plan_cutters.machines import read_machine, to_toml
-from plan_cutters.operations.passes import Paths, centre_path
+from plan_cutters.operations.passes import Paths
 from tests.support.cad_parts import box
 from tests.support.places import DATA
 
@@ -60,7 +62,9 @@ def test_the_centre_runs_as_far_as_steps_on_the_surface_say(word, high, less, ti
     axis = np.array([[math.sin(tilt) * math.cos(turn), math.sin(tilt) * math.sin(turn), math.cos(tilt)]])
     feed = np.array([[math.cos(along), math.sin(along), 0.0]])
     normal, largest = np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]])
-    (found,) = centre_path(cutter, normal, largest, np.array([[high, low]]), axis, feed, turning=turning)
+    touching, found = (np.array([cutter.radius - cutter.corner_radius]), np.array([cutter.corner_radius])), np.empty(1)
+    centre_paths(axis, feed, Contacts(normal, normal, largest, np.array([[high, low]])), *touching, turning, found)
+    (found,) = found
     assert found == pytest.approx(moved(cutter, high, low, tilt, turn, along, turning), rel=1e-5, abs=1e-7)
 
 

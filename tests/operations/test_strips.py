@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters import Cutter
-from plan_cutters.operations.passes import strips_at
 from tests.support.moved_tool import width_left
+from tests.support.strips import strips_at
 
 NORMAL, X, Y = np.eye(3)[[2, 0, 1]]
 

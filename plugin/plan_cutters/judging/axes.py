@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import FaceGrid, Floats
+from cad_io.arrays import FaceGrid, Floats, cross
 from plan_cutters.kernels.codes import OFFSET_OF, RISE
 from plan_cutters.scene.conditions import Conditions, Context
 
@@ -125,7 +125,7 @@ def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> ND
     """
     mode = context.outer_tool.mode[0]
     cosine = (axis * normal).sum(axis=1)
-    across = np.cross(normal, axis)
+    across = cross(normal, axis)
     sine = np.linalg.norm(across, axis=1)
     t = across / np.maximum(sine, 1e-12)[:, None]
     bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)

@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, cross
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns, columns_of
-from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, centre_path, flank_of
+from plan_cutters.kernels.linear.strips import centre_paths
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.fixed_axis import leaning
 from plan_cutters.scene.obstacles import Obstacles
@@ -118,7 +120,7 @@ class Walls:
         cutter, samples, result = self._probes.cutters[c], self._probes.samples, Passes.none(len(rows))
         flank, normal = flank_of(cutter), samples.normal[rows]
         able = self._side(cutter, normal @ axis) & self._probes.outside[s][rows] & ~self._turned_away(c, s, axis, rows)
-        if flank is None or not able.any():
+        if flank is None or not able.any() or not self._probes.setups[s].allows(axis[None])[0]:
             return result
         at = np.flatnonzero(able)
         # Of the flutes: unit normals on the face's side, and directions up them.
@@ -208,12 +210,12 @@ class Walls:
         # A window in a wall is no wall: strips are as high as what there is along them.
         there = self._paths.extents.along(rows[good], tangent)[2]
         there = np.where(np.isfinite(there), np.minimum(there, high[good] - low[good]), high[good] - low[good]) / count[good]
-        samples, cutter = self._probes.samples, self._probes.cutters[c]
-        feed = cross(samples.normal[rows[good]], tangent)
-        shape = samples.normal[rows[good]], samples.direction_max[rows[good]], samples.curvature[rows[good]]
-        side = np.full(len(good), cutter.radius), np.zeros(len(good))
-        axes = np.broadcast_to(axis, (len(good), 3))
-        result.path[good] = np.maximum(centre_path(cutter, *shape, axes, feed, side), _STANDS_STILL) / there
+        samples, radius = self._probes.samples, self._probes.cutters[c].radius
+        normal, direction, curvature = (each[rows[good]] for each in (samples.normal, samples.direction_max, samples.curvature))
+        feed, path = cross(normal, tangent), np.empty(len(good))
+        side, axes = (np.full(len(good), radius), np.zeros(len(good))), np.tile(axis, (len(good), 1))
+        centre_paths(axes, feed, Contacts(normal, normal, direction, curvature), *side, False, path)
+        result.path[good] = np.maximum(path, _STANDS_STILL) / there
         length = self._paths.extents.along(rows[good], feed)[0]
         result.links[good] = np.where(np.isfinite(length), 1.0 / (there * length), 0.0)
         return result
@@ -232,7 +234,7 @@ class Walls:
             direction_max=samples.direction_max[rows], curvature=samples.curvature[rows],
         )  # fmt: skip
         self._probes.made += len(rows)
-        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s])
+        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s], held=True)
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""

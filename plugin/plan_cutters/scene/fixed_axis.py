@@ -29,14 +29,17 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
+def leaning(
+    rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context, *, held: bool = False
+) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,) and the contact at the sample itself.
 
-    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance.
+    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance. `held`: the machine holds the axis.
     """
     from plan_cutters.kernels.search.fixed_axis import LEANING
 
-    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True)[0][0] == LEANING)
+    known = np.zeros(1, np.int64) if held else None
+    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=known)[0][0] == LEANING)
 
 
 def served_by(
@@ -59,16 +62,17 @@ def _tested(
     *,
     directions: bool = False,
     only_leaning: bool = False,
+    held: NDArray[np.int64] | None = None,
 ) -> tuple[NDArray[np.int8], int, Floats]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
-    asked for, its tilt directions (k, m, 3). With `only_leaning` no other way is tried.
+    asked for, its tilt directions (k, m, 3). With `only_leaning` no other way is tried. `held`: the axes that the machine holds.
     """
     from plan_cutters.kernels.search.fixed_axis import served
 
     conditions, (low, high) = context.conditions, context.conditions.postures.tilt
     way = np.full((len(axes), len(rows)), -1, np.int8)
     tilt_direction = np.full((len(axes), len(rows) if directions else 0, 3), np.nan)
-    held = np.flatnonzero(conditions.allows(axes))
+    held = np.flatnonzero(conditions.allows(axes)) if held is None else held
     if not len(held) or not len(rows):
         return way, 0, tilt_direction
     tool, solids, contacts = context.outer, conditions.obstacles.solids, contacts_of(samples)
