@@ -353,22 +353,32 @@ class Cut(NamedTuple):
 
     `strip` (m,) float: width that a pass cuts, mm. `path` (m,) float: length of the centre's path for each mm2, 1/mm. `links`
     (m,) float: passes for each mm2, 1/mm2: each has a link. `floor` (m,) bool: whether the flat part of the tip lies on a floor.
+    `slower` (m,) float: the feed divided by this, at least 1, is as fast as the rotary axes follow.
     """
 
     strip: Floats
     path: Floats
     links: Floats
     floor: NDArray[np.bool_]
+    slower: Floats
 
     def pace(self, paths: Paths, cutter: Cutter) -> Floats:
         """Give what a mm of path cuts, mm2/mm, with links counted as the path that is run meanwhile."""
         link = paths.link_of(cutter)
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(1.0 / (self.path + (0.0 if link == 0.0 else link * paths.speeds([cutter])[0]) * self.links))
+            return np.asarray(
+                1.0 / (self.path * self.slower + (0.0 if link == 0.0 else link * paths.speeds([cutter])[0]) * self.links)
+            )
 
 
-def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False) -> Cut:
+def cut_by_tip(
+    cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False,
+    turns: Floats | None = None,
+) -> Cut:  # fmt: skip
     """Find what passes by the tip take at samples (m,) with axes (m, 3), fixed or turning with the surface.
+
+    `turns` (m, k, 3) float: the least seconds that rotary axes need for a mm of the contact's path, as gradients; None: they are
+    as fast as they must be.
 
     A face, with what it goes on onto smoothly, is cut in as many passes as there must be, at least one: they are as wide as their
     share of it. On a floor, which ends where its plane does, passes are the step-over apart, as a share of the flat part: what
@@ -391,7 +401,11 @@ def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats
             strip = np.where(np.isfinite(share) & (apart > 0.0), share, apart)
             run = np.where(floor, 1.0, centre_path(cutter, normal, direction, curvature, axis, feed, turning=turning))
             links = np.where(np.isfinite(length), 1.0 / (strip * length), 0.0)
-            return Cut(strip, run / strip, np.where(np.isnan(strip), np.nan, links), floor)
+            slower = np.ones(len(rows))
+            if turns is not None:
+                needed = np.abs(np.einsum("mki,mi->mk", turns, feed)).max(axis=1, initial=0.0) * paths.speeds([cutter])[0]
+                slower = np.maximum(1.0, needed / np.maximum(run, NOTHING))
+            return Cut(strip, run / strip, np.where(np.isnan(strip), np.nan, links), floor, slower)
 
     wide, narrow = (
         fed(feed, np.where(floor, paths.stepover * flat, widest.width)),
