@@ -278,8 +278,9 @@ class Steps:
     def negligible(self, number: Ints, rows: Rows, more: float) -> bool:
         """Whether some samples (m,) are no step by themselves, with so much area, mm2, that is none already."""
         area, whole = float(self.area[rows].sum()) + more, float(self.area[number >= 0].sum())
-        short = self.timed and self.cutting(number, rows) < LEAST_SECONDS and area < LEAST_SHARE * whole
-        return area < LEAST_AREA or short
+        # To move all axes for so little of the area is no step however long it takes.
+        short = self.moving[number[rows]].all() or (self.timed and self.cutting(number, rows) < LEAST_SECONDS)
+        return area < LEAST_AREA or (bool(short) and area < LEAST_SHARE * whole)
 
 
 def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]) -> Ints:
@@ -330,8 +331,11 @@ def _without_step(steps: Steps, number: Ints, rows: Rows, more: float | None) ->
     """
     used = np.unique(number[number >= 0])
     others = used[steps.free[used] & ~np.isin(steps.group[used], steps.group[number[rows]])]
-    if not steps.moving[number[rows]].any() and steps.area[rows].sum() >= MINOR_SHARE * steps.area[number >= 0].sum():
-        others = others[~steps.moving[others]]
+    if not steps.moving[number[rows]].any():
+        # A fixed orientation goes to motion only where it is small itself, and motion is a step anyway.
+        size, mine = np.bincount(number[number >= 0], steps.area[number >= 0], steps.cost.shape[1]), float(steps.area[rows].sum())
+        large = size >= MINOR_SHARE * size.sum() if mine < MINOR_SHARE * size.sum() else np.zeros(len(size), bool)
+        others = others[~steps.moving[others] | large[others]]
     if not len(others):
         return None
     cost = steps.cost[np.ix_(rows, others)]

@@ -20,6 +20,7 @@ from plan_cutters.operations.choices import (
     COARSE,
     accompanied,
     fastest_choice,
+    instead_of_motion,
     largest_first_choice,
     one_more,
     quicker,
@@ -372,8 +373,9 @@ def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress)
     if not len(columns):
         return plan_with(task, name, columns)
     columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
-    columns = accompanied(task, columns) if name == "fewest" else columns
-    return plan_with(task, name, columns)
+    if name == "fewest":
+        return plan_with(task, name, accompanied(task, columns))
+    return plan_with(task, name, instead_of_motion(task, columns, lambda rows: _first(task, STEP).and_(_stored(task, rows))))
 
 
 def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Columns:
