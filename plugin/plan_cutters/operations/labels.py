@@ -295,14 +295,18 @@ def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]
         if len(np.unique(steps.group[number[rows]])) < 2:
             continue
         serves, area = np.isfinite(steps.cost[rows]), steps.area[rows]
-        tried = [number]
-        for k in np.flatnonzero((area @ serves >= WHOLE_FACE * area.sum()) & steps.free).tolist():
-            tried.append(number.copy())
-            tried[-1][rows[serves[:, k]]] = k
-        total = [steps.total(each) for each in tried]
-        best = 1 + int(np.argmin(total[1:])) if len(tried) > 1 else 0
-        if total[best] <= total[0] + _MORE * steps.cutting(number, rows):
-            number = tried[best]
+        able = (area @ serves >= WHOLE_FACE * area.sum()) & steps.free
+        most = steps.total(number) + _MORE * steps.cutting(number, rows)
+        # Nobody moves all axes where one orientation will do.
+        for which in (able & ~steps.moving, able & steps.moving):
+            tried = []
+            for k in np.flatnonzero(which).tolist():
+                then = number.copy()
+                then[rows[serves[:, k]]] = k
+                tried.append((steps.total(then), k, then))
+            if tried and min(tried)[0] <= most:
+                number = min(tried)[2]
+                break
     return number
 
 
