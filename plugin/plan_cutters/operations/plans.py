@@ -405,10 +405,10 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     if operation.axis is None:
         assert operation.moving is not None, "it has been looked at closely"
         held = task.moving.held(c, operation.setup, rows, operation.moving[0])
-        axis, speeds, moved = operation.moving[0], task.indexing.speeds, task.orientations[operation.setup].kinematics
-        timed = speeds is not None and len(speeds) and task.paths.feed is not None
-        turns = turning_times(samples, rows, axis, moved, speeds) if timed else None
-        cut = cut_by_tip(operation.cutter, samples, rows, axis[rows], task.paths, turning=True, turns=turns)
+        field, turns, speeds = operation.moving[0], None, None if task.paths.feed is None else task.indexing.speeds
+        if speeds is not None:
+            turns = turning_times(samples, rows, field, task.orientations[operation.setup].kinematics, speeds)
+        cut = cut_by_tip(operation.cutter, samples, rows, field[rows], task.paths, turning=True, turns=turns)
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter, number = operation.axis, operation.cutter, np.full(len(samples), -1, np.int32)
     number[rows] = 0
