@@ -298,10 +298,10 @@ def accompanied(task: Task, columns: Columns) -> Columns:
 
 
 def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Columns]) -> Columns:
-    """Columns with those of their cutters and setups that take what minor steps of simultaneous motion would.
+    """Columns with those of the plan's cutters and setups that take what minor steps of simultaneous motion would.
 
-    Nobody programs all axes at once for a hundredth of the area, where a few orientations have it, each worth its turn.
-    `offered`: candidates for some samples, those that one prefers first.
+    Nobody programs all axes at once for a hundredth of the area, where a few orientations have it, each worth its turn, or one
+    has all that is left. `offered`: candidates for some samples, those that one prefers first.
     """
     options, area = task.ready.options, np.nan_to_num(task.ready.samples.area)
     if options.most_operations is not None or options.index_step is not None or not task.moves or not len(columns):
@@ -311,18 +311,20 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
     whole, motion = float(area[task.rows].sum()), moving_over(task, rest)
     kind = motion.setup * len(task.cutters) + motion.cutter
     size = np.bincount(kind, area[rest], len(task.everywhere) * len(task.cutters))
-    rest = rest[size[kind] < MINOR_SHARE * whole]
-    if area[rest].sum() < MINOR_AREA * whole:
+    rest, kind = (each[size[kind] < MINOR_SHARE * whole] for each in (rest, kind))
+    if not area[rest].any():
         return columns
     some = rest[:: 1 + len(rest) // _ALIKE]
     every, pairs = offered(some), columns.setup * len(task.cutters) + columns.cutter
-    every = every.of(np.flatnonzero(np.isin(every.setup * len(task.cutters) + every.cutter, pairs)))
+    pair = every.setup * len(task.cutters) + every.cutter
+    first = np.flatnonzero(np.isin(pair, pairs))
+    every = every.of(np.append(first, np.flatnonzero(np.isin(pair, kind) & ~np.isin(pair, pairs))))
     serves, stands_for = task.table(some, every), area[some] * (area[rest].sum() / area[some].sum())
-    while len(every):
+    while len(every) and stands_for.any():
         gain = stands_for @ serves
-        if gain.max() < MINOR_AREA * whole:
+        if gain.max() < min(MINOR_AREA * whole, (1.0 - 1e-9) * stands_for.sum()):
             break
-        best = int(np.argmax(gain >= _NEARLY * gain.max()))
+        best = int(np.argmax(gain >= (_NEARLY if gain.max() < stands_for.sum() else 1.0 - 1e-9) * gain.max()))
         columns, stands_for = columns.and_(every.of(np.array([best]))), np.where(serves[:, best], 0.0, stands_for)
     return columns
 
