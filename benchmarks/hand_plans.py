@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path as File
 from typing import Any
@@ -295,32 +295,44 @@ def main(only: str | None, out: File | None, words: str) -> None:
                 print(row(case, folder, words.split()), flush=True)
 
 
-def row(case: Case, folder: File, words: list[str]) -> str:
-    """Plan a part, and put both plans into a row of the table."""
+def planned(case: Case, folder: File, words: Sequence[str] = ()) -> dict[str, Any]:
+    """The process that a part is planned with; its `error` where there is none."""
     file = folder / f"{case.name.replace(' ', '_').replace(',', '')}.step"
     cq.exporters.export(case.shape, str(file))
-    began = time.perf_counter()
     out = file.with_suffix("")
     command = [
         *(sys.executable, "-m", "plan_cutters", str(file), *case.words, "--machine", case.machine, "--holder", "er25"),
         *("--operations", "fastest", "--feed", f"{60 * FEED:g}", "--scallop", f"{SCALLOP:g}", *words, "-o", str(out)),
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 1, 4):
+        return {"error": done.stderr.strip().splitlines()[-1]}
+    process: dict[str, Any] = json.loads((out / "plan.json").read_text(encoding="utf-8"))["process"]
+    return process
+
+
+def cut_seconds(process: dict[str, Any]) -> float:
+    """Seconds of cutting of a process."""
+    return sum(step["seconds"] or 0.0 for step in process["steps"])
+
+
+def row(case: Case, folder: File, words: list[str]) -> str:
+    """Plan a part, and put both plans into a row of the table."""
+    began = time.perf_counter()
+    process = planned(case, folder, words)
     took = time.perf_counter() - began
     hand = f"{case.setups}, {case.turns}, {minutes(case.path.seconds, case.path.link_seconds)}"
-    if done.returncode not in (0, 1, 4):
-        return f"| {case.name} | {hand} | {done.stderr.strip().splitlines()[-1]} | | | |"
-    process = json.loads((out / "plan.json").read_text(encoding="utf-8"))["process"]
-    steps = process["steps"]
-    cutting = sum(step["seconds"] or 0.0 for step in steps)
+    if "error" in process:
+        return f"| {case.name} | {hand} | {process['error']} | | | |"
+    steps, cutting = process["steps"], cut_seconds(process)
     links = [step["link_seconds"] or 0.0 for step in steps if "link_seconds" in step]
     turned = [(s["setup"], s["mode"], *(s["angles_deg"] or {}).items()) for s in steps]
     setups = len({step["setup"] for step in steps})
-    planned = f"{setups}, {len(set(turned))}, {minutes(cutting, sum(links) if links else None)}"
+    made = f"{setups}, {len(set(turned))}, {minutes(cutting, sum(links) if links else None)}"
     more = share(cutting, case.path.length)
     if case.path.corners:
         more += f" ({share(cutting, case.path.length - case.path.corners)})"
-    return f"| {case.name} | {hand} | {planned} | {100 * process['finished_share']:.2f} % | {more} | {took:.0f} s |"
+    return f"| {case.name} | {hand} | {made} | {100 * process['finished_share']:.2f} % | {more} | {took:.0f} s |"
 
 
 def minutes(cutting: float, links: float | None) -> str:

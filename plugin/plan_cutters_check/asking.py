@@ -108,6 +108,7 @@ def _effective(question: Question, options: Options) -> dict[str, Any]:
             "machine": those.machine.name, "faces": those.faces, "tolerance_requested_mm": those.tolerance,
             "axis_accuracy_deg": math.degrees(those.accuracy),
             "index_time_s": INDEX_TIME if those.index_time is None else those.index_time,
+            "rotary_rates_deg_s": those.machine.rates_deg,
         }  # fmt: skip
         names = [name for name in Effective.model_fields if name not in _OTHER]
         return json.loads(json.dumps({n: made[n] if n in made else as_requested(those, n) for n in names}, default=str))

@@ -210,7 +210,9 @@ class Paper:
             yield Finding(False, f"{plan}: {words} are reached.")
 
     def _times(self, plan: Planned) -> Iterator[Finding]:
-        """Seconds of each sample are its path over the feed; on planes a path of a fixed axis is its area over the width."""
+        """Seconds of each sample are its path over the feed, or more where rotary axes with rates move meanwhile; on floors a
+        path is its area over the width.
+        """
         label, assumed = plan.label, self.reckoned.question.document["operations"]["assumed"]
         strip, length, seconds = (plan[name] for name in ("strip_mm", "path_mm", "seconds"))
         wanted, widest, feeds = np.full(len(label), np.nan), np.zeros(len(label)), assumed["feed_mm_min"]
@@ -220,6 +222,8 @@ class Paper:
             if feeds is not None:
                 with np.errstate(divide="ignore", invalid="ignore"):
                     wanted[mine] = length[mine] / (feeds[each["cutter"]] / 60.0)
+                if each["axis"] is None and self.reckoned.question.machine.rates:
+                    wanted[mine] = np.fmax(wanted[mine], seconds[mine])
             tool = self.reckoned.question.tools[each["cutter"]]
             # Along walls the flutes are the limit: strips are compared with these where walls are.
             # A floor that is no wider than the tip is cut in one pass.

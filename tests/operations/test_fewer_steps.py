@@ -98,6 +98,26 @@ def test_a_face_of_free_form_goes_into_the_step_that_serves_nearly_all_of_it(ser
     assert in_one_step(steps, number, np.ones(n, np.int32), []).tolist() == number.tolist()
 
 
+@pytest.mark.parametrize(
+    ("dearer", "motion", "rest", "goes_to"),
+    [(1.05, 0.5, 0.0, [0]), (1.15, 0.95, 0.0, [0]), (1.2, 0.8, 0.0, [2]), (1.2, 0.8, 10_000.0, [0, 1])],
+)  # fmt: skip
+def test_a_face_goes_with_motion_only_where_no_orientation_serves_it_at_little_more(dearer, motion, rest, goes_to):
+    """Two orientations have half of a face each, motion takes it in less time, the first orientation in more.
+
+    A tenth more than before is little, and so is a quarter more than in motion. A face of less than 1 % does not go with motion.
+    """
+    cost = np.tile([dearer, 3.0, motion], (101, 1))
+    cost[50:100, 1] = 1.0
+    cost[:50, 0] = 1.0
+    cost[50:100, 0] = 2.0 * dearer - 1.0
+    cost[100, :] = 0.0, INF, INF
+    face, area = np.append(np.ones(100, np.int32), np.int32(2)), np.append(np.ones(100), rest)
+    steps = steps_of(cost, area, moving=[False, False, True], turn=0.0)
+    then = in_one_step(steps, np.append(np.repeat(np.int32([0, 1]), 50), np.int32(0)), face, [1])
+    assert sorted({*then[:100].tolist()}) == goes_to
+
+
 def test_a_fixed_step_of_a_large_area_does_not_go_with_motion():
     """However short: nobody turns the axes while a table top is faced. A small one does."""
     short = steps_of([[2.0, 2.0], [INF, 2.0]], [900.0, 0.8], moving=[False, True])

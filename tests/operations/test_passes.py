@@ -143,18 +143,21 @@ def top(height):
     return lambda face: face.geomType() == "PLANE" and face.BoundingBox().zmin > height - 1e-6
 
 
-def test_a_rib_takes_a_pass_as_long_as_it_is():
-    """Tops of 1 x 100 mm: one pass each, however wide the tool is; a rib more takes a pass more."""
+@settings(deadline=None, max_examples=4)
+@given(st.floats(0.5, 3.0), st.floats(30.0, 100.0))
+def test_a_rib_takes_a_pass_as_long_as_it_is(width, length):
+    """Tops of ribs: one pass each, however wide the tool is; a rib more takes its length over the feed more."""
 
     def ribs(many):
         made = cq.Workplane().box(100, 100, 5, centered=(True, True, False))
         for k in range(many):
-            made = made.union(cq.Workplane().box(100, 1, 10, centered=(True, True, False)).translate((0, 8.0 * k - 36.0, 0)))
+            rib = cq.Workplane().box(length, width, 10, centered=(True, True, False)).translate((0, 8.0 * k - 36.0, 0))
+            made = made.union(rib)
         return made.val()
 
     two, three = (planned(ribs(n), "D12L60F26", faces=on(ribs(n), top(10.0))) for n in (2, 3))
-    assert two.cut_length_mm == pytest.approx(200.0, rel=0.02)
-    assert three.cutting_seconds - two.cutting_seconds == pytest.approx(100.0 * 60.0 / FEED, rel=0.02)
+    assert two.cut_length_mm == pytest.approx(2.0 * length, rel=0.02)
+    assert three.cutting_seconds - two.cutting_seconds == pytest.approx(length * 60.0 / FEED, rel=0.02)
     assert two.link_seconds == pytest.approx(2 * 2.0, rel=0.1), "one to each piece, and one for the pass of each"
 
 
@@ -228,15 +231,20 @@ def test_a_pass_takes_the_feed_over_the_acceleration_of_the_slowest_axis_beside_
     assert replace(paths, feed=None).link_of(cutter) == 0.0
 
 
-@pytest.mark.parametrize("cut", [8.0, 27.3])
-def test_a_face_that_is_cut_in_two_takes_as_long(cut):
-    """The top of a block under a ball, whole and in two faces: passes go on over the border."""
+@settings(deadline=None, max_examples=6)
+@given(st.floats(4.0, 36.0), st.booleans())
+def test_a_face_that_is_cut_in_two_takes_no_less(cut, ball):
+    """The top of a block, whole and in two faces: under a ball passes go on over the border, on a floor they end there."""
     whole = cq.Workplane().box(40, 20, 5, centered=False)
     halves = cq.Workplane().box(cut, 20, 5, centered=False)
     halves = halves.union(cq.Workplane().box(40 - cut, 20, 5, centered=False).translate((cut, 0, 0)), clean=False)
-    one, two = (planned(each.val(), "D10L50rc5F20", faces=on(each.val(), top(5.0))) for each in (whole, halves))
-    assert two.cut_length_mm == pytest.approx(one.cut_length_mm, rel=0.02)
-    assert two.link_seconds == pytest.approx(one.link_seconds, rel=0.05)
+    cutter = "D10L50rc5F20" if ball else "D6L60F26"
+    one, two = (planned(each.val(), cutter, faces=on(each.val(), top(5.0))) for each in (whole, halves))
+    assert two.cut_length_mm >= (1.0 - 0.01) * one.cut_length_mm
+    assert two.link_seconds >= (1.0 - 0.01) * one.link_seconds
+    if ball:
+        assert two.cut_length_mm == pytest.approx(one.cut_length_mm, rel=0.02)
+        assert two.link_seconds == pytest.approx(one.link_seconds, rel=0.05)
 
 
 @pytest.mark.parametrize("seed", range(3))

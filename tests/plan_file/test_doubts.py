@@ -16,7 +16,7 @@ from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.text import text_of
 from plan_cutters.report.page.write import page
-from tests.support.cad_parts import box, compound
+from tests.support.cad_parts import box, compound, patch
 
 FEW = {"faces": "all", "grid": 5, "area_budget": 0}
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
@@ -188,3 +188,26 @@ def test_the_size_of_the_part_stands_in_the_line_that_names_it(units, size, face
     assert f"art, {size}" in said
     assert said.count(size) == 1
     assert f"art, {size}" in page(result).decode()
+
+
+@pytest.mark.parametrize("cutter", ["D6L60rc1", "D6L60rc3"])
+def test_motion_between_samples_is_doubted_until_all_of_it_is_proved(cutter):
+    step = {"cutter": cutter, "mode": "simultaneous"}
+    words = {"cutters": [cutter], "feed": 1000.0, "grid": 9, "machine": "trunnion-ac", "setup": "+z"}
+    result = plan(patch(3), **words, process={"step": [step], "rest": "leave"}).plan
+    entry = result.operations.plans[0]
+    (made,) = entry.operations
+    (line,) = [each for each in doubts(result) if "Not proved" in each]
+    assert line in result.process.doubts
+    assert f"in step 1, at {made.samples} samples, " in line
+    left = 100.0 * (1.0 - made.proved_share)
+    assert float(line.split("samples, ")[1].split(" %")[0]) == pytest.approx(left, abs=0.06)
+    assert (made.proved_share > 0.0) == cutter.endswith("rc3"), "a ball alone"
+
+    def with_share(share):
+        one = made.model_copy(update={"proved_share": share})
+        plans = [entry.model_copy(update={"operations": [one]})]
+        return result.model_copy(update={"operations": result.operations.model_copy(update={"plans": plans})})
+
+    assert any("100 % of its area" in each for each in doubts(with_share(None))), "nothing was looked at"
+    assert not any("Not proved" in each for each in doubts(with_share(1.0)))

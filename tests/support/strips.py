@@ -11,7 +11,7 @@ from plan_cutters.kernels.linear.strips import Contact, Laid, strip_at, touch_at
 def strips_at(cutter, normal, direction, curvature, axis, scallop, stepover):
     """Width and free width (n,), mm, and unit feed (n, 3) with axes (n, 3); widths are nan where the tool does not touch."""
     mode, work = np.array([(each.offset, each.radius, each.low, each.high) for each in modes(cutter)]), workspace()
-    laid = Laid(scallop, stepover * 2.0 * cutter.radius, cutter.radius, 0.0, 0.0, 0.0, False)
+    laid = Laid(scallop, stepover * 2.0 * cutter.radius, cutter.radius, 0.0, 0.0, 0.0, 1.0, False)
     width, free_width, feed = np.full(len(axis), np.nan), np.full(len(axis), np.nan), np.empty((len(axis), 3))
     for i in range(len(axis)):
         across = np.cross(normal[i], direction[i])

@@ -101,6 +101,7 @@ def effective(ready: Prepared) -> Effective:
         "process": _process(ready),
         "axis_accuracy_deg": float(np.degrees(options.accuracy)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
+        "rotary_rates_deg_s": options.machine.rates_deg,
     }
     return Effective(**{name: as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
 

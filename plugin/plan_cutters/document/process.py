@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -407,6 +408,15 @@ def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str,
     }  # fmt: skip
 
 
+def place_in_shop(step: OperationEntry | ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
+    """Give the place of a step in the order of a shop, `size` being those of cutters by their ids, 0 the largest.
+
+    Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls, other
+    fixed orientations and simultaneous motion, of each the largest area first.
+    """
+    return step.setup, size[step.cutter], step.mode != "fixed", _IN_TURN.index(step.strategy), -step.area_mm2
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Parts:
     """Steps are made of this: the areas (n,) of samples, and what is requested of all, mm2."""
@@ -432,16 +442,8 @@ class _Parts:
         )  # fmt: skip
 
     def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
-        """List the steps that were planned, in the order of a shop.
-
-        Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls,
-        other fixed orientations and simultaneous motion, of each the largest area first.
-        """
-        size = {cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))}
-
-        def place(e: OperationEntry | ProcessStep) -> tuple[object, ...]:
-            return e.setup, size[e.cutter], e.mode != "fixed", _IN_TURN.index(e.strategy), -e.area_mm2
-
+        """List the steps that were planned, in the order of a shop."""
+        place = partial(place_in_shop, size={cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))})
         # Operations that are images of each other are one step.
         together = dict[object, list[tuple[int, OperationEntry]]]()
         for k, each in sorted(enumerate(entry.operations), key=lambda ranked: place(ranked[1])):

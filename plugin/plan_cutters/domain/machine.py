@@ -220,6 +220,11 @@ class Machine:
         return tuple(axis for axis in self.axes if axis.kind == "rotary")
 
     @property
+    def rates_deg(self) -> dict[str, float]:
+        """The largest speed of each rotary axis that has one, deg/s, by its name."""
+        return {axis.name: math.degrees(axis.rate) for axis in self.rotary if axis.rate is not None}
+
+    @property
     def acceleration(self) -> float:
         """The least acceleration of its linear axes, mm/s2; infinite where none is known."""
         return min((axis.acceleration for axis in self.linear if axis.acceleration is not None), default=math.inf)

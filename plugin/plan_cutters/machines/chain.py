@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
@@ -161,9 +162,9 @@ def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate
 
 
 def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: tuple[float, float] | None = None,
-         point: Vector = (0.0, 0.0, 0.0), rate: float | None = None) -> Axis:  # fmt: skip
+         point: Vector = (0.0, 0.0, 0.0), rate: float | None = None, acceleration: float | None = None) -> Axis:  # fmt: skip
     """An axis of a file; a speed of 0 is none."""
-    return Axis(name, kind, carries, direction, limits, point, rate or None)
+    return Axis(name, kind, carries, direction, limits, point, rate or None, None, acceleration or None)
 
 
 def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool: Vector = ISO["Z"]) -> Machine:
@@ -212,5 +213,5 @@ def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> li
     for side, listed in sides:
         for axis in (by_name[name] for name in listed):
             turned = opposite(axis.direction) if side == "part" and added.sign == TABLE else axis.direction
-            axes.append(Axis(axis.name, axis.kind, side, turned, axis.limits, axis.point, axis.rate))
+            axes.append(replace(axis, carries=side, direction=turned))
     return axes

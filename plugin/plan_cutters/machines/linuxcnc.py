@@ -319,8 +319,9 @@ class _Reading:
 
     def rotary(self, letter: str, carries: str, against: bool, point: chain.Vector) -> Axis:
         direction = chain.opposite(chain.ISO[letter]) if against else chain.ISO[letter]
+        rate, change = (self.least(letter, word) for word in ("MAX_VELOCITY", "MAX_ACCELERATION"))
         return chain.axis(letter, "rotary", "part" if carries == "part" else "tool", direction,
-                          limits=self.limits(letter, False), point=point, rate=self.least(letter, "MAX_VELOCITY"))  # fmt: skip
+                          limits=self.limits(letter, False), point=point, rate=rate, acceleration=change)  # fmt: skip
 
     def trivial(self) -> tuple[list[Axis], list[Axis]]:
         """Kinematics that say nothing of how axes stand on each other."""

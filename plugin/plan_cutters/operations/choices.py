@@ -14,14 +14,20 @@ from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
+from plan_cutters.operations.labels import MINOR_SHARE
 from plan_cutters.operations.orientations import STEP
-from plan_cutters.operations.plans import MINOR_AREA, costs_with, plan_with, worth_their_turn
+from plan_cutters.operations.plans import MINOR_AREA, costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task, at_some, shared_area
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.operations import OneMoreEntry
 from plan_cutters.scene.work import Progress
 
 Rows = NDArray[np.int64]
+
+
+#: Samples at which orientations in place of motion are compared, at most about; one with this share of what the best takes is
+#: as good.
+_ALIKE, _NEARLY = 400, 0.9
 
 
 class Worth(NamedTuple):
@@ -289,6 +295,38 @@ def accompanied(task: Task, columns: Columns) -> Columns:
             break
         chosen.append(open_.pop(best))
     return columns if len(chosen) == len(columns) else worth_their_turn(task, every.of(np.array(chosen, np.int64)))
+
+
+def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Columns]) -> Columns:
+    """Columns with those of the plan's cutters and setups that take what minor steps of simultaneous motion would.
+
+    Nobody programs all axes at once for a hundredth of the area, where a few orientations have it, each worth its turn, or one
+    has all that is left. `offered`: candidates for some samples, those that one prefers first.
+    """
+    options, area = task.ready.options, np.nan_to_num(task.ready.samples.area)
+    if options.most_operations is not None or options.index_step is not None or not task.moves or not len(columns):
+        return columns
+    open_ = ~task.probes.kept(task.rows, task.images(columns)).any(axis=1)
+    rest = task.rows[open_ if task.moved is None else open_ & ~task.moved[task.rows]]
+    whole, motion = float(area[task.rows].sum()), moving_over(task, rest)
+    kind = motion.setup * len(task.cutters) + motion.cutter
+    size = np.bincount(kind, area[rest], len(task.everywhere) * len(task.cutters))
+    rest, kind = (each[size[kind] < MINOR_SHARE * whole] for each in (rest, kind))
+    if not area[rest].any():
+        return columns
+    some = rest[:: 1 + len(rest) // _ALIKE]
+    every, pairs = offered(some), columns.setup * len(task.cutters) + columns.cutter
+    pair = every.setup * len(task.cutters) + every.cutter
+    first = np.flatnonzero(np.isin(pair, pairs))
+    every = every.of(np.append(first, np.flatnonzero(np.isin(pair, kind) & ~np.isin(pair, pairs))))
+    serves, stands_for = task.table(some, every), area[some] * (area[rest].sum() / area[some].sum())
+    while len(every) and stands_for.any():
+        gain = stands_for @ serves
+        if gain.max() < min(MINOR_AREA * whole, (1.0 - 1e-9) * stands_for.sum()):
+            break
+        best = int(np.argmax(gain >= (_NEARLY if gain.max() < stands_for.sum() else 1.0 - 1e-9) * gain.max()))
+        columns, stands_for = columns.and_(every.of(np.array([best]))), np.where(serves[:, best], 0.0, stands_for)
+    return columns
 
 
 def _others(task: Task, columns: Columns) -> Columns:

@@ -9,6 +9,7 @@ samples another step serves as well. Each sample goes only with a step that serv
 less than a second, is no step at all where the plan leaves something anyway: it is left, by name.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -229,6 +230,8 @@ MINOR_SHARE, MINOR_SECONDS = 0.01, 5.0
 LEAST_AREA, LEAST_SECONDS, LEAST_SHARE = 0.1, 1.0, 0.001
 #: A step that serves so much of a face of free form takes it, where that costs no more than this share of the face's time.
 WHOLE_FACE, _MORE = 0.95, 0.1
+#: A fixed step takes it in place of simultaneous motion at so much more of the time that the face takes in motion.
+_RATHER_FIXED = 0.25
 #: Seconds that count as nothing.
 _NOTHING = 1e-9
 
@@ -278,8 +281,9 @@ class Steps:
     def negligible(self, number: Ints, rows: Rows, more: float) -> bool:
         """Whether some samples (m,) are no step by themselves, with so much area, mm2, that is none already."""
         area, whole = float(self.area[rows].sum()) + more, float(self.area[number >= 0].sum())
-        short = self.timed and self.cutting(number, rows) < LEAST_SECONDS and area < LEAST_SHARE * whole
-        return area < LEAST_AREA or short
+        # To move all axes for so little of the area is no step however long it takes.
+        short = self.moving[number[rows]].all() or (self.timed and self.cutting(number, rows) < LEAST_SECONDS)
+        return area < LEAST_AREA or (bool(short) and area < LEAST_SHARE * whole)
 
 
 def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]) -> Ints:
@@ -294,14 +298,24 @@ def in_one_step(steps: Steps, number: Ints, face: Ints, free_form: Sequence[int]
         if len(np.unique(steps.group[number[rows]])) < 2:
             continue
         serves, area = np.isfinite(steps.cost[rows]), steps.area[rows]
-        tried = [number]
-        for k in np.flatnonzero((area @ serves >= WHOLE_FACE * area.sum()) & steps.free).tolist():
-            tried.append(number.copy())
-            tried[-1][rows[serves[:, k]]] = k
-        total = [steps.total(each) for each in tried]
-        best = 1 + int(np.argmin(total[1:])) if len(tried) > 1 else 0
-        if total[best] <= total[0] + _MORE * steps.cutting(number, rows):
-            number = tried[best]
+        able = (area @ serves >= WHOLE_FACE * area.sum()) & steps.free
+        if area.sum() < MINOR_SHARE * steps.area[number >= 0].sum():
+            able &= ~steps.moving
+        tried = {False: (math.inf, number), True: (math.inf, number)}
+        for k in np.flatnonzero(able).tolist():
+            then, moving = number.copy(), bool(steps.moving[k])
+            then[rows[serves[:, k]]] = k
+            if (total := steps.total(then)) < tried[moving][0]:
+                tried[moving] = total, then
+        own, (fixed, still), (in_motion, then) = steps.cutting(number, rows), tried[False], tried[True]
+        most = steps.total(number) + _MORE * own
+        if in_motion <= most:
+            # Nobody moves all axes where one orientation will do at a little more.
+            most = max(most, in_motion + _RATHER_FIXED * steps.cutting(then, rows))
+        if fixed <= most:
+            number = still
+        elif in_motion <= most:
+            number = then
     return number
 
 
@@ -330,8 +344,11 @@ def _without_step(steps: Steps, number: Ints, rows: Rows, more: float | None) ->
     """
     used = np.unique(number[number >= 0])
     others = used[steps.free[used] & ~np.isin(steps.group[used], steps.group[number[rows]])]
-    if not steps.moving[number[rows]].any() and steps.area[rows].sum() >= MINOR_SHARE * steps.area[number >= 0].sum():
-        others = others[~steps.moving[others]]
+    if not steps.moving[number[rows]].any():
+        # A fixed orientation goes to motion only where it is small itself, and motion is a step anyway.
+        size, mine = np.bincount(number[number >= 0], steps.area[number >= 0], steps.cost.shape[1]), float(steps.area[rows].sum())
+        large = size >= MINOR_SHARE * size.sum() if mine < MINOR_SHARE * size.sum() else np.zeros(len(size), bool)
+        others = others[~steps.moving[others] | large[others]]
     if not len(others):
         return None
     cost = steps.cost[np.ix_(rows, others)]

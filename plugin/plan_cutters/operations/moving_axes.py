@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import FaceGrid, Floats, SurfaceSamples
+from cad_io.arrays import FaceGrid, Floats, SurfaceSamples, cross
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, Verdicts
 from plan_cutters.judging.axes import AxisField, angle_between, margin
 from plan_cutters.judging.cells import tensors
@@ -231,6 +232,40 @@ def _smoothed(test: _Test, rows: Rows, edge: Rows, axis: Floats, least: Floats) 
         if not fresh.any():
             break
     return axis
+
+
+def turning_times(samples: SurfaceSamples, rows: Rows, axis: Floats, kinematics: Kinematics, rate: Floats) -> Floats:
+    """Find the seconds that each of k rotary axes needs at least for a mm of the contact's path at samples (m,).
+
+    The angles of neighbouring samples say how fast each turns over the surface. Next to the singular direction the first one may
+    stand at any angle: there it counts for nothing.
+
+    `axis` (n, 3) float: unit tool axes at samples. `rate` (k,) float: rad/s. Returns (m, k, 3) float: gradients in the surface;
+    times a unit direction in it, s/mm.
+    """
+    m, place = len(rows), np.full(len(samples), -1, np.int64)
+    place[rows] = np.arange(m)
+    edge = place[samples.neighbours.astype(np.int64)]
+    edge = edge[(edge >= 0).all(axis=1)]
+    one, other = np.concatenate([edge, edge[:, ::-1]]).T
+    angle = kinematics.angles(axis[rows])[:, 0]
+    step = angle[other] - angle[one]
+    step -= 2.0 * math.pi * np.round(step / (2.0 * math.pi))
+    first = samples.direction_max[rows]
+    frame = np.stack([first, cross(samples.normal[rows], first)], axis=1)
+    away = np.einsum("eij,ej->ei", frame[one], samples.point[rows[other]] - samples.point[rows[one]])
+    known = np.isfinite(step).all(axis=1) & np.isfinite(away).all(axis=1)
+    one, away, step = one[known], away[known], step[known]
+
+    def summed(values: Floats) -> Floats:
+        return np.stack([np.bincount(one, each, m) for each in values.reshape(len(one), -1).T], axis=1)
+
+    square = summed(away[:, :, None] * away[:, None]).reshape(m, 2, 2)
+    mixed = summed(away[:, :, None] * step[:, None]).reshape(m, 2, -1)
+    gradient = np.linalg.pinv(square, rcond=1e-6, hermitian=True) @ mixed / rate
+    near = np.linalg.norm(cross(axis[rows], kinematics.direction[:1]), axis=1) <= math.sin(SINGULAR)
+    gradient[near, :, :-1] = 0.0
+    return np.einsum("mik,mij->mkj", gradient, np.nan_to_num(frame))
 
 
 def fields(samples: SurfaceSamples, axis: Floats) -> dict[int, AxisField]:

@@ -232,12 +232,20 @@ class Indexing:
 
         Without rotary axes there is nothing that takes time.
         """
-        where = self.orientations[0]
-        if not where.names:
+        if not self.orientations[0].names:
             return np.zeros(0)
-        rates = [axis.rate for axis in where.conditions.machine.rotary]
-        known = bool(rates) and all(each is not None and 0.0 < each < math.inf for each in rates)
-        return np.array(rates, float) if known and self.given is None else None
+        return self.speeds if self.given is None else None
+
+    @property
+    def speeds(self) -> Floats | None:
+        """Rates (k,) of the rotary axes, rad/s; None where the machine does not say all of them."""
+        rates = [axis.rate for axis in self.orientations[0].conditions.machine.rotary]
+        return np.array(rates, float) if rates and None not in rates else None
+
+    @property
+    def acceleration(self) -> Floats:
+        """Accelerations (k,) of the rotary axes, rad/s2; infinite where the machine says none."""
+        return np.array([axis.acceleration or math.inf for axis in self.orientations[0].conditions.machine.rotary])
 
     @property
     def constant(self) -> float:
@@ -255,7 +263,7 @@ class Indexing:
         if rate is None or not len(positions):
             return np.full(len(positions), self.constant)
         limit = self.orientations[setup].kinematics.limit
-        return index_times([np.radians(each) for each in positions], limit, rate)
+        return index_times([np.radians(each) for each in positions], limit, rate, self.acceleration)
 
     def together(self, columns: Columns) -> float:
         """Time, s, of all columns: each cutter in each setup begins with the rotary axes at zero."""
@@ -292,14 +300,16 @@ class Indexing:
         return np.where(np.isfinite(seconds), seconds, 0.0)
 
 
-def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, rate: Floats) -> Floats:
+def index_times(
+    positions: Sequence[Floats | Sequence[Floats]], limit: Floats, rate: Floats, acceleration: Floats | float = math.inf
+) -> Floats:
     """Times (k,), s, in which rotary axes come to each of some positions, in the order that takes least in all.
 
     The slowest axis counts. An axis without a limit on one side takes the shorter way round; of one with limits, all turns within
     them count, up to one from zero. Up to `MOST` positions all orders are compared; of more, the nearest one comes next.
 
     `positions` (sequence of (s, k) float): the solutions of each position, rad. `limit` (k, 2) float: least and largest angle of
-    each axis, rad; infinite: none. `rate` (k,) float: rad/s.
+    each axis, rad; infinite: none. `rate` (k,) float: rad/s. `acceleration` (k,) float: rad/s2; infinite: none.
     """
     endless: NDArray[np.bool_] = np.asarray(~np.isfinite(limit).all(axis=1))
     turned = [_turns(np.atleast_2d(each), limit, endless) for each in positions]
@@ -307,7 +317,10 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
     places = np.concatenate([_start(limit)[None], *turned])
     step = np.abs(places[:, None] - places)
     step = np.where(endless, np.minimum(step % (2.0 * math.pi), -step % (2.0 * math.pi)), step)
-    seconds = (step / rate).max(axis=2, initial=0.0)
+    # An axis that does not come to its rate is as long in getting faster as in getting slower.
+    reached = step >= rate**2 / acceleration
+    seconds = np.where(reached, step / rate + rate / acceleration, 2.0 * np.sqrt(step / acceleration))
+    seconds = np.where(step > 0.0, seconds, 0.0).max(axis=2, initial=0.0)
     order = _best_order(seconds, owner) if len(turned) <= MOST else _nearest(seconds, owner)
     times, before = np.zeros(len(turned)), 0
     for place in order:

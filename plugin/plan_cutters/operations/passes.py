@@ -155,21 +155,29 @@ class Cut(NamedTuple):
 
     `strip` (m,) float: width that a pass cuts, mm. `path` (m,) float: length of the centre's path for each mm2, 1/mm. `links`
     (m,) float: passes for each mm2, 1/mm2: each has a link. `floor` (m,) bool: whether the flat part of the tip lies on a floor.
+    `slower` (m,) float: the feed divided by this, at least 1, is as fast as the rotary axes follow.
     """
 
     strip: Floats
     path: Floats
     links: Floats
     floor: NDArray[np.bool_]
+    slower: Floats
 
     def pace(self, paths: Paths, cutter: Cutter) -> Floats:
         """Give what a mm of path cuts, mm2/mm, with links counted as the path that is run meanwhile."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(1.0 / (self.path + paths.as_path(cutter) * self.links))
+            return np.asarray(1.0 / (self.path * self.slower + paths.as_path(cutter) * self.links))
 
 
-def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False) -> Cut:
+def cut_by_tip(
+    cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths, *, turning: bool = False,
+    turns: Floats | None = None,
+) -> Cut:  # fmt: skip
     """Find what passes by the tip take at samples (m,) with axes (m, 3), fixed or turning with the surface.
+
+    `turns` (m, k, 3) float: the least seconds that rotary axes need for a mm of the contact's path, as gradients; None: they are
+    as fast as they must be.
 
     A face, with what it goes on onto smoothly, is cut in as many passes as there must be, at least one: they are as wide as their
     share of it. On a floor, which ends where its plane does, passes are the step-over apart, as a share of the flat part: what
@@ -179,12 +187,14 @@ def cut_by_tip(cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats
     mode, flat = np.array([(each.offset, each.radius, each.low, each.high) for each in modes(cutter)]), flat_of(cutter)
     laid = Laid(
         paths.scallop, paths.stepover * 2.0 * cutter.radius, cutter.radius, flat, paths.stepover * flat, paths.as_path(cutter),
-        turning,
+        float(paths.speeds([cutter])[0]), turning,
     )  # fmt: skip
-    strip, path, links = np.empty((3, len(rows)))
+    strip, path, links, slower = np.empty((4, len(rows)))
+    turns = np.empty((len(rows), 0, 3)) if turns is None else np.ascontiguousarray(turns)
     contacts = Contacts(samples.normal, samples.normal, samples.direction_max, samples.curvature)
-    cuts(rows, np.ascontiguousarray(axis), contacts, mode, laid, paths.extents.measured(rows), floor, strip, path, links)
-    return Cut(strip, path, links, floor)
+    length = paths.extents.measured(rows)
+    cuts(rows, np.ascontiguousarray(axis), contacts, mode, laid, length, floor, turns, strip, path, links, slower)
+    return Cut(strip, path, links, floor, slower)
 
 
 def flank_of(cutter: Cutter) -> tuple[float, float] | None:

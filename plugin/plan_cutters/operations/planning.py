@@ -19,6 +19,7 @@ from plan_cutters.operations.choices import (
     COARSE,
     accompanied,
     fastest_choice,
+    instead_of_motion,
     largest_first_choice,
     one_more,
     quicker,
@@ -226,11 +227,18 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each), times=True) for each in compared]
     best, words = _recommended(some, plans)
+    unmoved = task, some
     if (motion := flowing(some, partial(chosen_for_others, choice=choice), best)) is not None:
         faces, moving = motion
         words = (_why_in_motion(best, moving, faces),)
         best, task, some = moving, with_moved(task, faces), with_moved(some, faces)
     plan = _capped(task, some, "fastest", _columns_of(task, best), parts[2])
+    still = [each for each in plans if not each.moves and few_enough(task, each)]
+    # Choices do not know how long the rotary axes take on the way.
+    if plan.moves and still and task.indexing.speeds is not None:
+        best = min(still, key=lambda each: each.price)
+        if best.price < plan.price:
+            plan, words = _capped(*unmoved, "fastest", _columns_of(task, best), parts[2]), ()
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=lambda each: each.price)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
@@ -276,6 +284,8 @@ def _in_motion(task: Task, quick: PlansTimed) -> PlansTimed:
         return quick
     faces, moving = motion
     made, (entry, area) = plan_with(with_moved(task, faces), plan.name, _columns_of(task, moving)), timed
+    if made.price > plan.price:
+        return quick
     entry = against_bound(made.total, entry.bound_seconds, entry.at_best_seconds, entry.samples, entry.candidates)
     return [made], (entry, area), worth, (*words, _why_in_motion(plan, made, faces))
 
@@ -362,8 +372,9 @@ def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress)
     if not len(columns):
         return plan_with(task, name, columns)
     columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
-    columns = accompanied(task, columns) if name == "fewest" else columns
-    return plan_with(task, name, columns)
+    if name == "fewest":
+        return plan_with(task, name, accompanied(task, columns))
+    return plan_with(task, name, instead_of_motion(task, columns, lambda rows: _first(task, STEP).and_(_stored(task, rows))))
 
 
 def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Columns:

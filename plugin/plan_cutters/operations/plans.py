@@ -26,6 +26,7 @@ from plan_cutters.operations.labels import (
     sampled_faces,
     without_minor_steps,
 )
+from plan_cutters.operations.moving_axes import turning_times
 from plan_cutters.operations.orientations import Indexing
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
 from plan_cutters.operations.task import Task, costs_of, paces
@@ -148,7 +149,7 @@ def plan_with(
         # Where no axis moves while it cuts, nothing takes what no fixed step is worth.
         short = np.union1d(short, rows[number[rows] < 0])
     region = regions_of(number, edge, area)
-    strip, length, link = np.full((3, n), np.nan)
+    strip, length, link, slower = *np.full((3, n), np.nan), np.ones(n)
     tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     if times:
         # Links between passes are in the pace, and so in the seconds of samples.
@@ -162,7 +163,7 @@ def plan_with(
                 axis = task.moving.smooth(task.cutters.index(operation.cutter), operation.setup, operation.rows)
                 operation = replace(operation, moving=(axis, np.full(n, -1, np.int32)))
             stands, mine = _stands(task, operation), operation.rows
-            strip[mine], length[mine] = stands.cut.strip, area[mine] * stands.cut.path
+            strip[mine], length[mine], slower[mine] = stands.cut.strip, area[mine] * stands.cut.path, stands.cut.slower
             if task.paths.feed is not None:
                 link[mine] = area[mine] * stands.cut.links * task.paths.link_of(operation.cutter)
             tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
@@ -172,7 +173,7 @@ def plan_with(
             operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
         links = sum(each.fields["link_seconds"] for each in operations)
     operations = workplanes(operations, task.ready, task.indexing)
-    seconds = length / _speed(task, operations, number)
+    seconds = length * slower / _speed(task, operations, number)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
     return OperationPlan(
         name, tuple(operations), number, table, strip, length, seconds, region, tilt_direction, strategy, contact, link, cutting,
@@ -400,7 +401,10 @@ def _stands(task: Task, operation: Operation) -> _Stands:
     if operation.axis is None:
         assert operation.moving is not None, "it has been looked at closely"
         held = task.moving.held(c, operation.setup, rows, operation.moving[0])
-        cut = cut_by_tip(operation.cutter, samples, rows, operation.moving[0][rows], task.paths, turning=True)
+        field, turns, speeds = operation.moving[0], None, None if task.paths.feed is None else task.indexing.speeds
+        if speeds is not None:
+            turns = turning_times(samples, rows, field, task.orientations[operation.setup].kinematics, speeds)
+        cut = cut_by_tip(operation.cutter, samples, rows, field[rows], task.paths, turning=True, turns=turns)
         return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan), cut)
     axis, cutter, number = operation.axis, operation.cutter, np.full(len(samples), -1, np.int32)
     number[rows] = 0

@@ -58,7 +58,7 @@ class Passes(Record):
     @property
     def cut(self) -> Cut:
         """Give what cutting takes."""
-        return Cut(self.strip, self.path, self.links, np.zeros(len(self.strip), bool))
+        return Cut(self.strip, self.path, self.links, np.zeros(len(self.strip), bool), np.ones(len(self.strip)))
 
 
 class Walls:

@@ -81,6 +81,9 @@ class Effective(Frozen):
     index_step_deg: float | None = Field(None, description="rotary axes lock at whole multiples of it alone")
     axis_accuracy_deg: float = Field(0.05, description="orientations of one setup that are nearer than this are one")
     index_time_s: float = Field(5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
+    rotary_rates_deg_s: dict[str, float] = Field(
+        {}, description="by the machine's file: what simultaneous motion, and turns without --index-time, are timed with"
+    )
     change_time_s: float = 20.0
     setup_time_s: float = 300.0
     removal_rate_cm3_min: float | None = Field(None, description="of roughing; null: its minutes are not known")

@@ -24,8 +24,8 @@ _HAIR = 1e-9
 _ROUND, _MOST = 1e-6, 50.0
 
 #: How passes are laid, mm: height of the cusps, widest distance; radius and flat of the tool, distance of its passes on a floor;
-#: path that takes as long as a link. And whether the tool turns with the surface.
-Laid = namedtuple("Laid", "scallop most radius flat flat_apart link turning")
+#: path that takes as long as a link; the feed, mm/s. And whether the tool turns with the surface.
+Laid = namedtuple("Laid", "scallop most radius flat flat_apart link speed turning")
 #: A contact: normal, direction of the larger curvature, and across both (3,); the curvatures; the tool axis (3,).
 Contact = namedtuple("Contact", "normal direction second high low axis")
 #: Of the part of a tip that touches: how far its centre of curvature is off the axis, and its radius, mm; sine of the tilt.
@@ -182,10 +182,11 @@ def _sector(at, way, many):
 
 
 @kernel
-def _passes(at, feed, sectors, apart, floor, touch, laid, length, work):
-    """Find what passes in a feed direction take: the strip, the path, links, and what a mm of path cuts.
+def _passes(at, feed, sectors, apart, floor, touch, laid, length, turns, work):
+    """Find what passes in a feed direction take: the strip, the path, links, by how much the feed is to be divided so that rotary
+    axes follow, and what a mm of path cuts.
 
-    `sectors`: of the directions in which faces are measured, that of the feed and that across it.
+    `sectors`: of the directions in which faces are measured, that of the feed and that across it. `turns`: as in `cuts`.
     """
     kind, (which, across) = 0 if floor else 1, sectors
     breadth, long = length[kind, across], length[kind, which]
@@ -193,9 +194,13 @@ def _passes(at, feed, sectors, apart, floor, touch, laid, length, work):
     count = math.ceil((breadth - (laid.flat if floor else apart)) / apart - NOTHING) + 1.0
     share = breadth / max(1.0, count)
     strip = share if math.isfinite(share) and apart > 0.0 else apart
-    path = (1.0 if floor else _run(at, feed, touch, laid.turning, work)) / strip
+    run, needed = 1.0 if floor else _run(at, feed, touch, laid.turning, work), 0.0
+    path = run / strip
     links = 1.0 / (strip * long) if math.isfinite(long) else 0.0
-    return strip, path, links, 1.0 / (path + laid.link * links)
+    for k in range(len(turns)):
+        needed = max(needed, abs(dot(turns[k], feed)))
+    slower = max(1.0, needed * laid.speed / max(run, NOTHING))
+    return strip, path, links, slower, 1.0 / (path * slower + laid.link * links)
 
 
 @maker
@@ -222,7 +227,7 @@ def centre_paths(axis, feed, contacts, offset, radius, turning, path):
 
 
 @entry
-def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
+def cuts(rows, axis, contacts, mode, laid, length, floor, turns, strip, path, links, slower):
     """Find what passes by the tip take.
 
     `rows` (m,) int64: contacts, and `axis` (m, 3) float64: the tool axis at each, unit or nan.
@@ -230,8 +235,10 @@ def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
     `length` (3, n, d) float64: of the faces at contacts, mm: what goes on, that with what it goes on onto, and all of it, in
       directions over half a turn; nan: not known.
     `floor` (m,) bool: where the flat of the tip lies on a floor.
-    `strip`, `path`, `links` (m,) float64, written: width that a pass cuts, mm; length of the centre's path for each mm2, 1/mm;
-      passes for each mm2, 1/mm2; nan where the tool does not touch.
+    `turns` (m, k, 3) float64: times a unit feed direction the seconds that each of k rotary axes needs for a mm of the contact's
+      path; no axis: none is too slow.
+    `strip`, `path`, `links`, `slower` (m,) float64, written: width that a pass cuts, mm; length of the centre's path for each
+      mm2, 1/mm; passes for each mm2, 1/mm2; by how much the feed is to be divided; nan where the tool does not touch.
     """
     work, many = workspace(), length.shape[2]
     before, was = -1, Touch(np.nan, np.nan, 0.0)
@@ -242,12 +249,13 @@ def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
         at = Contact(normal, direction, work.second, bend[0], bend[1], axis[i])
         touch = touch_at(at, mode, work)
         # A ball cuts the same however it leans; axes for simultaneous motion are many at each contact.
-        if laid.turning and row == before and touch.offset == 0.0 and was.offset == 0.0 and touch.radius == was.radius:
-            strip[i], path[i], links[i] = strip[i - 1], path[i - 1], links[i - 1]
+        alike = row == before and touch.offset == 0.0 and was.offset == 0.0 and touch.radius == was.radius
+        if laid.turning and alike and not turns.shape[1]:
+            strip[i], path[i], links[i], slower[i] = strip[i - 1], path[i - 1], links[i - 1], slower[i - 1]
             continue
         before, was = row, touch
         if math.isnan(touch.radius):
-            strip[i] = path[i] = links[i] = np.nan
+            strip[i] = path[i] = links[i] = slower[i] = np.nan
             continue
         width, narrow, _, round_gap = strip_at(at, touch, laid, work)
         either, which, longest = floor[i] or round_gap, 0, 0.0
@@ -262,11 +270,12 @@ def cuts(rows, axis, contacts, mode, laid, length, floor, strip, path, links):
         cross(normal, work.feed, work.t)
         sectors = _sector(at, work.feed, many), _sector(at, work.t, many)
         apart = laid.flat_apart if floor[i] else width
-        strip[i], path[i], links[i], pace = _passes(at, work.feed, sectors, apart, floor[i], touch, laid, own, work)
+        wide = _passes(at, work.feed, sectors, apart, floor[i], touch, laid, own, turns[i], work)
+        strip[i], path[i], links[i], slower[i] = wide[:4]
         # The centre may run less far in narrower strips: along a round edge and not across it.
         if not either and narrow > 0.0:
             cross(normal, work.t, work.f)
             sectors = sectors[1], _sector(at, work.f, many)
-            other = _passes(at, work.t, sectors, narrow, False, touch, laid, own, work)
-            if other[3] > pace:
-                strip[i], path[i], links[i] = other[:3]
+            other = _passes(at, work.t, sectors, narrow, False, touch, laid, own, turns[i], work)
+            if other[4] > wide[4]:
+                strip[i], path[i], links[i], slower[i] = other[:4]

@@ -257,7 +257,7 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    for doubt in (_unit, _travel, _held, _unheld, _side):
+    for doubt in (_unit, _travel, _held, _moving, _unheld, _side):
         lines += doubt(plan)
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
@@ -326,6 +326,22 @@ def _held(plan: Plan) -> Iterator[str]:
     setups = {step.setup for step in steps}
     where = f" in setup {setups.pop() + 1}" if holds and len(setups) == 1 else ""
     yield f"Nothing holds the part{where}: {which} {'partly ' if partly else ''}from below."
+
+
+def _moving(plan: Plan) -> Iterator[str]:
+    """Steps of simultaneous motion between whose samples not all is proved."""
+    if plan.process is None or plan.operations is None:
+        return
+    made = {each.id: each for one in plan.operations.plans if one.name == plan.process.plan for each in one.operations}
+    steps = [(k, made[step.operation]) for k, step in enumerate(plan.process.steps, 1) if step.operation in made]
+    moving = [(k, each) for k, each in steps if each.mode == "simultaneous" and (each.proved_share or 0.0) < 1.0]
+    if not moving:
+        return
+    whole, tested = sum(each.area_mm2 for _, each in moving), sum(each.samples for _, each in moving)
+    share = 1.0 - sum(each.area_mm2 * (each.proved_share or 0.0) for _, each in moving) / max(1e-300, whole)
+    over = f"{count(tested, 'sample')}, {percent(share, whole=share >= 1.0 - ROUNDING)} of its area"
+    which = f"step{'s' * (len(moving) > 1)} {_runs([k for k, _ in moving])}"
+    yield f"Not proved between samples: simultaneous motion in {which}, at {over}."
 
 
 def _unheld(plan: Plan) -> Iterator[str]:

@@ -334,7 +334,7 @@ def _effective(plan: Plan) -> list[tuple[str, str]]:
     return [
         (name.replace("_", " "), _value(name, value))
         for name, value in plan.effective.model_dump(mode="json").items()
-        if value not in (None, [], "")
+        if value not in (None, [], {}, "")
     ]
 
 
