@@ -241,6 +241,7 @@ def everywhere(value, text):
             "strategy",
             "take",
             "cutter",
+            "shown",
             "cause",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
