@@ -241,6 +241,7 @@ def everywhere(value, text):
             "strategy",
             "take",
             "cutter",
+            "shown",
             "cause",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
@@ -287,7 +288,7 @@ def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
 
 def test_many_cutters_are_said_in_few_lines(capsys, failing):
     many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(20) for c in failing.cutters]
-    document = failing.model_copy(update={"cutters": many})
+    document = failing.model_copy(update={"cutters": many, "shown": many[0].id})
     assert len(shown(capsys, document).splitlines()) <= 25
     whole = in_lines(shown(capsys, document, verbose=True))
     assert all(f" ({c.id})" in whole for c in many)
