@@ -206,8 +206,8 @@ def _passes(at, feed, sectors, apart, floor, touch, laid, length, turns, work):
 @maker
 def workspace():
     """Make room for vectors."""
-    room = np.empty((8, 3))
-    return _Work(room[0], room[1], room[2], room[3], room[4], room[5], room[6], room[7])
+    each = np.empty((8, 3))
+    return _Work(each[0], each[1], each[2], each[3], each[4], each[5], each[6], each[7])
 
 
 @entry
