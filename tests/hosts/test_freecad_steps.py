@@ -199,6 +199,8 @@ def session():
     first = found["rows"] = rows()
     pump()
     box.form.grab().save("steps.png")
+    head = lambda panel: panel.steps.form.findChild(QtGui.QLabel, "steps_head").text()
+    before = head(panel)
     # Moved, changed by typing, left out.
     box.list.setCurrentItem(box.list.topLevelItem(0))
     box._down.click()
@@ -225,9 +227,7 @@ def session():
     pump()
     again = findings.LAST
     found["again"] = [again is not panel, len(again.steps.steps), again.steps.rest.isChecked(), len(objects.plans(document))]
-    found["headline"] = again._headline.text(), *(
-        each.steps.form.findChild(QtGui.QLabel, "steps_head").text() for each in (panel, again)
-    )
+    found["headline"] = again._headline.text(), before, head(again)
     block.Shape = Part.makeBox(40, 30, 21)
     document.recompute()
     pump()
