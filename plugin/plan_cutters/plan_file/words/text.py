@@ -204,7 +204,7 @@ def _lines(plan: Plan, story: Story, most: int, *, typed: bool) -> tuple[list[st
         paragraphs.extend(wrapped([text if typed else as_fields(text)], each) for text in texts if text)
 
     add(plan.process.doubts if plan.process else (), 2)
-    add(inside, 4)
+    add(inside, 6)
     add(_doubts(plan, story)[:_DOUBTS], 1)
     add([judged], 3)
     if process:
