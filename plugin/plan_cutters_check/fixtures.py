@@ -158,7 +158,7 @@ def faults(question: Question) -> Iterator[str]:
         points = {f.number: _local(question, grip, f.number) for f in question.part.faces if question.part.trim(f.number)}
         stated = {int(name[1:]) for name in grip.faces if name[1:].isdecimal()}
         # A round that runs out into what is gripped touches a jaw along a line, which holds nothing, unless the jaws are bored.
-        bored = grip.jaws == 2 and bool(stated) and all(_lies(grip, points[n][0]) for n in stated & points.keys())
+        bored = grip.jaws == 2 and bool(stated) and all(n in points and _lies(grip, points[n][0]) for n in stated)
         held, touched_at = ("cylinder", _across) if bored else ("plane" if grip.jaws == 2 else "cylinder", _touched)
         touched = {n: touched_at(grip, *pair) for n, pair in points.items() if question.part.faces[n - 1].shape == held}
         touching = {number for number, jaws in touched.items() if jaws}

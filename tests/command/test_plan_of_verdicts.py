@@ -9,13 +9,12 @@ from dataclasses import replace
 
 import pytest
 
-from plan_cutters import plan, proposal
+from plan_cutters import pipeline, plan, proposal
 from plan_cutters.answers import ask
 from plan_cutters.command import partial_plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
-from plan_cutters.judging.judge import JudgeOnce
 from plan_cutters.judging.reasons import Reasons
 from plan_cutters.operations import planning
 from plan_cutters.options import Options
@@ -157,8 +156,8 @@ def test_an_interrupt_before_the_reasons_leaves_the_verdicts(tmp_path, monkeypat
     assert leftovers(tmp_path / "out") == WRITTEN
 
 
-def test_an_interrupt_before_the_verdicts_leaves_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr(JudgeOnce, "__call__", interrupted)
+def test_an_interrupt_before_the_part_is_ready_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(pipeline, "conditions_of", interrupted)
     done = run(*WORDS, "-o", "out", cwd=tmp_path)
     assert (done.returncode, done.stdout, done.stderr.splitlines()[-1]) == (
         130,
