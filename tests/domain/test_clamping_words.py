@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from plan_cutters.domain.clamping import CHUCKS, VISES, Block, Chuck, Disc, Vise, chuck_about, chuck_for, vises_for
+from plan_cutters.domain.clamping import CHUCKS, VISES, Block, Chuck, Disc, Vise, chuck_about, chuck_for, requested, vises_for
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups.solids import triangles_of
@@ -83,7 +85,14 @@ def closed(vertex):
 
 
 @pytest.mark.parametrize(
-    "clamping", [Vise(77, 30, 120, 3, 50), Vise(46, 25, 65, 3, 4), chuck_about(50.0, 3.0), Chuck(6, 30, 3, 5)]
+    "clamping",
+    [
+        Vise(77, 30, 120, 3, 50),
+        Vise(46, 25, 65, 3, 4),
+        Vise(46, 25, 65, 21.5, 40, bored=True),
+        chuck_about(50.0, 3.0),
+        Chuck(6, 30, 3, 5),
+    ],
 )
 def test_bodies_are_closed_and_hold_what_their_sizes_say(clamping):
     """Independent truth: areas of rectangles and circles times heights; of a bored jaw, the trapezium less a circle's segment."""
@@ -102,6 +111,31 @@ def test_bodies_are_closed_and_hold_what_their_sizes_say(clamping):
         expected += area * high
     assert volume(vertex) == pytest.approx(expected, rel=1e-4)
     assert error <= 0.0011
+
+
+@given(st.floats(2.0, 100.0), st.floats(0.0, 1.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_bored_jaws_fill_what_is_below_the_middle_of_a_cylinder_and_nothing_of_it(radius, across, along, up):
+    """But for steps no higher and no wider than a fifteenth of the radius."""
+    vise = Vise(46.0, radius + 5.0, 2.0 * radius, radius + 1.5, 2.0 * radius, bored=True)
+    place = np.array([across * radius, 23.0 * along, 0.5 * radius * (1.0 + up)])
+    blocks = [each for each in vise.solids(0.01) if isinstance(each, Block) and each.low == 0.0]
+    inside = any(
+        low <= place[2] <= each.high and min(x) <= place[0] <= max(x)
+        for each in blocks
+        for x, low in [([each.inner[0][0], each.outer[0][0]], each.low)]
+    )
+    away = math.hypot(place[0], place[2] - radius)
+    assert not inside or away >= radius
+    # The farthest corner of a step is its width and its height from the cylinder.
+    assert inside or away <= radius * (1.0 + math.pi / 48.0 * math.sqrt(2.0)) + 0.02 or place[0] >= radius
+
+
+def test_the_word_of_bored_jaws_has_what_they_are_bored_to():
+    vise = Vise(46.0, 25.0, 65.0, 21.5, 40.0, bored=True)
+    assert vise.word == "vise:46x25x65:21.5:40:40"
+    assert requested("vise", "46x25x65:21.5:40:40", 1.0, "fixture").clamping == vise
+    with pytest.raises(FixtureError, match="give vise"):
+        requested("vise", "46x25x65:21.5:40:39", 1.0, "fixture")
 
 
 @pytest.mark.parametrize(("jaws", "diameter"), [(3, 50.0), (4, 20.0), (2, 300.0), (6, 4.0)])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from plan_cutters.domain.figures import text_of
 from plan_cutters.errors import FixtureError
@@ -28,8 +29,10 @@ _WIDE, _DEEP, _TALL, _CHUCK, _FOOT, _GRIPPED = 0.16, 0.15, 0.25, 0.45, 0.8, 0.7
 #: Heights of risers, mm; the table below reaches so far from the middle, and is as thick; drawings show this much of it beyond
 #: the riser, and so thick.
 _RISER_HIGH, _REACH, _SHOWN, _PLATE = 100.0, 4000.0, 60.0, 20.0
-#: Chords of a jaw's bore, at most.
-_MOST_SIDES = 200
+#: Chords of a jaw's bore, at most; steps in which soft jaws rise about half of a cylinder that lies in them.
+_MOST_SIDES, _STEPS = 200, 24
+#: How far soft jaws stay off that cylinder, mm.
+_OFF = 0.01
 #: Lengths beyond this, mm, are rather a mistake.
 _FARTHEST = 1e6
 
@@ -74,12 +77,13 @@ class Vise:
     opening: float  #: The most that the jaws come apart, mm.
     grip: float = GRIP  #: How far the jaws reach above what the part rests on, mm.
     gap: float | None = None  #: How far the jaws stand apart, mm; None: the vise is still to be placed.
+    bored: bool = False  #: They are soft, and bored to a cylinder along y that is as wide and rests at z = 0.
 
     @property
     def numbers(self) -> tuple[float, ...]:
         """All numbers of its word; of one that is to be placed without the gap."""
         every = (self.width, self.height, self.opening, self.grip)
-        return every if self.gap is None else (*every, self.gap)
+        return every if self.gap is None else (*every, self.gap, *[self.gap] * self.bored)
 
     @property
     def word(self) -> str:
@@ -113,6 +117,13 @@ class Vise:
             _box(sign * near, sign * (half + thick), self.width, low, high)
             for sign in (-1.0, 1.0)
             for near, low, high in ((half, 0.0, self.grip), (half - self.ledge, body, 0.0))
+        ]
+        turns = [0.5 * math.pi * k / _STEPS for k in range(1, _STEPS + 1)] if self.bored else []
+        jaws += [
+            _box(sign * half * math.sin(one), sign * half * math.sin(other), self.width, 0.0, top)
+            for one, other in pairwise(turns)
+            if (top := half * (1.0 - math.cos(one)) - _OFF) > 0.0
+            for sign in (-1.0, 1.0)
         ]
         below = [_box(-0.5 * long, 0.5 * long, self.width, foot, body), _box(-0.5 * riser, 0.5 * riser, riser, down, foot)]
         return (*jaws, *below, _table(down, 0.5 * riser, shown=shown))
@@ -220,12 +231,16 @@ def chuck_about(diameter: float, grip: float) -> Chuck:
 
 @dataclass(frozen=True, slots=True)
 class Requested:
-    """The word of a vise or chuck says this: sizes are None where none were given, the last number where it is to be placed."""
+    """The word of a vise or chuck says this: sizes are None where none were given, the last number where it is to be placed.
+
+    `bored`: the jaws of a vise are bored to what lies between them.
+    """
 
     kind: str
     sizes: tuple[float, ...] | None
     grip: float
     last: float | None
+    bored: bool = False
 
     @property
     def clamping(self) -> Clamping | None:
@@ -234,7 +249,7 @@ class Requested:
             return None
         if self.kind == VISE:
             width, height, opening = self.sizes
-            return Vise(width, height, opening, self.grip, self.last)
+            return Vise(width, height, opening, self.grip, self.last, self.bored)
         return Chuck(int(self.sizes[0]), self.sizes[1], self.grip, self.last)
 
     @property
@@ -264,7 +279,8 @@ def requested(kind: str, text: str | None, scale: float, which: str) -> Requeste
         parts = parts[1:]
         sizes = tuple(size * scale for size in sizes) if kind == VISE else (sizes[0], sizes[1] * scale)
     rest = [each * scale for each in _numbers(parts, kind, which)]
-    if (text is not None and not (sizes or rest)) or len(rest) > (1 if sizes is None else 2):
+    bored = sizes is not None and kind == VISE and len(rest) == 3 and rest[1] == rest[2]
+    if (text is not None and not (sizes or rest)) or len(rest) > (1 if sizes is None else 2 + bored):
         raise FixtureError(f"{which}: give {FORMS[kind]}")
     grip, last = rest[0] if rest else GRIP, rest[1] if len(rest) > 1 else None
     every = [*(sizes or ()), grip, *([] if last is None else [last])]
@@ -273,7 +289,7 @@ def requested(kind: str, text: str | None, scale: float, which: str) -> Requeste
         raise FixtureError(f"{which}: its sizes must be positive numbers up to {_FARTHEST:,.0f} mm, not {wrong:g}: {FORMS[kind]}")
     if sizes is not None:
         _check(kind, sizes, grip, last, which)
-    return Requested(kind, sizes, grip, last)
+    return Requested(kind, sizes, grip, last, bored)
 
 
 def _check(kind: str, sizes: Sequence[float], grip: float, last: float | None, which: str) -> None:

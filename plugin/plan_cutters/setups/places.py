@@ -262,10 +262,10 @@ def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
                     soft = _too_tall(part.tall, min(2.0 * radius, touched))
                 if touched > part.flat:
                     yield Place(
-                        vise, x, origin, tuple(int(n) for n in np.unique(face)), touched * grip,
+                        replace(vise, bored=True), x, origin, tuple(int(n) for n in np.unique(face)), touched * grip,
                         area_of(vertex[np.isin(face, list(part.targets))]), 0.0, area_of(wall.vertex),
                         float(np.linalg.norm((origin - part.middle)[:2])), float(np.abs((part.outline - origin) @ x).max()),
-                        soft, bored=True,
+                        soft,
                     )  # fmt: skip
 
 

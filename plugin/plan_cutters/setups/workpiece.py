@@ -163,7 +163,6 @@ class Place:
     `off`: how far its middle is from the middle of the part, seen from above, mm.
     `farthest`: how far the part reaches from its middle across the jaws, mm.
     `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
-    `bored`: soft jaws are bored to a cylinder that lies in them.
     """
 
     clamping: Clamping
@@ -177,7 +176,11 @@ class Place:
     off: float
     farthest: float
     soft: str = ""
-    bored: bool = False
+
+    @property
+    def bored(self) -> bool:
+        """Whether soft jaws are bored to a cylinder that lies in them."""
+        return isinstance(self.clamping, Vise) and self.clamping.bored
 
     @property
     def rank(self) -> tuple[bool, float]:
