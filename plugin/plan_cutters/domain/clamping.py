@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from plan_cutters.domain.figures import text_of
@@ -77,7 +77,7 @@ class Vise:
     opening: float  #: The most that the jaws come apart, mm.
     grip: float = GRIP  #: How far the jaws reach above what the part rests on, mm.
     gap: float | None = None  #: How far the jaws stand apart, mm; None: the vise is still to be placed.
-    bored: bool = False  #: They are soft, and bored to a cylinder along y that is as wide and rests at z = 0.
+    bored: bool = field(default=False, kw_only=True)  #: They are soft, and bored to a cylinder along y that is as wide and rests at z = 0.
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -249,7 +249,7 @@ class Requested:
             return None
         if self.kind == VISE:
             width, height, opening = self.sizes
-            return Vise(width, height, opening, self.grip, self.last, self.bored)
+            return Vise(width, height, opening, self.grip, self.last, bored=self.bored)
         return Chuck(int(self.sizes[0]), self.sizes[1], self.grip, self.last)
 
     @property
