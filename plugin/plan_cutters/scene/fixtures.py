@@ -20,7 +20,7 @@ from cad_io.part.bodies import Body
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
-from plan_cutters.domain.clamping import Clamping
+from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.fixture import CAD, MESH, STOCK, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
@@ -234,8 +234,10 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
 def body_near(clamping: Clamping, fixture: Fixture, chord: float, part: Obstacles) -> Obstacles:
     """A vise or chuck in its place, without those of its bodies that are wholly lower than a part, so none of it is in them.
 
-    `chord`: the chord error to ask for, mm.
+    What soft jaws fill below a shaft is not there either: they are bored to what lies in them. `chord`: the chord error to ask
+    for, mm.
     """
+    clamping = replace(clamping, bored=False) if isinstance(clamping, Vise) else clamping
     up = fixture.rotation[:, 2]
     lowest = float(((part.lowest(up) - fixture.shift) @ up).min())
     vertex, error = triangles_of(clamping, chord, above=lowest)
