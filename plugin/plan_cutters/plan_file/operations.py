@@ -160,8 +160,8 @@ class RestEntry(Frozen):
     reason_counts: dict[str, int] = Field(description="why the first cutter of the plan does not reach them")
     short: int = Field(
         default=0,
-        description="of the samples, reached ones: left because a step for them would take less than 1 s, or cut less than "
-        "0.1 mm2; 0.1 % of the area together at most, and none where all else is finished",
+        description="of the samples, reached ones: left because they are too little for a step: less than 1 s or 0.1 mm2, or "
+        "simultaneous motion; 0.1 % of the area together at most, and none where all else is finished",
     )
 
 
@@ -326,7 +326,7 @@ class RemainingEntry(Frozen):
 
     cause: str = Field(
         description="a code of `reasons`; `unjudged`; `not_planned`: a cutter reaches it, and no step takes it; `short_step`: "
-        "left because a step for it would take less than 1 s, or cut less than 0.1 mm2; "
+        "left because it is too little for a step (less than 1 s, 0.1 mm2, or simultaneous motion for 0.1 %); "
         "`orientation`, of what a step leaves: its cutter reaches it in this setup, and not with this axis"
     )
     area_mm2: float

@@ -98,7 +98,7 @@ def in_short(plan: Plan) -> list[str]:
 def _rest(operations: OperationsEntry) -> Iterator[str]:
     rest = operations.plans[0].rest
     if rest.samples:
-        short = f", but for {count(rest.short, 'sample')} for which a step would take less than 1 s" if rest.short else ""
+        short = f", but for {count(rest.short, 'sample')} too few for a step" if rest.short else ""
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it{short}."
     # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
     first = operations.plans[0]

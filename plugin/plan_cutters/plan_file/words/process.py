@@ -51,7 +51,7 @@ _SMALLEST = 1.0
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
 _OTHER_CAUSES = {
-    UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "because a step for it would take less than 1 s"
+    UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "too little for a step"
 }  # fmt: skip
 #: Steps of the planner's own whose faults are told.
 _OWN_STEPS = 3
