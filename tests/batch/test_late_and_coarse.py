@@ -12,7 +12,7 @@ from plan_cutters.document.clock import Clock
 from plan_cutters.errors import TooManySamplesError
 from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
-from plan_cutters.plan_file.words.names import as_fields
+from plan_cutters.plan_file.words.names import as_fields, typed
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.preparation import MOST
 from plan_cutters_base.workers.child import TIMED_OUT
@@ -75,7 +75,7 @@ def test_a_part_that_is_late_has_the_plan_so_far_and_is_tried_again(out, tmp_pat
     document = json.loads((tmp_path / "out/groove-plan/plan.json").read_text())
     assert document["not_written"] == {"html": "not done within 240 s"}
     notes = dict(zip(document["note_codes"], document["notes"], strict=True))
-    assert row.error.endswith(f"{notes['run_unfinished']} It is without review.html.")
+    assert row.error.endswith(f"{typed(notes['run_unfinished'])} It is without review.html.")
     # The page leads to it, and no tool is counted for it.
     page, summary = page_of([row])
     assert 'href="./groove-plan/plan.json"' in page

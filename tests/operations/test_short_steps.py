@@ -53,7 +53,7 @@ def test_a_sliver_is_left_where_something_is_left_anyway(short, tmp_path):
     if short:
         assert causes["short_step"].faces == [f"F{number}"]
         assert causes["short_step"].samples == len(mine)
-        assert any("too little for a step" in line for line in made.plan.text.lines)
+        assert "Left besides, 0.1 %, for other causes." in made.plan.text.lines, "a crumb has no line of its own"
     assert (process.finished_share == 1.0) != short
     assert sum(each.area_mm2 for each in (*process.steps, *process.left)) == pytest.approx(process.asked_mm2)
     # The check reckons the same, and finds what is left beyond that.

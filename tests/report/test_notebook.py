@@ -14,6 +14,7 @@ import pytest
 
 from cad_io import WriteError
 from plan_cutters import PlanError, plan
+from plan_cutters.plan_file.words.names import typed
 from plan_cutters.plan_file.words.text import story_of
 from plan_cutters.report.notebook import card as made_card
 from plan_cutters.report.page.write import page as review_page
@@ -74,9 +75,8 @@ def test_card_has_verdict_table_picture_and_page(result, card):
         assert each.shares["accessible"] in texts
         assert any(text.endswith(each.name) for text in texts)
     # What makes the verdicts unsure stands in the card itself, not only in its page.
-    assert [" ".join(line.split()) for line in (*story.inside, *story.scope)] == [
-        text for text in texts if text in {*story.inside, *story.scope}
-    ]
+    unsure = [typed(line) for line in (*story.inside, *story.scope)]
+    assert [" ".join(line.split()) for line in unsure] == [text for text in texts if text in unsure]
     assert story.scope
     (picture,) = seen.of("img")
     assert base64.b64decode(picture["src"].removeprefix("data:image/png;base64,")).startswith(b"\x89PNG")

@@ -14,7 +14,7 @@ from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
-from plan_cutters.operations.labels import MINOR_SHARE
+from plan_cutters.operations.labels import LEAST_SHARE, MINOR_SHARE
 from plan_cutters.operations.orientations import STEP
 from plan_cutters.operations.plans import MINOR_AREA, costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task, at_some, shared_area
@@ -312,7 +312,9 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
     kind = motion.setup * len(task.cutters) + motion.cutter
     size = np.bincount(kind, area[rest], len(task.everywhere) * len(task.cutters))
     rest, kind = (each[size[kind] < MINOR_SHARE * whole] for each in (rest, kind))
-    if not area[rest].any():
+    # What is too little for a step is left where the plan is not finished anyway.
+    least = LEAST_SHARE * whole if len(task.rows) < np.count_nonzero(task.ready.finished) else 0.0
+    if area[rest].sum() <= least:
         return columns
     some = rest[:: 1 + len(rest) // _ALIKE]
     every, pairs = offered(some), columns.setup * len(task.cutters) + columns.cutter
@@ -320,7 +322,7 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
     first = np.flatnonzero(np.isin(pair, pairs))
     every = every.of(np.append(first, np.flatnonzero(np.isin(pair, kind) & ~np.isin(pair, pairs))))
     serves, stands_for = task.table(some, every), area[some] * (area[rest].sum() / area[some].sum())
-    while len(every) and stands_for.any():
+    while len(every) and stands_for.sum() > least:
         gain = stands_for @ serves
         if gain.max() < min(MINOR_AREA * whole, (1.0 - 1e-9) * stands_for.sum()):
             break
