@@ -27,7 +27,7 @@ Rows = NDArray[np.int64]
 
 #: Samples at which orientations in place of motion are compared, at most about; one with this share of what the best takes is
 #: as good.
-_ALIKE, _NEARLY = 400, 0.9
+_ALIKE, _NEARLY = 200, 0.9
 
 
 class Worth(NamedTuple):

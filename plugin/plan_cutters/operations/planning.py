@@ -374,7 +374,7 @@ def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress)
     columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
     if name == "fewest":
         return plan_with(task, name, accompanied(task, columns))
-    return plan_with(task, name, instead_of_motion(task, columns, lambda rows: _first(task, STEP).and_(_stored(task, rows))))
+    return plan_with(task, name, instead_of_motion(task, columns, lambda rows: _first(task, COARSE).and_(_stored(task, rows))))
 
 
 def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Columns:
