@@ -72,7 +72,7 @@ class _Sizes:
                 else:
                     lower, upper, fit = self._tolerance(row)
             nominal = values.get("nominal value")
-            if "theoretical" in notes or "auxiliary" in notes:
+            if not {*_NO_REQUIREMENT}.isdisjoint(notes):
                 lower = upper = None
             elif nominal is not None and "lower limit" in values and "upper limit" in values:
                 lower, upper = values["lower limit"] - nominal, values["upper limit"] - nominal

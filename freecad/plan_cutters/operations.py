@@ -93,20 +93,13 @@ def make_job(group, word: str = MODELS[0]):
         planes = {}
         for entry, each in zip(plan["operations"], [each for each in holder.Group if hasattr(each, "Mode")]):
             planes[entry["id"]] = next((child for child in each.Group if "_plane" in child.Name), None)
-        bores = macro.drilling(result.plan)
-        for number, each in zip(bores, [each for each in holder.Group if hasattr(each, "Kind")]):
+        for number, each in zip(macro.drilling(result.plan), [each for each in holder.Group if hasattr(each, "Kind")]):
             planes[f"drill{number}"] = next((child for child in each.Group if "_plane" in child.Name), None)
         taken = {
             entry["id"]: [place for place, name in enumerate(names) if name is not None and name[1] == entry["id"]]
             for entry in plan["operations"]
         }
-        for number, entry in bores.items():
-            mine = {face for each in entry["holes"] for face in result.plan["holes"][each["hole"]]["faces"]}
-            taken[f"drill{number}"] = [
-                place
-                for place, name in enumerate(names)
-                if name is not None and f"F{name[0]}" in mine and type(faces[place].Surface).__name__ == "Cylinder"
-            ]
+        taken.update(macro.bored(result.plan, faces, names))
         order = [place for place, name in enumerate(names) if name is not None]
         document.recompute()
         shown = (part, planes, taken, {place: n for n, place in enumerate(order, 1)})

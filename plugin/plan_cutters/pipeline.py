@@ -107,16 +107,15 @@ class Run:
 
     def prepare(self, part: Any, options: Options) -> Prepared:
         """Read, sample, classify and surround with obstacles."""
-        ready = prepare(
+        return prepare(
             part, options, self.clock, read_timeout=self.read_timeout, at=self.at, compiling=self.compiling,
             excluded=self.excluded, cache=self.cache,
         )  # fmt: skip
-        return ready
 
     def looked(self, ready: Prepared, options: Options) -> None:
         """Let the first setup stand from a first look at it on, until its verdicts do; `options`: as they were requested."""
         started, alone = datetime.datetime.now(datetime.UTC), _first_setup(ready)
-        carried = np.zeros((sum(len(each.motions) for each in ready.patterns if each.whole), 3), np.int64)
+        carried = np.zeros((_motions(ready), 3), np.int64)
 
         def made(look: FirstLook) -> tuple[JudgedPart, Describe]:
             few = None if look.samples == look.of else (look.samples, look.of)
@@ -135,7 +134,7 @@ class Run:
         self.looked(ready, options)
         here: dict[Cutter, Verdicts] = {}
         seconds: dict[Cutter, float] = {}
-        once = JudgeOnce(self.judged, sum(len(each.motions) for each in ready.patterns if each.whole))
+        once = JudgeOnce(self.judged, _motions(ready))
         searched = Work()
         for cutter in order(ready.cutters):
             with clock.stage(cutter.id) as tell:
@@ -212,6 +211,11 @@ class Run:
 
     def _remarked(self, proposed: Describe) -> Describe:
         return proposed if self.remark is _as_it_is else lambda plan: self.remark(proposed(plan))
+
+
+def _motions(ready: Prepared) -> int:
+    """How many motions of the whole part there are."""
+    return sum(len(each.motions) for each in ready.patterns if each.whole)
 
 
 def _first_setup(ready: Prepared) -> Prepared:

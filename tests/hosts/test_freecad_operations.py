@@ -166,13 +166,15 @@ for document in (here, None):
 )
 
 
-def on_faces(samples, operation):
+def worded(document, entry, name):
+    """How pieces of an operation are called: `step3`, or by its id in a plan that is not the process."""
+    return stepped(document, entry, name).replace(" ", "")
+
+
+def on_faces(samples, operation, word):
     """Some samples of an operation, by the name of its face in the model."""
     faces = samples.face[operation.rows]
-    return {
-        f"F{face}_{operation.name}": samples.point[operation.rows[faces == face]][::9].tolist()
-        for face in np.unique(faces).tolist()
-    }
+    return {f"F{face}_{word}": samples.point[operation.rows[faces == face]][::9].tolist() for face in np.unique(faces).tolist()}
 
 
 @pytest.fixture(scope="module")
@@ -187,7 +189,9 @@ def written(tmp_path_factory):
     document = result.write(folder, ("json", "step"))
     names = {}
     for entry, found in zip(document.operations.plans, result.answers.operations.plans, strict=True):
-        names[entry.name] = {each.name: on_faces(result.samples, each) for each in found.operations}
+        names[entry.name] = {
+            each.name: on_faces(result.samples, each, worded(document, entry, each.name)) for each in found.operations
+        }
     (folder / "points.json").write_text(json.dumps(names))
     return document, folder
 
@@ -232,11 +236,11 @@ def test_faces_are_those_of_their_operations(written, inside):
     for entry, shown in plans(written, inside):
         sums = dict.fromkeys((each for each in faces if faces[each].target), 0.0)
         for each in entry.operations:
-            group = shown["groups"][each.id]
-            assert set(group["faces"]) == {f"{face.face}_{each.id}" for face in each.faces}
+            group, word = shown["groups"][each.id], worded(written[0], entry, each.id)
+            assert set(group["faces"]) == {f"{face.face}_{word}" for face in each.faces}
             assert group["colour"] == pytest.approx([int(each.colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
             for face in each.faces:
-                found, half = group["faces"][f"{face.face}_{each.id}"], faces[face.face].gap_mm / 2
+                found, half = group["faces"][f"{face.face}_{word}"], faces[face.face].gap_mm / 2
                 assert found["far"]
                 assert max(found["far"]) < half
                 assert np.mean(np.array(found["far"]) < 0.01) > 0.8

@@ -261,10 +261,11 @@ def test_the_tool_stands_where_the_plan_says(work):
 
 def test_operations_are_coordinate_systems_along_the_tool_axis(work):
     entries = work["plan"]["operations"]["plans"][0]["operations"]
+    called = {each["operation"]: f"step {k} plane" for k, each in enumerate(work["plan"]["process"]["steps"], 1)}
     assert len(entries) >= 1
     for entry, (axis, label) in zip(entries, work["shown"]["axes"], strict=True):
         assert np.allclose(axis, entry["axis"], atol=1e-9)
-        assert label == f"{entry['id']} plane"
+        assert label == called[entry["id"]]
 
 
 def test_it_is_one_step_saved_with_the_document(work):

@@ -77,9 +77,8 @@ class Vise:
     opening: float  #: The most that the jaws come apart, mm.
     grip: float = GRIP  #: How far the jaws reach above what the part rests on, mm.
     gap: float | None = None  #: How far the jaws stand apart, mm; None: the vise is still to be placed.
-    bored: bool = field(
-        default=False, kw_only=True
-    )  #: They are soft, and bored to a cylinder along y that is as wide and rests at z = 0.
+    #: They are soft, and bored to a cylinder along y that is as wide and rests at z = 0.
+    bored: bool = field(default=False, kw_only=True)
 
     @property
     def numbers(self) -> tuple[float, ...]:

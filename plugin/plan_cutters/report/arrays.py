@@ -7,7 +7,7 @@ import json
 import math
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,8 +22,6 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.holes import DrillingStep
-from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.plan_file.words.operations import steps_of
@@ -221,7 +219,8 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                                _rounded(each.cut_length_mm), _rounded(each.seconds), _rounded(each.link_seconds),
                                " ".join(face.face for face in each.faces), each.g68_2 or "", each.g53_1 or "",
                                each.rotary_words or "", step.get(each.id, ""), "", "", "", ""])  # fmt: skip
-        for number, bores in _drilling(result.plan):
+        process = result.plan.process
+        for number, bores in enumerate(process.drilling, len(process.steps) + 1):
             turned = [(bores.angles_deg or {}).get(name, "") for name in entry.rotary]
             faces = dict.fromkeys(face for stroke in bores.holes for face in result.plan.holes[stroke.hole].faces)
             mouths = "; ".join(" ".join(f"{_rounded(x)}" for x in stroke.mouth_mm) for stroke in bores.holes)
@@ -230,12 +229,6 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
                            _rounded(bores.link_seconds), " ".join(faces), bores.g68_2 or "", bores.g53_1 or "",
                            bores.rotary_words or "", number, _rounded(bores.diameter_mm), _rounded(bores.depth_mm),
                            _rounded(bores.pitch_mm), mouths])  # fmt: skip
-
-
-def _drilling(plan: Plan) -> Iterator[tuple[int, DrillingStep]]:
-    """Steps of the process that drill, by their numbers."""
-    if plan.process is not None:
-        yield from enumerate(plan.process.drilling, len(plan.process.steps) + 1)
 
 
 def _rounded(value: float | None, digits: int = 3) -> float | str:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from cad_io.arrays import Floats, Ints, Record, Triangles
+from cad_io.arrays import Floats, Ints, Record, Triangles, cross
 from cad_io.part.bodies import Body
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
@@ -300,7 +300,7 @@ def faces_in_jaws(clamping: Clamping, vertex: Floats, face: Ints, slack: float) 
     `clamping`, `vertex`, `face`: as for `at_jaws`. `slack`: how far triangles may be off, mm.
     """
     if isinstance(clamping, Vise):
-        normal = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+        normal = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
         facing = np.abs(normal[:, 0]) >= _FACING * np.linalg.norm(normal, axis=1)
         vertex, face = vertex[facing], face[facing]
     inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack

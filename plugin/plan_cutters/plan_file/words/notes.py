@@ -25,6 +25,7 @@ from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.names import Line, named
+from plan_cutters.plan_file.words.operations import of_process
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
@@ -330,9 +331,9 @@ def _held(plan: Plan) -> Iterator[str]:
 
 def _moving(plan: Plan) -> Iterator[str]:
     """Steps of simultaneous motion between whose samples not all is proved."""
-    if plan.process is None or plan.operations is None:
+    if plan.operations is None:
         return
-    made = {each.id: each for one in plan.operations.plans if one.name == plan.process.plan for each in one.operations}
+    made = {each.id: each for each in of_process(plan.operations, plan.process)}
     steps = [(k, made[step.operation]) for k, step in enumerate(plan.process.steps, 1) if step.operation in made]
     moving = [(k, each) for k, each in steps if each.mode == "simultaneous" and (each.proved_share or 0.0) < 1.0]
     if not moving:

@@ -52,9 +52,14 @@ def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, st
     return names
 
 
+def of_process(operations: OperationsEntry, process: ProcessEntry) -> list[OperationEntry]:
+    """The operations of the plan that is the process."""
+    return [each for one in operations.plans if one.name == process.plan for each in one.operations]
+
+
 def _images(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
     """The operations that a step consists of: images of each other."""
-    entries = [each for one in operations.plans if one.name == process.plan for each in one.operations]
+    entries = of_process(operations, process)
     made = next((each for each in entries if each.id == step.operation), None)
     return [each for each in entries if each is made or (each.orbit is not None and each.orbit == made.orbit)] if made else []
 
@@ -63,7 +68,7 @@ def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
     """The angles of each time that a step is done, where no increment leads from one to the next: `C 0, 47, 190 · A 45`, as many
     as go into a width; empty where one does, and where they are not known.
     """
-    if step.repeat < 2 or step.repeat_deg or plan.operations is None or plan.process is None:
+    if step.repeat < 2 or step.repeat_deg or plan.operations is None:
         return ""
     images = _images(plan.operations, plan.process, step)
     every = sorted((each.angles_deg or {} for each in images), key=lambda angles: [angle % 360.0 for angle in angles.values()])
@@ -80,7 +85,7 @@ def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
 
 def steps_of(plan: Plan, of: OperationPlanEntry) -> dict[str, str]:
     """The numbers of `operation_names` if a plan of operations is that of the process, else none."""
-    return operation_names(plan) if plan.process is not None and of.name == plan.process.plan else {}
+    return operation_names(plan) if of.name == plan.process.plan else {}
 
 
 def stepped(plan: Plan, of: OperationPlanEntry, text: str) -> str:

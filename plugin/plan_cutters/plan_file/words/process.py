@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
+from plan_cutters.domain.clamping import Vise
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
@@ -240,7 +242,8 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
     if setup.grip_mm is not None:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
-        bored = setup.held == "vise" and _is_round(plan, setup)
+        clamping = Fixture.parse(setup.clamping).clamping if setup.clamping else None
+        bored = isinstance(clamping, Vise) and clamping.bored
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
         gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
@@ -258,15 +261,6 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
-
-
-def _is_round(plan: Plan, setup: ProcessSetup) -> bool:
-    """Whether a vise grips what is round: no plane, or a bar that lies."""
-    if setup.stands_on == "stock":
-        stock = None if plan.process is None else plan.process.stock
-        return stock is not None and _lies(stock)
-    planes = {face.id for face in plan.faces if face.shape == "plane"}
-    return bool(setup.grips) and planes.isdisjoint(setup.grips)
 
 
 def _lies(stock: StockEntry) -> bool:

@@ -255,8 +255,7 @@ def _alone(story: Story) -> list[str]:
 
 def before_approval(story: Story) -> list[str]:
     """A reviewer of a process looks at these first: the least clearance, and how much is proved between the samples."""
-    clearance = story.process.clearance if story.process else ""
-    return [*filter(None, [clearance]), *map(str.strip, wrapped(story.between[:1], 2))]
+    return [*filter(None, [story.process.clearance]), *map(str.strip, wrapped(story.between[:1], 2))]
 
 
 def of_the_plan(story: Story) -> list[str]:
