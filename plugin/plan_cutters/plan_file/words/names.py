@@ -9,6 +9,9 @@ if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.plan_file.model import CutterEntry, Plan
 
+#: Options in a text; what else has backquotes is a name that somebody gave.
+_QUOTED = re.compile(r"`(--[^`]*)`")
+
 
 class Line(NamedTuple):
     """A sentence or two.
@@ -139,8 +142,12 @@ def named(plan: "Plan", text: str) -> str:
 
 
 def typed(text: str) -> str:
-    """A text with its options as one types them: in it each stands in backquotes, `--faces all`, as commands do in prose."""
-    return text.replace("`", "")
+    """A text with its options as one types them: in it each stands in backquotes, `--faces all`, as commands do in prose.
+
+    >>> typed("`--faces all` of ra`w.step")
+    '--faces all of ra`w.step'
+    """
+    return _QUOTED.sub(r"\1", text)
 
 
 def as_fields(text: str) -> str:
@@ -156,4 +163,4 @@ def as_fields(text: str) -> str:
         each = (option.partition(" ") for option in options.removeprefix("--").split(" --"))
         return ", ".join(" = ".join(filter(None, (name.replace("-", "_"), value))) for name, _, value in each)
 
-    return "".join(fields(each) if k % 2 else each for k, each in enumerate(text.split("`")))
+    return _QUOTED.sub(lambda match: fields(match[1]), text)
