@@ -250,6 +250,7 @@ class _Watch:
             if not data:
                 self.over = True
                 return
+            seconds = 0.0  # a child that speaks again and again is not listened to for ever
             *lines, self.rest = (self.rest + data).split(b"\n")
             for line in lines:
                 word, _, text = line.decode("unicode_escape").partition(" ")
