@@ -27,9 +27,7 @@ def proposed(shape, words=WORDS, stock=None, **options):
     ready = prepare(shape, Options(**{**HOW, **options}))
     ready = ready.__class__(**{**_fields(ready), "scene": ready.scene.for_targets(ready.chosen.targets)})
     ranking = ranked(ready, 3, words, stock)
-    chosen = ranking.choose(3)
-    ranking.settle(chosen)
-    return ranking, ranking.completed(chosen, 3)
+    return ranking, ranking.chosen_and_held(3)
 
 
 def _fields(record):
@@ -50,6 +48,26 @@ def spiked():
 
 def chamfered():
     return cq.Workplane().box(80, 50, 30).edges(">X and >Z").chamfer(4).val().wrapped
+
+
+def stepped():
+    """Three steps of one height: whichever way its sides are up, all but two faces are along the tool."""
+    return cq.Workplane("XZ").polyline([(0, 0), (90, 0), (90, 10), (60, 10), (60, 20), (30, 20), (30, 30), (0, 30)]).close() \
+        .extrude(60).val().wrapped  # fmt: skip
+
+
+@pytest.mark.parametrize("machine", ["3-axis", "4-axis-a"])
+def test_a_part_that_stands_is_turned_over_before_it_is_stood_on_a_side(machine):
+    ranking, chosen = proposed(stepped(), stock=Stock.of("usual"), machine=machine, cutters="D16L60F32S16", grid=9)
+    assert sorted(ranking.candidates.axis[k].tolist() for k in chosen) == [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]
+    assert np.logical_or.reduce([ranking.served(k) for k in chosen]).all()
+
+
+def test_no_setup_is_kept_for_what_others_serve():
+    ranking, served, table = proposed(chamfered())[0], np.eye(4, dtype=bool), Fixture.each_of("table")[0]
+    for rows, left in (((0, 1), (0, 1)), ((0, 0), (0,)), ((0, 1, 0), (0, 1)), ((0, 0, 1), (0, 2))):
+        ranking.held = {k: Held(table, np.resize(served[row], len(ranking.rows))) for k, row in enumerate(rows)}
+        assert ranking._worth(tuple(range(len(rows))), staying=1) == left
 
 
 @pytest.mark.parametrize("shape", [bracket, spiked, chamfered])

@@ -19,7 +19,7 @@ _AT_ONCE = 10_000
 #: Planes whose areas differ by less than this factor are as large, and heights by this share of the lowest.
 _LARGER, _LOWER = 1.1, 1e-3
 #: Directions nearer than this are one: cosine of 0.1 deg.
-_ONE = float(np.cos(np.radians(0.1)))
+SAME = float(np.cos(np.radians(0.1)))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -64,7 +64,7 @@ class Candidates(Record):
         def place(k: int) -> tuple[object, ...]:
             mine = self.bearing[k]
             large = round(np.log(mine.area) / np.log(_LARGER)) if mine.firm else 0
-            off = np.abs(self.axis[k]).max() < _ONE
+            off = np.abs(self.axis[k]).max() < SAME
             return not mine.firm, -large, round(mine.slender / (_LOWER * least)) if np.isfinite(mine.slender) else np.inf, off, k
 
         return sorted(every, key=place)
@@ -156,7 +156,7 @@ def distinct(axis: Floats) -> Floats:
     """Directions without those that are nearly one before them."""
     result: list[int] = []
     for k in range(len(axis)):
-        if not result or (axis[result] @ axis[k]).max() < _ONE:
+        if not result or (axis[result] @ axis[k]).max() < SAME:
             result.append(k)
     return axis[result]
 
@@ -170,7 +170,7 @@ def _normals(vertex: Floats, face: NDArray[np.int32], planar: Sequence[int]) -> 
         size = float(np.linalg.norm(normal))
         if not size > 0.0:
             continue
-        same = next((k for k, (_, known) in enumerate(normals) if abs(known @ normal) >= _ONE * size), None)
+        same = next((k for k, (_, known) in enumerate(normals) if abs(known @ normal) >= SAME * size), None)
         if same is None:
             normals.append((size, normal / size))
         else:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.answers.candidates import Candidates
+from plan_cutters.answers.candidates import SAME, Candidates
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area, percent
@@ -249,10 +249,18 @@ class Ranking:
             best = max(best, float(worth[k] * self.share((self._searched(k) & open_rows)[:, None])[0]))
 
     def search_stood(self) -> None:
-        """Search the directions in which one would stand the part if nothing speaks against it."""
+        """Search the directions in which one would stand the part if nothing speaks against it, and turn it over then."""
         flat = [k for k, planes in enumerate(self.candidates.stands_on) if planes and self.bound[:, k].any()]
         for k in self.candidates.preferred(flat)[:_STOOD]:
-            self._searched(k)
+            for each in (k, self.opposite(k)):
+                if each is not None:
+                    self._searched(each)
+
+    def opposite(self, k: int) -> int | None:
+        """The direction opposite to a candidate; None where it is no candidate, or nothing is served there."""
+        cosine = self.candidates.axis @ self.candidates.axis[k]
+        other = int(cosine.argmin())
+        return other if cosine[other] <= -SAME and self.bound[:, other].any() else None
 
     def steady(self, k: int) -> bool:
         """Whether something holds the part in a direction that was searched without soft jaws or a nest."""
@@ -390,13 +398,14 @@ class Ranking:
         """As `choose`, held by what holds it best, with what this leaves for more setups."""
         chosen = self.choose(most, without)
         self.settle(chosen)
-        return self.completed(chosen, most)
+        # What was added may serve what one before it was chosen for; the first one holds the stock, and stays.
+        return self._worth(self.completed(chosen, most), staying=1)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
 
         Of as many that serve as much, those are taken in which one would rather stand the part; and such a one instead of
-        another, if less than 2 % of the area speaks against it.
+        another, if less than 2 % of the area speaks against it. Before all that comes to turn over a part that stands.
 
         `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
@@ -405,6 +414,13 @@ class Ranking:
         firm, free = self._chosen(steady, most), self._chosen(every, most)
         best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)
         chosen, least = list(self._worth(best)), self._together(best) - _TURNED_FOR
+        for k in among[: 1 + min(map(among.index, chosen))] if len(chosen) > 1 else ():
+            over = self.opposite(k)
+            # A pair that is chosen may still go over to better stands, one after the other.
+            if over is None or over not in among or not self.candidates.bearing[k].firm or {k, over} == {*chosen}:
+                continue
+            if self._together((k, over)) >= least:
+                return max((k, over), (over, k), key=lambda pair: self._together(pair[:1]))
         for i, k in enumerate(chosen):
             for other in among[: among.index(k)]:
                 if other not in chosen and self._together([*chosen[:i], other, *chosen[i + 1 :]]) >= least:
@@ -412,11 +428,15 @@ class Ranking:
                     break
         return tuple(chosen)
 
-    def _worth(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
-        """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again."""
+    def _worth(self, chosen: tuple[int, ...], staying: int = 0) -> tuple[int, ...]:
+        """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again.
+
+        So many of the first ones stay.
+        """
         while len(chosen) > 1:
             table = np.stack([self.served(k) for k in chosen], axis=1)
             alone = self.share(table & (table.sum(axis=1) == 1)[:, None])
+            alone[:staying] = np.inf
             least = int(alone.argmin())
             if alone[least] >= _CLAMPED_FOR:
                 break
