@@ -255,3 +255,11 @@ def test_triangles_on_a_cylinder_take_the_degrees_from_their_first_to_their_last
     # A degree whose middle is in it is taken, but for rounding.
     sure = (np.abs(within - wide) > 1e-6) & (within > 1e-6) & (within < 360.0 - 1e-6)
     assert ((taken > 0.5) == (within < wide))[sure].all()
+
+
+@pytest.mark.parametrize(("thick", "grip"), [(1.0, 0.5), (2.0, 1.0), (3.0, 2.0), (3.5, 2.5), (5.0, 3.0), (20.0, 3.0)])
+@pytest.mark.parametrize(("word", "own"), [("vise", "vise:77x30x120:0.4"), ("chuck", "chuck:3x40:0.4")])
+def test_jaws_stay_below_the_top_of_a_thin_part(word, own, thick, grip):
+    part = box(60, 40, thick) if word == "vise" else rod(20, thick)
+    assert hold_of(part, word).fixture.clamping.grip == pytest.approx(grip, abs=1e-6)
+    assert hold_of(part, own).fixture.clamping.grip == 0.4
