@@ -213,7 +213,7 @@ class Options(OptionValues):
         take(machine=machine_option(self.machine))
         stock = None if self.stock is None else Stock.of(self.stock)
         take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
-                            propose=flag(self.propose, "propose"), stock=stock))  # fmt: skip
+                            propose=flag(self.propose, "propose"), stock=stock, chuck_axis=self.machine.chuck_axis))  # fmt: skip
         vise = self.propose and (not self.fixtures or self.fixtures[0].kind in (VISE, CHUCK))
         known = next((each.stock for each in self.fixtures if each.stock), None)
         take(stock=(stock or known or Stock.of(USUAL if vise else PART)).text)

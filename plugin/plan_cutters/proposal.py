@@ -165,9 +165,11 @@ def _words(options: Options) -> tuple[str, ...]:
     """What may hold the part in each setup: what was requested, or any of them."""
     requested = tuple(each.text for each in options.fixtures)
     turning = [each for each in options.machine.axes if each.kind == "rotary" and each.carries == "part"]
-    # A chuck is placed along the spindle: nobody stands one across the axis that turns under it.
-    upright = not turning or any(abs(each.direction[2]) > _ALONG for each in turning)
-    return requested or ((TABLE, VISE, CHUCK) if upright else (TABLE, VISE))
+    # Along an axis that turns the part about the spindle, or that lies across it; nobody stands a chuck on one that leans.
+    able = not turning or any(abs(each.direction[2]) > _ALONG for each in turning)
+    if options.machine.chuck_axis is not None:
+        return requested or (TABLE, CHUCK, VISE)
+    return requested or ((TABLE, VISE, CHUCK) if able else (TABLE, VISE))
 
 
 def _among(words: tuple[str, ...]) -> str:
@@ -204,6 +206,7 @@ def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder
     first, *others = (
         Placement(
             _axis(ranking, k),
+            _held(ranking, k).x,
             clamped=() if _held(ranking, k).stock else _rests_on(ranking, k),
             fixtures=tuple(each for each in (_held(ranking, k).stock, _held(ranking, k).fixture) if each is not None),
             stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or below)}),
@@ -262,6 +265,7 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
     held = _held(ranking, k)
     return ProposedSetup(
         axis=_axis(ranking, k),
+        x=held.x,
         stands_on=[] if held.stock else list(_rests_on(ranking, k)),
         clamping=held.kind,
         grips=list(_named(held.grips)),

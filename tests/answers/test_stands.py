@@ -140,7 +140,7 @@ def test_what_gripped_stock_first_grips_the_part_where_it_comes_later():
 
 
 def test_a_round_part_is_made_of_a_bar_in_a_chuck_and_another_of_a_box_in_a_vise():
-    for shape, kind, word in ((rod(20.0, 30.0), "chuck", "cylinder:1,5"), (box(40.0, 30.0, 30.0), "vise", "box:1,1,5")):
+    for shape, kind, word in ((rod(20.0, 30.0), "chuck", "cylinder:1,25"), (box(40.0, 30.0, 30.0), "vise", "box:1,1,5")):
         ranking, chosen = proposed(shape, stock=Stock.of("usual"))
         held = ranking.held[chosen[0]]
         assert (held.kind, held.stock.stock.text) == (kind, word)
@@ -155,7 +155,7 @@ def test_stock_that_a_person_names_is_gripped_wherever_jaws_can():
     """A bar that lies hides half of the part between bored jaws: nobody would propose it, and here somebody asks for it."""
     ranking, chosen = proposed(rod(15.0, 160.0), stock=Stock.of("cylinder"))
     first, *others = (ranking.held[k] for k in chosen)
-    assert (first.kind, first.soft, first.stock.stock.text) == ("vise", "", "cylinder:1,5")
+    assert (first.kind, first.soft, first.stock.stock.text) == ("vise", "", "cylinder:1,25")
     assert others
     assert all(each.stock is None and not each.soft for each in others)
     assert abs(ranking.candidates.axis[chosen[0]][2]) < 0.5
@@ -233,11 +233,48 @@ def test_setups_are_not_compared_again_for_the_next_question(tmp_path, monkeypat
         plan(file, **{**how, "machine": "trunnion-bc"})
 
 
-@pytest.mark.parametrize(("machine", "chuck"), [("trunnion-ac", True), ("3-axis", True), ("4-axis-a", False)])
-def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, chuck):
-    """A round rod that only a chuck would hold: on a fourth axis across the spindle none is proposed."""
-    plans = plan(rod(20.0, 30.0), setup="auto", **{**HOW, "machine": machine}).plan
-    assert any(each.clamping == "chuck" for each in plans.setup_proposal.setups) == chuck
+@pytest.mark.parametrize(("machine", "cosine"), [("trunnion-ac", 1.0), ("3-axis", 1.0), ("4-axis-a", 0.0)])
+def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, cosine):
+    """A round rod that only a chuck would hold: on a fourth axis across the spindle it lies along that."""
+    setups = plan(rod(20.0, 30.0), setup="auto", **{**HOW, "machine": machine}).plan.setup_proposal.setups
+    chucks = [each for each in setups if each.clamping == "chuck"]
+    assert chucks
+    for each in chucks:
+        assert np.dot(Fixture.parse(each.fixtures[-1]).rotation[:, 2], each.axis) == pytest.approx(cosine, abs=1e-9)
+
+
+def lying_shaft(turned):
+    """A stepped shaft with a flat, along x, or along z."""
+    part = cq.Workplane("YZ").circle(20).extrude(30).faces(">X").workplane().circle(12).extrude(40)
+    part = part.cut(cq.Workplane().box(30, 40, 20).translate((60, 0, 17)))
+    return (part.rotate((0, 0, 0), (0, 1, 0), -90) if turned else part).val().wrapped
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_on_a_fourth_axis_a_bar_lies_along_it_in_a_chuck_and_is_turned_round_there(turned):
+    how = {**HOW, "machine": "4-axis-a", "cutters": "D8L60F30S8"}
+    setups = plan(lying_shaft(turned), setup="auto", **how).plan.setup_proposal.setups
+    assert [each.clamping for each in setups] == ["chuck", "chuck"]
+    chucks = [Fixture.parse(each.fixtures[-1]).rotation[:, 2] for each in setups]
+    for each, up in zip(setups, chucks, strict=True):
+        # The chuck stands along the machine's X, about which the fourth axis turns, across the spindle.
+        assert np.allclose(each.x, up, atol=1e-9)
+        assert abs(np.dot(each.axis, up)) < 1e-9
+    assert np.allclose(chucks[0], -chucks[1], atol=1e-9)
+    first = Fixture.parse(setups[0].fixtures[-1]).clamping
+    assert first.grip == 20.0
+
+
+@pytest.mark.parametrize(("machine", "setup", "along"), [("4-axis-a", "+z", (1, 0, 0)), ("trunnion-ac", "+x", (1, 0, 0))])
+def test_a_chuck_that_is_requested_stands_on_the_axis_next_to_the_part(machine, setup, along):
+    how = {**HOW, "machine": machine, "cutters": "D8L60F30S8", "setup": setup, "fixtures": "chuck"}
+    (chuck,) = prepare(lying_shaft(False), Options(**how)).conditions.surroundings.fixtures
+    assert np.allclose(chuck.fixture.rotation[:, 2], along)
+
+
+def test_across_a_fourth_axis_a_chuck_has_nothing_to_grip():
+    with pytest.raises(NothingToGripError, match="nothing to grip with the setup axis 1,0,0"):
+        prepare(rod(20.0, 60.0), Options(**{**HOW, "machine": "4-axis-a", "setup": "+z", "fixtures": "chuck"}))
 
 
 @pytest.mark.parametrize(("missed", "flat"), [(0.01, True), (0.05, False)])

@@ -19,9 +19,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.answers.candidates import SAME, Candidates
 from plan_cutters.answers.least_set import cover
+from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area, percent
 from plan_cutters.domain.fixture import TABLE, Fixture
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.stock import USUAL, Stock
 from plan_cutters.domain.verdicts import blank
@@ -38,6 +40,12 @@ from plan_cutters.setups.requested import MOST_PROPOSED
 
 #: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
 _GRIPPED_FOR = 0.9
+
+
+def vector(direction: Floats) -> Axis:
+    """A direction (3,) as numbers, without negative zeros."""
+    x, y, z = (direction + 0.0).tolist()
+    return x, y, z
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +70,7 @@ class Held:
     why: str = ""
     soft: str = ""
     stock: Fixture | None = None  #: What is gripped, if that is stock.
+    x: Axis | None = None  #: Direction of the part along the machine's X; None: any.
 
     @property
     def kind(self) -> Any:
@@ -75,14 +84,14 @@ class Held:
 
 
 def held_by(
-    ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]], stock: Stock | None = None
+    ready: Prepared, axis: Axis, fixture: Fixture, among: Callable[[Surroundings], NDArray[np.bool_]], stock: Stock | None = None
 ) -> Held:
     """Hold a part, or its stock, along an axis by a table, vise or chuck, and find where a posture is among it.
 
-    `axis` (float, float, float). `word`: `table`, or the word of a vise or chuck. `among`: where any cutter has a posture among
+    `axis` (float, float, float). `fixture`: a table, a vise or a chuck. `among`: where any cutter has a posture among
     some obstacles, (r,). Raises NothingToGripError.
     """
-    surroundings = ready.scene.surround_held(axis, word, stock)
+    surroundings = ready.scene.surround_held(axis, fixture, stock)
     *blank, placed = surroundings.fixtures
     held, hold = Held(placed.fixture, among(surroundings), stock=blank[0].fixture if blank else None), placed.hold
     if hold is None:
@@ -128,6 +137,8 @@ _UPRIGHT = float(np.radians(60.0))
 _UNSTEADY, _SOFT = 0.75, 0.5
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
+#: Directions at right angles: cosine at most.
+_ACROSS = 1e-6
 
 
 def holdable(
@@ -225,7 +236,11 @@ class Ranking:
         if len(_usual(ready.cutters)) < len(ready.cutters):
             free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
         every = free[rows] if free.any() else np.ones(len(rows), bool)
-        return cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words, stock=stock)
+        ranking = cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words, stock=stock)
+        for k in range(len(candidates.axis)):
+            if ranking.lying(k):
+                ranking.bound[:, k] = every
+        return ranking
 
     @property
     def area(self) -> Floats:
@@ -238,7 +253,8 @@ class Ranking:
 
     def search(self, open_rows: NDArray[np.bool_], most: int) -> None:
         """Search the directions that may serve most of what is left (r,), at most so many, while they may beat what was found."""
-        worth = np.array([1.0 if each.firm else _UNSTEADY for each in self.candidates.bearing])
+        firm = [each.firm or bool(self.lying(k)) for k, each in enumerate(self.candidates.bearing)]
+        worth = np.where(firm, 1.0, _UNSTEADY)
         upper = worth * self.share(self.bound & open_rows[:, None])
         order = np.lexsort((np.arange(len(upper)), -np.round(upper / _EVEN)))
         best, tried = 0.0, 0
@@ -270,9 +286,10 @@ class Ranking:
         if k not in self.gripped:
             self.gripped[k] = False
             for word in self.words[1:] if self.over_table and k not in self.settled else ():
-                with suppress(NothingToGripError):
-                    x, y, z = self.candidates.axis[k].tolist()
-                    self.gripped[k] |= not self.ready.scene.hold(Fixture.each_of(word)[0], (x, y, z)).soft
+                for fixture, _ in self._fixtures(k, word):
+                    with suppress(NothingToGripError):
+                        stands = fixture.stands_along(vector(self.candidates.axis[k]))
+                        self.gripped[k] |= not self.ready.scene.hold(fixture, stands).soft
         return self.gripped[k]
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
@@ -303,8 +320,8 @@ class Ranking:
         for k in chosen:
             self._settle(k)
 
-    def _settle(self, k: int) -> None:
-        """Try in a direction whatever may hold the part, unless that was done before."""
+    def _settle(self, k: int, open_rows: NDArray[np.bool_] | None = None) -> None:
+        """Try in a direction whatever may hold the part, unless that was done before; `open_rows` as for `_held_by`."""
         # What was searched with a vise or chuck is known with it; a table was only a plane.
         words = self.words if self.over_table else self.words[1:]
         if k in self.settled or not words:
@@ -313,7 +330,8 @@ class Ranking:
         tried, refused = [held for held in [self.held[k]] if held is not None and not self.over_table], {}
         for word in words:
             try:
-                tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
+                bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                tried.append(self._held_by(k, word, bound, open_rows=open_rows))
             except NothingToGripError as error:
                 refused[word] = error.why
         self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
@@ -324,7 +342,7 @@ class Ranking:
         """
         assert self.stock is not None, "without stock the part is gripped"
         most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
-        for stock in self.stock.choices(round_=self.candidates.bearing[k].round):
+        for stock in self.stock.choices(round_=self.candidates.bearing[k].round or bool(self.lying(k))):
             for word in [each for each in self.words if each != TABLE]:
                 with suppress(NothingToGripError):
                     # Beside what stands below the part a tool may be lower than it.
@@ -342,19 +360,28 @@ class Ranking:
     def completed(self, chosen: tuple[int, ...], most: int) -> tuple[int, ...]:
         """Chosen directions, held as they are by now, and those that serve more of what these do not."""
         failed = frozenset[int]()
+        over = self.opposite(chosen[0]) if self._turned(chosen) else None
+        if over is not None:
+            self._searched(over)
         while 0 < len(chosen) < most:
             open_rows = ~np.logical_or.reduce([self.served(k) for k in chosen])
             others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed) and self.steady(k)]
+            others.sort(key=lambda k: k != over)
             gain = self.share(np.stack([self.served(k) & open_rows for k in others], axis=1)) if others else np.zeros(0)
             if not (gain >= _CLAMPED_FOR).any():
                 break
             more = others[int(np.round(gain / _EVEN).argmax())]
-            self._settle(more)
+            self._settle(more, open_rows)
             if float(self.share((self.served(more) & open_rows)[:, None])[0]) >= _CLAMPED_FOR:
                 chosen = (*chosen, more)
             else:
                 failed |= {more}
         return chosen
+
+    def _turned(self, chosen: Sequence[int]) -> bool:
+        """Whether the first of some directions has its part in a chuck that a rotary axis turns."""
+        first = self.held[chosen[0]] if chosen else None
+        return first is not None and first.x is not None
 
     @property
     def over_table(self) -> bool:
@@ -362,16 +389,18 @@ class Ranking:
         return self.words[0] == TABLE
 
     def _on_plane(self, k: int) -> Held:
-        """The part over a table that is only a plane: none of the obstacles is made anew."""
-        few = self.ready.conditions
-        part = replace(few, setup=self.candidates.axis[k], x=None, surroundings=few.surroundings.alone or few.surroundings)
+        """The part over a table that is only a plane: none of the obstacles is made anew. Below a part that is to lie in a chuck
+        there is none."""
+        few, lying = self.ready.conditions, self.lying(k)
+        x = np.array(lying[0][1]) if lying else None
+        part = replace(few, setup=self.candidates.axis[k], x=x, surroundings=few.surroundings.alone or few.surroundings)
         limit = _UPRIGHT if part.machine.tilt_limit is None else min(_UPRIGHT, part.machine.tilt_limit)
-        reached, above = np.zeros(len(self.ready.samples), bool), float(self.candidates.lowest[k])
+        reached, above = np.zeros(len(self.ready.samples), bool), None if lying else float(self.candidates.lowest[k])
         for conditions in (part, replace(part, machine=replace(part.machine, tilt_limit=limit))):
             for usual in (True, False):
                 rows = self.rows[self.bound[:, k] & (self.usual == usual)]
                 reached |= _reached(self.ready, rows[~reached[rows]], conditions, usual=usual, above=above)
-        return Held(Fixture.each_of(TABLE)[0], reached[self.rows], soft=self._stands_soft(k))
+        return Held(Fixture.each_of(TABLE)[0], reached[self.rows], soft="" if lying else self._stands_soft(k))
 
     def _stands_soft(self, k: int) -> str:
         """Why a part that lies on a table in a direction needs a nest; empty where it stands by itself."""
@@ -381,23 +410,62 @@ class Ranking:
         on = f"{area(mine.area)} that it stands on" if mine.broad else f"it stands on {area(mine.area)}"
         return f"{on} do not carry it" if mine.broad else on
 
-    def _held_by(self, k: int, word: str, bound: NDArray[np.bool_], stock: Stock | None = None) -> Held:
-        x, y, z = self.candidates.axis[k].tolist()
+    def _held_by(
+        self, k: int, word: str, bound: NDArray[np.bool_], stock: Stock | None = None, open_rows: NDArray[np.bool_] | None = None
+    ) -> Held:
+        """Hold the part, or its stock, in a direction by what a word says; of several ways that which serves most of some rows
+        (r,), of all by default."""
+        ways, wanted = list[Held](), self.area if open_rows is None else self.area * open_rows
+        error = NothingToGripError(f"nothing round lies across the setup axis {axis_words(self.candidates.axis[k])}")
+        for fixture, turned in self._fixtures(k, word):
+            try:
+                ways.append(self._held_in(k, fixture, turned, bound if turned is None else self.free, stock))
+            except NothingToGripError as why:
+                error = why
+        if not ways:
+            raise error
+        return max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
+
+    def _fixtures(self, k: int, word: str) -> list[tuple[Fixture, Axis | None]]:
+        """What a word may be in a direction, each with the part's direction along the machine's X; None: any.
+
+        A chuck stands along a rotary axis that lies across the spindle: where the part is round across the direction and longest,
+        it lies along that, one way or the other.
+        """
+        fixture, along = Fixture.each_of(word)[0], self.ready.conditions.machine.chuck_axis
+        if fixture.kind != CHUCK or along is None:
+            return [(fixture, None)]
+        axis, tall = self.candidates.axis, self.candidates.tall
+        across = [j for j in np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist() if self.candidates.bearing[j].round]
+        longest = [j for j in across if tall[j] > (1.0 - _EVEN) * max(tall[across])]
+        lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in longest]
+        return [(replace(fixture, up=vector(up)), vector(x)) for up, x in lying]
+
+    def lying(self, k: int) -> list[tuple[Fixture, Axis | None]]:
+        """The chucks in which the part may lie along a rotary axis, in a direction; none where it would stand in them."""
+        along = self.ready.conditions.machine.chuck_axis
+        chuck = next((each for each in self.words if Fixture.each_of(each)[0].kind == CHUCK), None)
+        return [] if along is None or chuck is None else self._fixtures(k, chuck)
+
+    def _held_in(self, k: int, fixture: Fixture, turned: Axis | None, bound: NDArray[np.bool_], stock: Stock | None) -> Held:
+        axis, x = self.candidates.axis[k], None if turned is None else np.array(turned)
 
         def among(surroundings: Surroundings) -> NDArray[np.bool_]:
-            conditions = replace(self.ready.conditions, setup=self.candidates.axis[k], x=None, surroundings=surroundings)
+            conditions = replace(self.ready.conditions, setup=axis, x=x, surroundings=surroundings)
             reached = np.zeros(len(self.ready.samples), bool)
             for usual in (True, False):
                 reached |= _reached(self.ready, self.rows[bound & (self.usual == usual)], conditions, usual=usual)
             return reached[self.rows]
 
-        held = held_by(self.ready, (x, y, z), word, among, stock)
+        held = replace(held_by(self.ready, vector(axis), fixture, among, stock), x=turned)
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def chosen_and_held(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """As `choose`, held by what holds it best, with what this leaves for more setups."""
         chosen = self.choose(most, without)
         self.settle(chosen)
+        if self._turned(chosen):
+            chosen = chosen[:1]  # what it leaves is served where it is turned round
         # What was added may serve what one before it was chosen for; the first one holds the stock, and stays.
         return self._worth(self.completed(chosen, most), staying=1)
 

@@ -6,12 +6,11 @@ from typing import Any, Literal
 from cad_io.arrays import Triangles
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
-from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.operations import ProcessSetup, StockEntry
-from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.fixtures import stock_body
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.surroundings import PlacedFixture
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
 
 
@@ -26,24 +25,24 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
         every = (surroundings.alone or surroundings).certain.triangles
         triangles = every.take(every.face > 0) if (every.face <= 0).any() else every
         up = vector(conditions.setup)
-        part = Workpiece.of(triangles.vertex, triangles.face, ready.scene.orientation.sign, planes, (), up)
         blank = next((each.fixture for each in surroundings.fixtures if each.fixture.kind == STOCK), None)
         gripping = next((each for each in surroundings.fixtures if each.fixture.clamping is not None), None)
+        along = up if gripping is None else gripping.fixture.stands_along(up)
+        part = Workpiece.of(triangles.vertex, triangles.face, ready.scene.orientation.sign, planes, (), along)
         on: list[str] | Literal["stock"] | None = "stock"
         if blank is None:
             on = _named(part.face[part.level(0.0)].tolist()) if gripping is None else _rests_on(part, gripping.fixture, triangles)
         held = _gripped(gripping, triangles, stock=blank is not None) if gripping else _stood(part, surroundings.fixtures)
         setups.append(ProcessSetup(number=number, up=up, stands_on=on or None, **held))
         if blank is not None and number == 1:
-            stock = _stock(ready, conditions, blank, part.enclosed[0])
+            stock = _stock(ready, surroundings, blank, vector(along), part.enclosed[0])
     return setups, stock
 
 
-def _stock(ready: Prepared, conditions: Conditions, blank: Fixture, volume: float) -> StockEntry:
-    """The entry of stock about a part of a volume, mm3."""
-    surroundings, rate = conditions.surroundings, ready.options.removal_rate
-    chord = CHORD_REQUESTED * ready.scene.asked
-    body = stock_body(blank, vector(conditions.setup), surroundings.alone or surroundings, chord, {})
+def _stock(ready: Prepared, surroundings: Surroundings, blank: Fixture, along: Vector, volume: float) -> StockEntry:
+    """The entry of stock about a part of a volume, mm3; what grips it stands along a direction."""
+    rate, chord = ready.options.removal_rate, CHORD_REQUESTED * ready.scene.asked
+    body = stock_body(blank, along, surroundings.alone or surroundings, chord, {})
     remove = max(0.0, body.volume - volume)
     return StockEntry(
         word=blank.stock.text if blank.stock else "", size_mm=vector(body.high - body.low), volume_mm3=body.volume,

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
@@ -18,6 +19,8 @@ from plan_cutters.errors import FixtureError
 #: Simple fixtures by words: what each number is.
 WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", "stock": "STOCK", **FORMS}
 TABLE, STOCK = "table", "stock"
+#: A vise or chuck this near to the setup axis stands along it: cosine.
+_ALONG = 0.5
 _WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|({TABLE}|{VISE}|{CHUCK})", re.IGNORECASE | re.DOTALL)
 #: Suffixes of files that are known, and what they are.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -66,6 +69,8 @@ class Fixture:
         words. A placement is in mm always.
     name : str
         For people and plans; default the file's stem, the word, an object's label, or `fixture`.
+    up : (float, float, float), optional
+        Unit direction of the part along which a vise or chuck that is to be placed stands; None: the setup axis.
     chord_error : float
         How far a mesh may be from what it stands for, mm. No file says so, so it is 0 unless it is given.
 
@@ -89,6 +94,7 @@ class Fixture:
     unit: str | None = None
     name: str = ""
     chord_error: float = 0.0
+    up: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.source, PurePath):
@@ -127,7 +133,12 @@ class Fixture:
 
     @property
     def _rest(self) -> tuple[Any, ...]:
-        return self.placement, self.unit, self.name, self.chord_error
+        return self.placement, self.unit, self.name, self.chord_error, self.up
+
+    def stands_along(self, setup: Sequence[float]) -> Sequence[float]:
+        """The direction (3,) along which a vise or chuck stands in a setup, or is to: the setup axis, or one across it."""
+        up = self.up if self.clamping is None else self.rotation[:, 2].tolist()
+        return setup if up is None or float(np.dot(up, setup)) > _ALONG else up
 
     def _named(self) -> str:
         if not isinstance(self.source, str):

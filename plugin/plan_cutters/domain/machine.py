@@ -220,6 +220,20 @@ class Machine:
         return tuple(axis for axis in self.axes if axis.kind == "rotary")
 
     @property
+    def chuck_axis(self) -> tuple[float, float, float] | None:
+        """The machine's direction along which a chuck stands on the rotary axis next to the part, which lies across the spindle.
+
+        None: it stands along the spindle, on a table or on an axis that turns about it, or nothing turns the part.
+
+        >>> Machine.parse("4-axis-a").chuck_axis, Machine.parse("trunnion-ac").chuck_axis
+        ((1.0, 0.0, 0.0), None)
+        """
+        turning = [each.direction for each in self.rotary if each.carries == "part"]
+        if not turning or any(abs(each[2]) > PARALLEL for each in turning):
+            return None
+        return turning[0]
+
+    @property
     def rates_deg(self) -> dict[str, float]:
         """The largest speed of each rotary axis that has one, deg/s, by its name."""
         return {axis.name: math.degrees(axis.rate) for axis in self.rotary if axis.rate is not None}

@@ -20,7 +20,7 @@ _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER}|{USUAL})(?::(.*))?", re.IGNORECAS
 #: A cylinder lies along a part that is so many times as long as it is high and wide; no ratio of round numbers, so that whoever
 #: measures the part agrees.
 LONG = 2.17
-#: Stock that is proposed reaches so far below the part where a tool does not come low enough beside less, mm.
+#: A bar, and stock that is proposed where a tool does not come low enough beside less, reaches so far below the part, mm.
 _DEEPER = 25.0
 
 
@@ -47,7 +47,7 @@ class Stock:
                 raise OptionError(f"stock {text!r} is none: give {_FORM}")
             return cls("file", (), text)
         kind, numbers = word[1].lower(), word[2]
-        usual = {BOX: (_SIDES, _SIDES, _BELOW), CYLINDER: (_SIDES, _BELOW)}.get(kind, ())
+        usual = {BOX: (_SIDES, _SIDES, _BELOW), CYLINDER: (_SIDES, _DEEPER)}.get(kind, ())
         if numbers is None:
             return cls(kind, usual)
         try:
@@ -67,8 +67,8 @@ class Stock:
         """A setup tries these, the first that serves: a bar for a part that is round there, else a box; then more below."""
         if self.kind != USUAL:
             return (self,)
-        first = [Stock.of(CYLINDER)] * round_ + [Stock.of(BOX)]
-        return (*first, *(replace(each, margins=(*each.margins[:-1], _DEEPER)) for each in first))
+        box = Stock.of(BOX)
+        return (*[Stock.of(CYLINDER)] * round_, box, replace(box, margins=(*box.margins[:-1], _DEEPER)))
 
     @property
     def below(self) -> float:

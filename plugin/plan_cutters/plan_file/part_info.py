@@ -269,6 +269,7 @@ class ProposedSetup(Frozen):
     """A setup that was proposed, with a table, a vise or a chuck as all that holds the part."""
 
     axis: Vector
+    x: Vector | None = Field(default=None, description="direction of the part along the machine's X, where a chuck needs it")
     stands_on: list[str] = Field(
         description="planar faces that lie on the table, or on the ledges of the jaws: no targets in this setup"
     )

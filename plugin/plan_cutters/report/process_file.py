@@ -102,6 +102,7 @@ def setup_toml(setup: ProposedSetup) -> str:
         first = f"the {setup.clamping} grips {', '.join(setup.grips) or 'the stock'}; put your own into `fixtures`."
     return (
         f'# Proposed by --setup auto: {first}\nunit = "mm"\naxis = {json.dumps(list(setup.axis))}\n'
+        f"{'' if setup.x is None else f'x = {json.dumps(list(setup.x))}{chr(10)}'}"
         f"clamped = {json.dumps(setup.stands_on)}\nfixtures = {json.dumps(setup.fixtures)}\n"
     )
 

@@ -20,7 +20,7 @@ from cad_io.part.bodies import Body
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
-from plan_cutters.domain.clamping import Clamping, Vise
+from plan_cutters.domain.clamping import FORMS, Clamping, Vise
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.fixture import CAD, MESH, STOCK, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
@@ -118,6 +118,9 @@ def joined(
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
         return surroundings
+    # A chuck may stand across the spindle, and with it the bar that it grips.
+    gripping = next((each.stands_along(across) for each, across in placed if each.kind in FORMS), None)
+    placed = [(each, gripping if gripping and each.kind in (STOCK, *FORMS) else across) for each, across in placed]
     near = np.array(surroundings.possible.corners)
     placed_fixtures, bodies = [], []
     blank = next((stock_body(each, across, surroundings, chord, cache) for each, across in placed if each.kind == STOCK), None)

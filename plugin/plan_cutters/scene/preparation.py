@@ -317,7 +317,7 @@ def refuse_unholdable(scene: Scene, options: Options) -> None:
         # Stock is gripped instead.
         for fixture in () if any(each.kind == STOCK for each in every) else every:
             if fixture.to_place:
-                refuse_ungripped(fixture, part.faces, scene.orientation.sign, axis, reach)
+                refuse_ungripped(fixture, part.faces, scene.orientation.sign, fixture.stands_along(axis), reach)
 
 
 def conditions_of(scene: Scene, options: Options) -> list[Conditions]:

@@ -272,8 +272,8 @@ class Scene(Record):
         """The same part in another setup, the sides of its faces as they are, without fixtures: it is not tessellated again."""
         return self._sharing(setup=setup, fixtures=())
 
-    def surround_held(self, setup: tuple[float, float, float], word: str, stock: Stock | None = None) -> Surroundings:
-        """Gather the obstacles where the part stands on a `table` across a setup axis, or in a vise or chuck, and nothing else
+    def surround_held(self, setup: tuple[float, float, float], held: Fixture, stock: Stock | None = None) -> Surroundings:
+        """Gather the obstacles where the part stands on a table across a setup axis, or in a vise or chuck, and nothing else
         holds it; or where its stock does so.
 
         The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused.
@@ -287,7 +287,7 @@ class Scene(Record):
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
         blank = [] if stock is None else [Fixture(f"{STOCK}:{stock.text}")]
-        return self._joined(memory.alone, Fixture.each_of([*blank, word]), chord, setup)
+        return self._joined(memory.alone, Fixture.each_of([*blank, held]), chord, setup)
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
         """Place a vise or chuck for a unit setup axis; `surround` must have been called.

@@ -56,23 +56,27 @@ class Hold:
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most, and
 #: of these on the same faces.
 _EVEN, _TRIED, _OF_ONE = 0.05, 12, 4
+#: Of what of a bar is below the part jaws grip so much.
+_OF_A_BAR = 0.8
 #: How far jaws stay below the top of a thin part, if they can, mm.
 _FACED = 1.0
 Overlaps = Callable[[Fixture, Clamping], bool]
 
 
-def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0) -> Hold:
+def held(
+    fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0, deep: float | None = None
+) -> Hold:
     """Place a vise or chuck.
 
     `fixture`: with `to_place`. `plainly`, `overlaps`: whether a fixture in its place, a vise or chuck, stands in the part: where
-    that is seen at once, and by a search. `slack`: how far the part's triangles may be off, mm. Raises NothingToGripError: there
-    is nothing that it can grip, in a line that says why and what to try.
+    that is seen at once, and by a search. `slack`: how far the part's triangles may be off, mm. `deep`: how deep jaws grip unless
+    that was requested, mm. Raises NothingToGripError: there is nothing that it can grip, in a line that says why and what to try.
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
     if requested.sizes is None and requested.grip == GRIP:
         # Jaws as high as a thin plate would be in the way of the tool that faces it.
-        requested = replace(requested, grip=min(GRIP, max(0.5 * part.tall, part.tall - _FACED)))
+        requested = replace(requested, grip=deep or min(GRIP, max(0.5 * part.tall, part.tall - _FACED)))
     places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
@@ -134,7 +138,9 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
         vertex = np.roll(cylinder(body.radius, long, sides), body.along + 1, axis=-1) + start
         face, planes = np.repeat(np.array([1, 1, 2, 3], np.int32), sides), range(2, 4)
     piece = Workpiece.of(vertex @ across, face, np.ones(6), planes, (), setup)
-    hold = held(fixture, piece, lambda placed, clamping: False, lambda placed, clamping: False)
+    # A bar that stands is gripped deep, and some of it stays free below the part.
+    deep = None if body.radius is None or body.lying else max(GRIP, _OF_A_BAR * foot)
+    hold = held(fixture, piece, lambda placed, clamping: False, lambda placed, clamping: False, deep=deep)
     clamping = hold.fixture.clamping
     assert clamping is not None, "what was placed is in its place"
     what, apart = _called(clamping)

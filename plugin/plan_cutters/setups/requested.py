@@ -5,10 +5,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
-from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import along, plane_of, unit
+from plan_cutters.domain.placement import Placement, frame_of
+from plan_cutters.domain.posture import Direction, along, plane_of, unit
 from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import OptionError
 
@@ -40,12 +43,12 @@ def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fix
 
 def setups_requested(
     setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool,
-    stock: Stock | None = None,
+    stock: Stock | None = None, chuck_axis: Direction | None = None,
 ) -> dict[str, Any]:  # fmt: skip
     """Give the values of the options about setups by their names.
 
     `setup`, `placement`, `others`, `other_placements`, `fixtures`: as `Options` takes them. `propose`: setups are to be proposed.
-    `stock`: what the first setup grips, if its setups are named.
+    `stock`: what the first setup grips, if its setups are named. `chuck_axis`: as of the machine.
     Raises OptionError: a value has no meaning, or setups are to be proposed beside some that are given.
     """
     common = Fixture.each_of(fixtures)
@@ -83,6 +86,9 @@ def setups_requested(
         placed = _holding((axis, placed), gripping)
         places = [_holding(_setup(each, place), gripping) for each, place in zip(listed, places, strict=True)]
         listed = [each.z for each in places]
+    if chuck_axis is not None and not propose:
+        common, placed = _on_rotary(common, chuck_axis, axis, placed)
+        places = [_on_rotary((), chuck_axis, *_setup(each, place))[1] for each, place in zip(listed, places, strict=True)]
     setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
     known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
@@ -96,6 +102,19 @@ def _holding(setup: tuple[tuple[float, float, float], Placement | None], grippin
     if place is None:
         return Placement(axis, fixtures=gripping)
     return replace(place, fixtures=joined_fixtures(place.fixtures, _to_place(gripping, place)))
+
+
+def _on_rotary(
+    fixtures: Sequence[Fixture], direction: Direction, axis: Direction, place: Placement | None
+) -> tuple[tuple[Fixture, ...], Placement | None]:
+    """Fixtures, and a setup, with chucks that are to be placed along a rotary axis that lies across the spindle."""
+    x = None if place is None or place.x is None else np.array(place.x)
+    up: Direction = tuple((np.array(direction) @ frame_of(np.array(axis), x) + 0.0).tolist())
+
+    def turned(every: Sequence[Fixture]) -> tuple[Fixture, ...]:
+        return tuple(replace(each, up=up) if each.to_place and each.kind == CHUCK else each for each in every)
+
+    return turned(fixtures), None if place is None else replace(place, fixtures=turned(place.fixtures))
 
 
 def _to_place(gripping: Sequence[Fixture], place: Placement | None) -> Sequence[Fixture]:

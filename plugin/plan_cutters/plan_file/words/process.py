@@ -237,12 +237,13 @@ def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool)
 
 def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     """Say which way is up, what holds the part, and what it stands on."""
-    along = [f"{sign}{name}" for name, each in zip("XYZ", setup.up, strict=True) for sign in "+-" if each == float(f"{sign}1")]
-    up = along[0] if along else axis_words(setup.up)
     on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
     if setup.grip_mm is not None:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
-        clamping = Fixture.parse(setup.clamping).clamping if setup.clamping else None
+        fixture = Fixture.parse(setup.clamping or setup.held or "")
+        clamping, along = fixture.clamping, fixture.stands_along(setup.up)
+        if along is not setup.up:
+            what = f" along {_direction(along)}{what}"
         bored = isinstance(clamping, Vise) and clamping.bored
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
@@ -260,7 +261,15 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         bar = f"a bar {mm(wide)} wide and {mm(long)} long{', lying,' * _lies(stock)}"
         how = f"{bar if stock.word.startswith('cylinder') else f'stock of {size(stock.size_mm)}'} {how}"
     soft = f"; it needs soft jaws or a nest: {setup.soft}" if setup.soft else ""
-    return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
+    return named(plan, f"Setup {setup.number}: {_direction(setup.up)} up, {how}{soft}.")
+
+
+def _direction(along: Sequence[float]) -> str:
+    """A direction of the part by the name of its axis, where it is one."""
+    names = [
+        f"{sign}{name}" for name, each in zip("XYZ", along, strict=True) for sign in "+-" if abs(each - float(f"{sign}1")) < 1e-9
+    ]
+    return names[0] if names else axis_words(along)
 
 
 def _lies(stock: StockEntry) -> bool:
