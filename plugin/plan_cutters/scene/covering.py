@@ -26,25 +26,17 @@ _FEW = 300
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Covering(Record):
-    """A body, and what of the samples lies inside it.
+    """A body, and what of the samples lies inside it."""
 
-    `index`: into the part's bodies.
-    `rows` (m,) int64: samples, those of sheets that lie on bodies not among them.
-    `how`: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its
-        skin. Otherwise neither is sure.
-    `faces`: of the body, ascending.
-    `largest`: no other body is larger.
-    `name`: of its component; empty where it has none of its own.
-    `selection`: words for faces that choose this body and no other one.
-    """
-
-    index: int
-    rows: NDArray[np.int64]
+    index: int  #: Into the part's bodies.
+    rows: NDArray[np.int64]  #: (m,) int64: samples, those of sheets that lie on bodies not among them.
+    #: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
+    #: Otherwise neither is sure.
     how: How
-    faces: tuple[int, ...]
-    largest: bool
-    name: str
-    selection: str
+    faces: tuple[int, ...]  #: Of the body, ascending.
+    largest: bool  #: No other body is larger.
+    name: str  #: Of its component; empty where it has none of its own.
+    selection: str  #: Words for faces that choose this body and no other one.
 
 
 def coverings(ready: Prepared) -> tuple[Covering, ...]:

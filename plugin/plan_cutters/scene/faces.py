@@ -38,26 +38,19 @@ _LONGEST = 60
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """The choice makes some faces of a part targets and ignores some; those in neither list are other faces.
+    """The choice makes some faces of a part targets and ignores some; those in neither list are other faces."""
 
-    `targets`, `ignored`: face numbers, ascending.
-    `asked`: the words for `targets`.
-    `ignore`: the words for `ignored`.
-    `unshaped`: the targets are all faces for which no list was given, and none of them that can be judged is sculptured.
-    `clamped`: targets that are held in all setups.
-    `blends`: faces of the part that are fillets and rounds, whether chosen or not.
-    `free_form`: share of the targets' area that is bent in both directions (`preference.free_form_share`).
-    `repeated`: ignored faces that lie where others lie: which face stands for each.
-    """
-
+    #: `targets`, `ignored`: face numbers, ascending.
     targets: tuple[int, ...]
     ignored: tuple[int, ...]
-    asked: str
-    ignore: tuple[str, ...]
+    asked: str  #: The words for `targets`.
+    ignore: tuple[str, ...]  #: The words for `ignored`.
+    #: The targets are all faces for which no list was given, and none of them that can be judged is sculptured.
     unshaped: bool = False
-    clamped: tuple[int, ...] = ()
-    blends: frozenset[int] = frozenset()
-    free_form: float = 0.0
+    clamped: tuple[int, ...] = ()  #: Targets that are held in all setups.
+    blends: frozenset[int] = frozenset()  #: Faces of the part that are fillets and rounds, whether chosen or not.
+    free_form: float = 0.0  #: Share of the targets' area that is bent in both directions (`preference.free_form_share`).
+    #: Ignored faces that lie where others lie: which face stands for each.
     repeated: Mapping[int, int] = field(default_factory=dict)
 
 

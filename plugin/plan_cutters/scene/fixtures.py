@@ -328,13 +328,10 @@ _PRECISION, _FEW = 0.002, 400
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Overlap(Record):
-    """Where a fixture and the part are deepest in each other, of the points looked at.
+    """Where a fixture and the part are deepest in each other, of the points looked at."""
 
-    `depth`, mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface. `point` (3,) float.
-    """
-
-    depth: float
-    point: Floats
+    depth: float  #: mm; a ball of this radius about `point` is all in the one, and `point` is of the other's surface.
+    point: Floats  #: (3,) float.
 
 
 def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:

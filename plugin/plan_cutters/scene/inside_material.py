@@ -22,13 +22,10 @@ from plan_cutters.scene.work import in_chunks
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cover(Record):
-    """A contact inside material lies under this face.
+    """A contact inside material lies under this face."""
 
-    `face`: number of the face at which the way out along the normal leaves the body. `point` (3,) float: where that is, mm.
-    """
-
-    face: int
-    point: Floats
+    face: int  #: Number of the face at which the way out along the normal leaves the body.
+    point: Floats  #: (3,) float: where that is, mm.
 
 
 def inside_material(

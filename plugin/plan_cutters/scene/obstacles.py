@@ -42,21 +42,17 @@ class Obstacles(Record):
     """Triangles with their bounding tree.
 
     Raises UnjudgeableError: there are no triangles, or one has a corner that is no point: nothing could be called safe.
-
-    `triangles`: as tessellated.
-    `weight` (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
-    `open_boxes` (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
-    `gap`: widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
-    `near` (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
-    `first`: so many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds
-        all.
     """
 
-    triangles: Triangles
+    triangles: Triangles  #: As tessellated.
+    #: (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
     weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
+    #: (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
-    gap: float = 0.0
+    gap: float = 0.0  #: Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+    #: (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
     near: Floats | None = None
+    #: So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
     first: int | None = None
 
     def __post_init__(self) -> None:

@@ -14,12 +14,9 @@ from numpy.typing import NDArray
 
 @dataclass(slots=True)
 class Work:
-    """Count the work that kernels have done.
+    """Count the work that kernels have done."""
 
-    `looked`: boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
-    """
-
-    looked: int = 0
+    looked: int = 0  #: Boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
 
     def add(self, looked: int) -> None:
         """Count what a kernel has looked at."""

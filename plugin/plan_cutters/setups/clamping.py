@@ -30,22 +30,14 @@ class NothingToGripError(FixtureError):
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """A vise or chuck that was placed for a setup.
+    """A vise or chuck that was placed for a setup."""
 
-    `fixture`: in its place, with all its numbers.
-    `grips`: numbers of the faces that its jaws touch.
-    `rests_on`: numbers of the planar faces with which the part rests in it.
-    `hidden`: area of the faces to machine that its jaws touch, mm2.
-    `words`: what it is and what it grips, for people.
-    `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
-    """
-
-    fixture: Fixture
-    grips: tuple[int, ...]
-    rests_on: tuple[int, ...]
-    hidden: float
-    words: str
-    soft: str = ""
+    fixture: Fixture  #: In its place, with all its numbers.
+    grips: tuple[int, ...]  #: Numbers of the faces that its jaws touch.
+    rests_on: tuple[int, ...]  #: Numbers of the planar faces with which the part rests in it.
+    hidden: float  #: Area of the faces to machine that its jaws touch, mm2.
+    words: str  #: What it is and what it grips, for people.
+    soft: str = ""  #: Why it needs soft jaws or a nest; empty where plain jaws hold the part.
 
     @property
     def faces(self) -> tuple[int, ...]:

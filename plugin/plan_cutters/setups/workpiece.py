@@ -32,28 +32,17 @@ _OUT = 6.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Workpiece(Record):
-    """A part as it stands in a setup, as far as clamping it matters.
+    """A part as it stands in a setup, as far as clamping it matters."""
 
-    `frame` (3, 3) float: the setup's x, y and z in part coordinates, as rows.
-    `lowest`: height of the part's lowest point along z, mm.
-    `vertex` (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
-    `normal` (n, 3) float: outward normals of them, as long as twice their area.
-    `face` (n,) int: face numbers of them.
-    `planes`: planar faces.
-    `targets`: faces to machine.
-    `flat`: heights that differ by less are one, mm.
-    `bodies`: the faces of each body that is material.
-    """
-
-    frame: Floats
-    lowest: float
-    vertex: Floats
-    normal: Floats
-    face: Ints
-    planes: frozenset[int]
-    targets: frozenset[int]
-    flat: float
-    bodies: tuple[frozenset[int], ...] = ()
+    frame: Floats  #: (3, 3) float: the setup's x, y and z in part coordinates, as rows.
+    lowest: float  #: Height of the part's lowest point along z, mm.
+    vertex: Floats  #: (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
+    normal: Floats  #: (n, 3) float: outward normals of them, as long as twice their area.
+    face: Ints  #: (n,) int: face numbers of them.
+    planes: frozenset[int]  #: Planar faces.
+    targets: frozenset[int]  #: Faces to machine.
+    flat: float  #: Heights that differ by less are one, mm.
+    bodies: tuple[frozenset[int], ...] = ()  #: The faces of each body that is material.
 
     @classmethod
     def of(
@@ -153,29 +142,21 @@ class Wall:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Place:
-    """A vise or chuck at a place of a setup's frame, and what it grips there.
-
-    `x`, `origin` (3,) float: its x axis and its origin.
-    `grips`: numbers of the faces that its jaws touch.
-    `touched`, `hidden`: area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
-    `above`: height of what it rests on over the part's lowest point, mm.
-    `size`: area of what could be gripped if jaws were as large, on the side where that is less, mm2.
-    `off`: how far its middle is from the middle of the part, seen from above, mm.
-    `farthest`: how far the part reaches from its middle across the jaws, mm.
-    `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
-    """
+    """A vise or chuck at a place of a setup's frame, and what it grips there."""
 
     clamping: Clamping
+    #: `x`, `origin` (3,) float: its x axis and its origin.
     x: Floats
     origin: Floats
-    grips: tuple[int, ...]
+    grips: tuple[int, ...]  #: Numbers of the faces that its jaws touch.
+    #: `touched`, `hidden`: area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
     touched: float
     hidden: float
-    above: float
-    size: float
-    off: float
-    farthest: float
-    soft: str = ""
+    above: float  #: Height of what it rests on over the part's lowest point, mm.
+    size: float  #: Area of what could be gripped if jaws were as large, on the side where that is less, mm2.
+    off: float  #: How far its middle is from the middle of the part, seen from above, mm.
+    farthest: float  #: How far the part reaches from its middle across the jaws, mm.
+    soft: str = ""  #: Why it needs soft jaws or a nest; empty where plain jaws hold the part.
 
     @property
     def bored(self) -> bool:
