@@ -6,6 +6,7 @@ import json
 import lzma
 import os
 import re
+import tomllib
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -177,7 +178,10 @@ class Content:
     @classmethod
     def of(cls, path: str | os.PathLike[str]) -> Self:
         """Read the content of a regular file; `error` names it as no `noun` where it cannot be one."""
-        name = Path(path).name
+        try:
+            name = Path(path).name
+        except TypeError:
+            raise cls.error(f"a {cls.noun} is a file's name, not a value of type {type(path).__name__}") from None
         with translated(name, cls.error):
             try:
                 data = user_files.content(path, _FILE + 1)
@@ -245,6 +249,19 @@ class Content:
         else:
             why = "it holds nothing that is known"
         return self.error(f"looks like JSON but cannot be read ({why}); export it anew", file=self.name)
+
+    def toml(self) -> dict[str, Any]:
+        """The content as TOML. Raises `error`: it is none."""
+        try:
+            return tomllib.loads(self.text)
+        except RecursionError:
+            why = "it is nested too deeply"
+        except tomllib.TOMLDecodeError as error:
+            why = " ".join(str(error).split())
+        except ValueError:
+            # Python's own words about numbers of thousands of digits are for programmers.
+            why = "a number has too many digits"
+        raise self.error(f"is no TOML: {why}", file=self.name)
 
     @cached_property
     def members(self) -> dict[str, zipfile.ZipInfo] | None:

@@ -141,11 +141,7 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
             skip_bad: bool = False) -> Library:  # fmt: skip
     """The same, also where no tool can be used."""
     ask = _ask(assume_stickout, holder)
-    try:
-        file = Path(path)
-    except TypeError:
-        raise LibraryError(f"a tool library is a file's name, not a value of type {type(path).__name__}") from None
-    content = Content.of(file)
+    content = Content.of(path)
     form = recognised(
         content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
         archive="without tools.json, no Fusion tool library; give what is in it",
@@ -156,7 +152,7 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
     notes = list(raw.notes)
     if content.members is None and content.encoded[1] == "cp1252":
         notes.append("it is not in UTF-8: its text is read as Windows-1252")
-    library = Library(file.name, form.name, (*entries, *raw.faulty), tuple(raw.holders), tuple(notes))
+    library = Library(content.name, form.name, (*entries, *raw.faulty), tuple(raw.holders), tuple(notes))
     broken = [entry for entry in library.entries if entry.broken]
     if broken and not skip_bad:
         first, more = broken[0], len(broken) - 1

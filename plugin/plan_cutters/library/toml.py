@@ -2,7 +2,6 @@
 
 import math
 import re
-import tomllib
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
@@ -88,9 +87,11 @@ def read_toml(content: Content) -> LibraryContent:
     if len(_TABLE.findall(content.text)) > MOST_TOOLS:
         raise raw_tool.too_many(content.name)
     try:
-        document = tomllib.loads(content.text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
+        document = content.toml()
+    except LibraryError as error:
+        unquoted = "Expected newline" in error.cause or "Invalid value" in error.cause
+        hint = '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")' if unquoted else ""
+        raise LibraryError(f"{error.cause}{hint}", file=content.name) from None
     for key in document:
         if key not in ("unit", "tool", "holder"):
             raise LibraryError(f"{shown(key)} is unknown; a library has unit, [[tool]] and [[holder]]", file=content.name)
@@ -118,18 +119,6 @@ def read_toml(content: Content) -> LibraryContent:
         line = f" (line {lines[i]})" if len(lines) == len(tools) else ""
         library.tools.append(_listed(table, f"tool {i + 1}{line}", document.get("unit"), named))
     return library
-
-
-def _syntax(error: Exception) -> str:
-    """Why a text is no TOML, and what it mostly is."""
-    if isinstance(error, RecursionError):
-        return "it is nested too deeply"
-    if not isinstance(error, tomllib.TOMLDecodeError):
-        return "it has a number of thousands of digits"
-    why = " ".join(str(error).split())
-    if "Expected newline" in why or "Invalid value" in why:
-        why += '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")'
-    return why
 
 
 def _why(error: Exception) -> str:

@@ -100,9 +100,9 @@ def _axis(name: str, entry: dict[str, Any], kind: str, length: float) -> Axis:
     turned = chain.opposite(direction) if kind == "rotary" and carries == "part" else direction
     place = (point[0] * length, point[1] * length, point[2] * length)
     limits = chain.ranged(low, high, size)
-    if kind == "rotary":
-        return chain.axis(name, "rotary", carries, turned, limits=limits, point=place, rate=rate)
-    return chain.axis(name, "linear", carries, turned, limits=limits, rate=rate)
+    if kind == "linear":
+        return Axis(name, "linear", carries, turned, limits, rate=rate or None)
+    return Axis(name, "rotary", carries, turned, limits, place, rate or None)
 
 
 def _joint(entry: Any, name: str, kind: str) -> tuple[chain.Vector, chain.Vector]:

@@ -2,7 +2,6 @@
 
 import os
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -96,7 +95,7 @@ def process_of(value: Any) -> OwnProcess:
         return _made(dict(value), "")
     if not isinstance(value, str | os.PathLike):
         raise OptionError(f"process: give a file or the steps, not {shown(value)}")
-    read = Content.of(Path(value))
+    read = Content.of(value)
     if len(read.data) > _MOST:
         raise OptionError("is too large for a process that a person wrote", file=read.name)
     return _made(_document(read), str(read.path))
@@ -110,14 +109,7 @@ def _document(read: Content) -> Any:
         return read.json
     if read.head.startswith("<"):
         raise OptionError("is a web page or XML, no process file: give the process.toml of a plan", file=read.name)
-    try:
-        return tomllib.loads(read.text)
-    except RecursionError:
-        raise OptionError("is no TOML: it is nested too deeply", file=read.name) from None
-    except ValueError as error:
-        # Python's own words about numbers of thousands of digits are for programmers.
-        why = " ".join(str(error).split()) if isinstance(error, tomllib.TOMLDecodeError) else "a number has too many digits"
-        raise OptionError(f"is no TOML: {why}", file=read.name) from None
+    return read.toml()
 
 
 def _made(document: Any, file: str) -> OwnProcess:

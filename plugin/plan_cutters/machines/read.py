@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from plan_cutters.domain.machine import Machine, builtin_machines
-from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.errors import MachineError
 from plan_cutters.files.content import Foreign, Format, recognised
 from plan_cutters.machines import freecad, fusion, linuxcnc, toml
@@ -73,11 +72,7 @@ def read_machine(path: str | os.PathLike[str], added: str = "") -> Machine:
 
 def described(path: str | os.PathLike[str], added: str = "") -> tuple[Machine, str]:
     """The same, and the name of the format."""
-    try:
-        file = Path(path)
-    except TypeError:
-        raise MachineError(f"a machine file is a file's name, not a value of type {type(path).__name__}") from None
-    content = Content.of(file)
+    content = Content.of(path)
     form = recognised(
         content, FORMATS, FOREIGN[1:], first=FOREIGN[:1], xml=f"no machine file that is known; {_TOML}",
         json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",
@@ -129,12 +124,3 @@ def _there(text: str) -> bool:
 
 def _file_like(text: str) -> bool:
     return os.sep in text or Path(text).suffix.lower() in (".toml", ".json", ".fcm", ".mch", ".ini", ".xml", ".urdf")
-
-
-def process_requested(value: Any) -> OwnProcess | None:
-    """The planner's own process as it was requested: a file, a mapping, or None. What reads it is loaded where it is needed."""
-    if value is None:
-        return None
-    from plan_cutters.machines.process_file import process_of
-
-    return process_of(value)

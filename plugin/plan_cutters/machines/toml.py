@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import tomllib
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -100,12 +99,7 @@ def is_json(content: Content) -> bool:
 
 def read_toml(content: Content, added: Added) -> Machine:
     """Read it."""
-    try:
-        document = tomllib.loads(content.text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        why = "it is nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
-        raise MachineError(f"is no TOML: {why}", file=content.name) from None
-    return _machine(document, content, added)
+    return _machine(content.toml(), content, added)
 
 
 def read_json(content: Content, added: Added) -> Machine:

@@ -1,7 +1,6 @@
 """Setup files: where a part stands in a machine, as TOML that people write."""
 
 import os
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -68,7 +67,7 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: none.toml: cannot be read: No such file or directory
     """
-    read = Content.of(Path(path))
+    read = Content.of(path)
     try:
         return _placement(_table(read), read)
     except OptionError as error:
@@ -81,13 +80,9 @@ def _table(read: Content) -> SetupTable:
     if read.head.startswith("<"):
         raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
     try:
-        return SetupTable.model_validate(tomllib.loads(read.text))
+        return SetupTable.model_validate(read.toml())
     except ValidationError as error:
         raise OptionError(explained(error)) from None
-    except RecursionError:
-        raise OptionError("is no TOML: it is nested too deeply") from None
-    except ValueError as error:
-        raise OptionError(f"is no TOML: {' '.join(str(error).split())}") from None
 
 
 def _placement(table: SetupTable, read: Content) -> Placement:
