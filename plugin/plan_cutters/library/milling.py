@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
@@ -194,9 +194,9 @@ def _sort(tool: Listed) -> str:
     kind = " ".join((tool.sort or tool.kind).lower().split())
     if kind in MILLS:
         return MILLS[kind]
-    text = f'type "{tool.kind}"' if tool.kind else "its type is missing"
     if not tool.kind:
-        raise UnfitError(f"{text}: add one, as flat end mill")
+        raise UnfitError("its type is missing: add one, as flat end mill")
+    text = f'type "{tool.kind}"'
     if kind in _OUTLINE:
         raise UnfitError(f"{text}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)")
     if _OTHERS.search(kind):
@@ -383,12 +383,9 @@ def _with_length(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cut
     if bare.shape == "lollipop":
         plain = all(stage.radius == stage.upper_radius == bare.shank_radius for stage in above)
         return replace(bare, length=length, neck=None if plain else above)
-    if not above:
-        return replace(bare, length=length)
-    last = above[-1]
-    if last.slope:
-        return replace(bare, length=length, neck=above)
-    return replace(bare, length=length, neck=above[:-1], shank_radius=last.radius)
+    if not above or above[-1].slope:
+        return replace(bare, length=length, neck=above or bare.neck)
+    return replace(bare, length=length, neck=above[:-1], shank_radius=above[-1].radius)
 
 
 def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cutter:
@@ -396,7 +393,12 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     if holder == "none":
         return cutter
     plain = holder if tool.stated is not None else Holder(fewer(holder.stages)[0], holder.name)
-    fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
+    values = {word: getattr(cutter, word) for word in Dimensions.__slots__}
+
+    def fits(holder: Holder) -> bool:
+        # The same dimensions with a holder, not yet checked to be a cutter.
+        return pieces_at_most(Dimensions(**{**values, "holder": holder})) <= MOST_PIECES
+
     # A section has three pieces at least: no more than a third of them is worth a trial.
     most = min(len(plain.stages) - 1, MOST_PIECES // 3)
     while not fits(plain) and most > 0:
@@ -411,9 +413,3 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     except CutterError as error:
         unheld = isinstance(error, HolderFitError)
         raise UnfitError(cause_of(error), broken=tool.holder is not None, unheld=unheld) from None
-
-
-def _with(cutter: Cutter, holder: Holder) -> Dimensions:
-    """The same dimensions with a holder, not yet checked to be a cutter."""
-    values = {word: getattr(cutter, word) for word in Dimensions.__slots__}
-    return Dimensions(**{**values, "holder": holder})

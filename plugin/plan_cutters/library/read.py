@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -178,16 +177,13 @@ def nothing(library: Library) -> LibraryError:
         what = f"lists {held} holder{'s' if held > 1 else ''} and no tools; give it with --holder" if held else "lists no tools"
         return LibraryError(f"{library.format}: {what}", file=library.file)
     count = len(library.entries)
-    reasons = Counter(entry.unused or "" for entry in library.entries)
-    first: dict[str, Entry] = {}
+    reasons: dict[str, list[str]] = {}
     for entry in library.entries:
-        first.setdefault(entry.unused or "", entry)
-    causes = []
-    for why, often in list(reasons.items())[:_NAMED]:
-        causes.append(f"{first[why].label}{f' and {often - 1} more' if often > 1 else ''}: {why}")
-    if len(reasons) > _NAMED:
-        rest = count - sum(list(reasons.values())[:_NAMED])
-        causes.append(f"{rest} more for {len(reasons) - _NAMED} other reasons")
+        reasons.setdefault(entry.unused or "", []).append(entry.label)
+    named, others = list(reasons.items())[:_NAMED], list(reasons.values())[_NAMED:]
+    causes = [f"{who[0]}{f' and {len(who) - 1} more' if len(who) > 1 else ''}: {why}" for why, who in named]
+    if others:
+        causes.append(f"{sum(map(len, others))} more for {len(others)} other reasons")
     tools = "its only tool cannot" if count == 1 else f"none of its {count} tools can"
     return LibraryError(f"{library.format}: {tools} be used: {'; '.join(causes)}", file=library.file)
 

@@ -299,39 +299,31 @@ def _kind(cutter: Cutter) -> str:
 
 
 def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None, drill: Drill | None = None) -> list[str]:
-    entry: dict[str, Any] = {} if number is None else {"number": number}
-    if name:
-        entry["name"] = name
-    entry["type"] = _kind(cutter) if drill is None else drill.kind
-    if cutter.shape != "form":
-        entry["DC"] = 2.0 * cutter.radius
-    if drill is not None and drill.point is not None:
-        entry["SIG"] = stated_degrees(drill.point)
-    if drill is not None:
-        entry |= {"TP": drill.pitch} if drill.pitch is not None else {}
-        entry |= {"HAND": "L"} if drill.left else {}
-    if cutter.corner_radius and cutter.shape != "lollipop":
-        entry["RE"] = cutter.corner_radius
-    if cutter.taper:
-        entry["TA"] = stated_degrees(abs(cutter.taper))
-    if cutter.shape in ("barrel", "lens"):
-        entry |= {"PRFRAD": cutter.arc_radius, "profile_height": cutter.arc_height}
-    if cutter.outline:
-        entry["outline"] = [[height, radius] for radius, height in cutter.outline]
-    if cutter.shape not in ("lollipop", "form"):
-        entry["LCF"] = "rest" if cutter.flutes is None else cutter.flutes
-    entry["LPR"] = cutter.length
-    if cutter.necks:
-        entry["neck"] = _rows(cutter.necks)
-    if cutter.shape == "lollipop":
-        entry["DN"] = 2.0 * (cutter.shank_radius or 0.0)
-    else:
-        entry["DMM"] = "same" if cutter.shank_radius is None else 2.0 * cutter.shank_radius
+    lollipop, arc = cutter.shape == "lollipop", cutter.shape in ("barrel", "lens")
     called = {"name": cutter.holder.name} if cutter.holder and cutter.holder.name else {}
-    entry["holder"] = "none" if cutter.holder is None else {**called, "stages": _rows(cutter.holder.stages)}
-    stated = {"allowance": cutter.allowance, "clearance": cutter.clearance, "feed": None if feed is None else float(feed)}
-    entry |= {word: value for word, value in stated.items() if value is not None}
-    return ["", "[[tool]]", *(f"{word} = {toml_text(value)}" for word, value in entry.items())]
+    entry: dict[str, Any] = {
+        "number": number,
+        "name": name or None,
+        "type": _kind(cutter) if drill is None else drill.kind,
+        "DC": None if cutter.shape == "form" else 2.0 * cutter.radius,
+        "SIG": None if drill is None or drill.point is None else stated_degrees(drill.point),
+        "TP": None if drill is None else drill.pitch,
+        "HAND": "L" if drill is not None and drill.left else None,
+        "RE": None if lollipop else cutter.corner_radius or None,
+        "TA": stated_degrees(abs(cutter.taper)) if cutter.taper else None,
+        "PRFRAD": cutter.arc_radius if arc else None,
+        "profile_height": cutter.arc_height if arc else None,
+        "outline": [[height, radius] for radius, height in cutter.outline] or None,
+        "LCF": None if cutter.shape in ("lollipop", "form") else cutter.flutes or "rest",
+        "LPR": cutter.length,
+        "neck": _rows(cutter.necks) or None,
+        "DN" if lollipop else "DMM": "same" if cutter.shank_radius is None else 2.0 * cutter.shank_radius,
+        "holder": "none" if cutter.holder is None else {**called, "stages": _rows(cutter.holder.stages)},
+        "allowance": cutter.allowance,
+        "clearance": cutter.clearance,
+        "feed": None if feed is None else float(feed),
+    }
+    return ["", "[[tool]]", *(f"{word} = {toml_text(value)}" for word, value in entry.items() if value is not None)]
 
 
 def to_toml(cutters: Library | Iterable[Cutter]) -> str:

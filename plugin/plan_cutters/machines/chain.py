@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
 from plan_cutters.domain.checks import finite, shown
-from plan_cutters.domain.machine import Axis, Carried, Kind, Machine, X, Y, Z
+from plan_cutters.domain.machine import Axis, Carried, Machine, X, Y, Z
 from plan_cutters.errors import MachineError, PlanError
 from plan_cutters.files import content
 

@@ -59,7 +59,8 @@ class Surroundings(Record):
     certain: Obstacles
     #: Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
     bodies: tuple[Body, ...]
-    #: Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a `box`, or `none` where its place is not known.
+    #: Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a `box`,
+    #: or `none` where its place is not known.
     missing: tuple[tuple[int, str, StandIn], ...]
     on_bodies: tuple[int, ...] = ()  #: Faces of no body that lie on the faces of one, as construction geometry does.
     #: Faces of the file that the part does not have; those it has in another form are in `missing`.
