@@ -69,11 +69,11 @@ def junit(name: str, cases: Iterable[Case]) -> bytes:
     counts = Counter(case.outcome for case in cases)
     suite = ET.Element(
         "testsuite", name=written(name), tests=str(len(cases)), failures=str(counts["failure"]), errors=str(counts["error"]),
-        skipped=str(counts["skipped"]), time=_time(sum(_finite(case.seconds) for case in cases)),
+        skipped=str(counts["skipped"]), time=f"{sum(map(_seconds, cases)):.3f}",
     )  # fmt: skip
     for case in cases:
         row = ET.SubElement(
-            suite, "testcase", name=written(case.name), classname=written(case.classname), time=_time(_finite(case.seconds))
+            suite, "testcase", name=written(case.name), classname=written(case.classname), time=f"{_seconds(case):.3f}"
         )
         if case.outcome != "passed":
             more = {"message": line(case.message)}
@@ -84,12 +84,8 @@ def junit(name: str, cases: Iterable[Case]) -> bytes:
     return bytes(ET.tostring(suite, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def _finite(seconds: float) -> float:
-    return max(0.0, seconds) if math.isfinite(seconds) else 0.0
-
-
-def _time(seconds: float) -> str:
-    return f"{seconds:.3f}"
+def _seconds(case: Case) -> float:
+    return max(0.0, case.seconds) if math.isfinite(case.seconds) else 0.0
 
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

@@ -6,6 +6,7 @@ is smaller than what it encloses.
 
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import pairwise
@@ -388,24 +389,11 @@ def _joined_lines(top: list[tuple[Line, bool]], tolerance: float, *, keep: bool)
     while at < len(top):
         own = top[at][1] and keep
         allowed = _SAME if own else tolerance
-        few, many = 1, 1
         run = next((i for i in range(at, len(top)) if (top[i][1] and keep) != own), len(top)) - at
-        best = _enclosing([top[at][0]])[0]
-        while few < run:
-            # Twice as many while that goes well, then halves in between.
-            many = min(run, 2 * few)
-            line, off = _enclosing([each for each, _ in top[at : at + many]])
-            if off > allowed:
-                break
-            best, few = line, many
-        while many - few > 1:
-            middle = (few + many) // 2
-            line, off = _enclosing([each for each, _ in top[at : at + middle]])
-            if off > allowed:
-                many = middle
-            else:
-                best, few = line, middle
-        merged.append(best)
+        lines = [line for line, _ in top[at : at + run]]
+        # The line around more is nowhere nearer.
+        few = 1 + bisect_right(range(2, run + 1), allowed, key=lambda count: _enclosing(lines[:count])[1])
+        merged.append(_enclosing(lines[:few])[0])
         at += few
     return merged
 

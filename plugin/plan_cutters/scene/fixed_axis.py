@@ -29,17 +29,15 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def leaning(
-    rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context, *, held: bool = False
-) -> NDArray[np.bool_]:
-    """At which of some samples (m,) a cutter stands free with one axis (3,) and the contact at the sample itself.
+def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
+    """At which of some samples (m,) a cutter stands free with one axis (3,) that the machine holds, touching the sample itself.
 
-    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance. `held`: the machine holds the axis.
+    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance.
     """
     from plan_cutters.kernels.search.fixed_axis import LEANING
 
-    known = np.zeros(1, np.int64) if held else None
-    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=known)[0][0] == LEANING)
+    way, _, _ = _tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=np.zeros(1, np.int64))
+    return np.asarray(way[0] == LEANING)
 
 
 def served_by(

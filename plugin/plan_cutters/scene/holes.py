@@ -73,25 +73,22 @@ def groups(each: Collection[Hole]) -> list[int]:
     return result
 
 
-#: Lengths (mm) and angles (rad) of holes that differ by less are equal.
+#: Lengths, mm, of holes that differ by less are equal; and angles, rad.
 _LENGTH, _ANGLE = 0.01, np.deg2rad(0.1)
 
 
 def alike(one: Hole, other: Hole) -> bool:
     """Whether two holes are equal but for their place."""
+    sizes = [((each.diameter, each.depth), (each.cone,), each.countersink or (), each.counterbore or ()) for each in (one, other)]
+    within = (_LENGTH, _LENGTH), (_ANGLE,), (_LENGTH, _ANGLE), (_LENGTH, _LENGTH)
     return (
         one.bottom == other.bottom
         and one.through == other.through
-        and _equal((one.diameter, one.depth), (other.diameter, other.depth), (_LENGTH, _LENGTH))
-        and _equal((one.cone,), (other.cone,), (_ANGLE,))
-        and _equal(one.countersink, other.countersink, (_LENGTH, _ANGLE))
-        and _equal(one.counterbore, other.counterbore, (_LENGTH, _LENGTH))
+        and all(len(a) == len(b) and all(map(_near, a, b, most)) for a, b, most in zip(*sizes, within, strict=True))
         and bool(one.axis @ other.axis >= np.cos(_ANGLE))
         and all(of(one.sizes, one.diameter) == of(other.sizes, other.diameter) for of in (thread_in, tolerance_in))
     )
 
 
-def _equal(one: object, other: object, within: tuple[float, ...]) -> bool:
-    if not isinstance(one, tuple) or not isinstance(other, tuple):
-        return one is other
-    return all(a is b if a is None or b is None else abs(a - b) <= most for a, b, most in zip(one, other, within, strict=True))
+def _near(one: float | None, other: float | None, most: float) -> bool:
+    return one is other if one is None or other is None else abs(one - other) <= most

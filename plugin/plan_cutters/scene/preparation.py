@@ -113,13 +113,9 @@ class Sampled(NamedTuple):
 
 
 def sampled(
-    part: Part,
-    orientation: Orientation,
-    options: Options,
-    faces: Sequence[int],
-    cutters: Sequence[Cutter],
+    part: Part, orientation: Orientation, options: Options, faces: Sequence[int], cutters: Sequence[Cutter],
     at: Callable[[int], None] = lambda face: None,
-) -> Sampled:
+) -> Sampled:  # fmt: skip
     """Sample faces as the options ask; `at` as in `sample`."""
     spacing: Spacing = options.spacing
     coarser = 1.0

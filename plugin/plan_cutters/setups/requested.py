@@ -1,5 +1,6 @@
 """Setups as a caller gives them: as axes, with what more is known of each as placements, and the fixtures of the first."""
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,19 +24,15 @@ def is_auto(value: Any) -> bool:
     return isinstance(value, str) and value.strip().lower() == AUTO
 
 
-def same_fixture(one: Fixture, other: Fixture) -> bool:
-    """Whether two fixtures are one, whatever they are called."""
-    return replace(one, name="fixture") == replace(other, name="fixture")
-
-
 def joined_fixtures(fixtures: Sequence[Fixture], more: Sequence[Fixture]) -> tuple[Fixture, ...]:
     """Fixtures and those of others that are not among them, each with a name of its own."""
     return Fixture.each_of([*fixtures, *without(more, fixtures)])
 
 
 def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fixture, ...]:
-    """Those fixtures that are none of the others."""
-    return tuple(each for each in fixtures if not any(same_fixture(each, other) for other in others))
+    """Those fixtures that are none of the others, whatever they are called."""
+    known = [replace(each, name="fixture") for each in others]
+    return tuple(each for each in fixtures if replace(each, name="fixture") not in known)
 
 
 def setups_requested(
@@ -137,6 +134,6 @@ def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, fl
         return (x, y, z), None
     if not isinstance(placed, Placement):
         raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
-    if not placed.stands_as((x, y, z)):
+    if math.dist((x, y, z), placed.z) > 1e-12:
         raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
     return placed.z, placed
