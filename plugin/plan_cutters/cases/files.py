@@ -25,19 +25,14 @@ Outcome = Literal["passed", "skipped", "failure", "error"]
 
 
 class Case(NamedTuple):
-    """A test case says what was looked at, and what came of it.
+    """A test case says what was looked at, and what came of it."""
 
-    `classname` is the part's file, or the name of its plan; `name` what of it: a face and a cutter, say. `failure`: it is not
-    reached; `error`: that is not known; `skipped`: it does not count. `kind` is a code, of a reason or another word of the
-    plan; the message is one line, the details are more.
-    """
-
-    classname: str
-    name: str
-    outcome: Outcome = "passed"
-    kind: str = ""
-    message: str = ""
-    details: str = ""
+    classname: str  #: The part's file, or the name of its plan.
+    name: str  #: What of it was looked at: a face and a cutter, say.
+    outcome: Outcome = "passed"  #: `failure`: it is not reached; `error`: that is not known; `skipped`: it does not count.
+    kind: str = ""  #: A code, of a reason or another word of the plan.
+    message: str = ""  #: One line.
+    details: str = ""  #: More lines.
     seconds: float = 0.0
 
 

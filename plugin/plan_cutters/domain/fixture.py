@@ -117,17 +117,15 @@ class Fixture:
         return f"fixture {text!r}"
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Fixture):
-            return NotImplemented
-        same = self.source is other.source or (isinstance(self.source, str) and self.source == other.source)
-        return same and self._rest == other._rest
+        return isinstance(other, Fixture) and self._key == other._key
 
     def __hash__(self) -> int:
-        return hash((self.source if isinstance(self.source, str) else id(self.source), self._rest))
+        return hash(self._key)
 
     @property
-    def _rest(self) -> tuple[Any, ...]:
-        return self.placement, self.unit, self.name, self.chord_error
+    def _key(self) -> tuple[Any, ...]:
+        source = self.source if isinstance(self.source, str) else id(self.source)
+        return source, self.placement, self.unit, self.name, self.chord_error
 
     def _named(self) -> str:
         if not isinstance(self.source, str):

@@ -9,7 +9,8 @@ import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from difflib import get_close_matches
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -251,19 +252,14 @@ def chuck(text: str) -> Chuck | None:
     if taper is None:
         return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
     body = max(nose.diameter, taper.body)
-    sections = [(nose.diameter, nose.length), (body, high - least), (max(taper.flange, 0.0), taper.depth)]
+    sections = [(nose.diameter, nose.length), (body, high - least), (taper.flange, taper.depth)]
     return Chuck(f"{taper.name}-{short}x{high:g}", _merged(sections), nose.bore)
 
 
 def _merged(sections: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
     """Sections, a diameter and a length each, as radii and lengths: those of one diameter that follow each other in one."""
-    merged: list[tuple[float, float]] = []
-    for diameter, long in sections:
-        if merged and merged[-1][0] == diameter / 2:
-            merged[-1] = (diameter / 2, merged[-1][1] + long)
-        elif long > 0.0:
-            merged.append((diameter / 2, long))
-    return tuple(merged)
+    there = [(diameter / 2, long) for diameter, long in sections if long > 0.0]
+    return tuple((radius, sum(long for _, long in same)) for radius, same in groupby(there, itemgetter(0)))
 
 
 def _taper(plain: str) -> Taper | None:

@@ -123,16 +123,10 @@ _MOST_ABOVE = 6
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """These values are assumed for tools that do not state them.
+    """These values are assumed for tools that do not state them."""
 
-    stickout : float, optional
-        mm.
-    holder : Holder, str, optional
-        `none`: they are judged without one.
-    """
-
-    stickout: float | None = None
-    holder: Holder | Literal["none"] | None = None
+    stickout: float | None = None  #: mm.
+    holder: Holder | Literal["none"] | None = None  #: `none`: they are judged without one.
 
 
 def entry_of(tool: Listed, ask: Ask) -> Entry:

@@ -33,6 +33,10 @@ _TOML = "write the tools as TOML (docs/tool_libraries.md)"
 _FUSION = "export from a program that writes Fusion .tools, .json or CSV, or HSMWorks .hsmlib, or " + _TOML
 
 
+def _suffix(*words: str) -> Callable[[Content], bool]:
+    return lambda c: c.path.suffix.lower() in words
+
+
 def _sqlite(word: bytes, *suffixes: str) -> Callable[[Content], bool]:
     return lambda c: c.data.startswith(_SQLITE) and (word in c.data or c.path.suffix.lower() in suffixes)
 
@@ -59,36 +63,26 @@ def _table(content: Content) -> bool:
     return _TOOL.match(next(lines, "")) is not None
 
 
-def _estlcam(content: Content) -> bool:
-    return "estlcam" in content.head or (content.path.suffix.lower() == ".tl" and content.head.startswith("<"))
-
-
 FOREIGN = (
     Foreign("a LinuxCNC tool table", _table, f"it has diameters alone, no flute length, stick-out or holder; {_TOML}"),
     Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"), f"it has no shank, stick-out or holder; {_TOML}"),
     Foreign("a Mastercam tool database", _sqlite(b"TlTool", ".tooldb"), _FUSION),
     Foreign("an SQLite database", _sqlite(_SQLITE), _FUSION),
-    Foreign(
-        "a DeskProto cutter",
-        lambda c: "[deskproto cutter]" in c.text.lower(),
-        f"it has no holder, and one cutter a file; {_TOML}",
-    ),
+    Foreign("a DeskProto cutter", lambda c: "[deskproto cutter]" in c.text.lower(),
+            f"it has no holder, and one cutter a file; {_TOML}"),
     Foreign("a Kiri:Moto tool list", _kirimoto, f"it has no stick-out and no holder; {_TOML}"),
     Foreign("a GTC package (ISO 13399)", lambda c: _member("package_meta_data.xml")(c) or _member(".p21")(c), _FUSION),
     Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
     Foreign("a spreadsheet or office document", _member("[content_types].xml"), "save it as CSV in Fusion's columns"),
     Foreign("an ISO 10303-21 file (STEP or ISO 13399)", lambda c: c.head.startswith("iso-10303-21"), _FUSION),
-    Foreign("an Estlcam tool list", _estlcam, _TOML),
+    Foreign("an Estlcam tool list", lambda c: "estlcam" in c.head or (_suffix(".tl")(c) and c.head.startswith("<")), _TOML),
     Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
     Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
     Foreign("a Carbide 3D tool list", lambda c: c.head.startswith("number,vendor,model,"), f"it has no holder; {_TOML}"),
-    Foreign(
-        "a table (CSV) without Fusion's columns",
-        lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
-        f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}",
-    ),
-    Foreign("a CAM machine or setting of FreeCAD", lambda c: c.path.suffix.lower() == ".fcm", "give its tools (.fctl)"),
-)
+    Foreign("a table (CSV) without Fusion's columns", _suffix(".csv", ".tsv"),
+            f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}"),
+    Foreign("a CAM machine or setting of FreeCAD", _suffix(".fcm"), "give its tools (.fctl)"),
+)  # fmt: skip
 
 
 #: How many reasons an error names, of all.

@@ -1,7 +1,7 @@
 """Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from numbers import Integral
 from types import MappingProxyType
@@ -65,15 +65,11 @@ def choose(
 ) -> Chosen:
     """Target and ignored faces of a part.
 
-    Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all
-    setups.
-
-    `faces`: without it those picked on the host's object, else `DEFAULT`.
-    `ignored`: faces to leave out.
-    `ignore`: the words for these.
-    `placed`: its clamped faces stay targets: they are left for another setup, and named.
-    `others` (sequence of (Placement or None)): of other setups: only what is clamped in all of them, too, is left.
-    `repeated`: faces, ignored too, that lie where others lie: which face stands for each.
+    `faces`: without it those picked on the host's object, else `DEFAULT`. `ignored`: faces to leave out; `ignore`: the words for
+    these. `placed`: its clamped faces stay targets: they are left for another setup, and named. `others`: of other setups: only
+    what is clamped in all of them, too, is left. `repeated`: faces, ignored too, that lie where others lie: which face stands for
+    each. Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped
+    in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
@@ -151,16 +147,11 @@ def select_faces(
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
-    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
-
-    `faces`: all faces of the part.
     `text`: `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
-        `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
-        sculptured.
-    `tree`: components of the part.
-    `ignored`: faces that cannot be targets.
-    `blends`: numbers of the faces that are fillets and rounds.
-    `repeated`: faces that lie where others lie, and which one is taken for each.
+    `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
+    sculptured. `faces`, `tree`: all faces and components of the part. `ignored`: faces that cannot be targets. `blends`: numbers
+    of the faces that are fillets and rounds. `repeated`: faces that lie where others lie, and which one is taken for each.
+    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
     """
     out = frozenset(ignored)
     remaining = [f for f in faces if f.number not in out]
@@ -200,11 +191,7 @@ def grammar(text: str, option: str) -> None:
         except (re.error, RecursionError, OverflowError) as error:
             raise OptionError(f"{where}: not a regular expression ({error})") from None
     elif _LIST.fullmatch(plain):
-        for item, first, last, _ in _ends(plain):
-            if first > last:
-                raise OptionError(f"{where}: {_brief(item)} runs backwards")
-            if not first:
-                raise OptionError(f"{where}: there is no face F0; they are numbered from 1")
+        _numbered(plain, None, where)
     else:
         raise OptionError(f"{where}: give {_WORDS}")
 
@@ -239,27 +226,25 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     return chosen
 
 
-def _numbered(word: str, count: int, where: str) -> set[int]:
-    """Numbers in a list of numbers and ranges, none beyond `count`."""
+def _numbered(word: str, count: int | None, where: str) -> set[int]:
+    """Numbers in a list of numbers and ranges, none beyond `count`; without it they are looked at alone, whatever the part."""
     numbers: set[int] = set()
-    for item, first, last, ends in _ends(word):
-        for end, number in zip(ends, (first, last), strict=True):
-            if not 1 <= number <= count:
-                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
-        if first > last:
-            raise OptionError(f"{where}: {_brief(item)} runs backwards")
-        numbers.update(range(first, last + 1))
-    return numbers
-
-
-def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
-    """Each number and range of a list, where it begins and ends, as numbers and as written."""
     for item in word.split(","):
         if item.strip() in _KINDS:
             continue
         ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
         # No more digits than can count: neither a huge number nor a huge range is ever built.
-        yield item.strip(), int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS]), (ends[0], ends[-1])
+        first, last = int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS])
+        for end, number in ((ends[0], first), (ends[-1], last)) if count is not None else ():
+            if not 1 <= number <= count:
+                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
+        if first > last:
+            raise OptionError(f"{where}: {_brief(item.strip())} runs backwards")
+        if count is not None:
+            numbers.update(range(first, last + 1))
+        elif not first:
+            raise OptionError(f"{where}: there is no face F0; they are numbered from 1")
+    return numbers
 
 
 def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:

@@ -103,17 +103,12 @@ def joined(
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
-    Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has nothing
-    to grip.
-
-    `surroundings`: of the part alone.
-    `chord`: chord error to ask for, mm.
-    `cache`: fixtures that are known, by their sources: they are not read again.
-    `setup`: unit setup axis, across which tables lie.
-    `own`, `own_setup`: more fixtures, whose tables lie across another unit setup axis.
-    `hold`: places a vise or chuck for a unit setup axis. None: there is none to be placed.
-    `sign` (faces,) float: side of each face of the part that is out of the material. None: nobody asks which bodies a vise or
-        chuck holds.
+    `surroundings`: of the part alone. `chord`: chord error to ask for, mm. `cache`: fixtures that are known, by their sources:
+    they are not read again. `setup`: unit setup axis, across which tables lie. `own`, `own_setup`: more fixtures, whose tables
+    lie across another one. `hold`: places a vise or chuck for a unit setup axis. None: there is none to be placed. `sign`
+    (faces,) float: side of each face of the part that is out of the material. None: nobody asks which bodies a vise or chuck
+    holds. Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has
+    nothing to grip.
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:

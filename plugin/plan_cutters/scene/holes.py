@@ -25,7 +25,11 @@ def with_holes(ready: Prepared) -> Prepared:
     # What the planner's own steps name is milled by them.
     named = () if ready.options.process is None else ready.options.process.faces_named
     drills, least = made_of(ready.options.libraries), min((2.0 * each.radius for each in ready.cutters), default=np.inf)
-    narrow = [for_drills(hole, below, drills, least) for hole in every if hole.diameter < below and not _shallow(hole)]
+    narrow = [
+        for_drills(hole, below, drills, least)
+        for hole in every
+        if hole.diameter < below and (hole.bottom not in ("flat", "round") or hole.depth > _POINT * hole.diameter)
+    ]
     mine = tuple(hole for hole in narrow if targets.intersection(hole.faces) and not {*named}.intersection(hole.faces))
     samples = ready.samples
     within = np.isin(samples.face, [n for hole in mine for n in hole.faces]) & (samples.unjudged < 0) & ~ready.inside_bodies
@@ -39,10 +43,6 @@ def made_of(libraries: Collection[Library]) -> list[Drill]:
 
 #: Height of the point of a drill of 118 deg, of its diameter: over a floor it makes no wall of a hole that is less deep.
 _POINT = 0.5 / np.tan(np.deg2rad(59.0))
-
-
-def _shallow(hole: Hole) -> bool:
-    return hole.bottom in ("flat", "round") and hole.depth <= _POINT * hole.diameter
 
 
 def for_drills(hole: Hole, below: float, drills: Collection[Drill] = (), least: float = np.inf) -> Hole:

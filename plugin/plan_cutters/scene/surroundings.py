@@ -12,14 +12,14 @@ from cad_io.part.bodies import Body, bodies
 from cad_io.part.part import CROSSES, face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
+from cad_io.tessellate.proxies import StandIn, StandIns, boxed, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
-from plan_cutters.scene.triangles import boxed, thickened
+from plan_cutters.scene.triangles import thickened
 from plan_cutters.setups.clamping import Hold
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
