@@ -11,9 +11,9 @@ import numpy as np
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, rows_by_face
 from plan_cutters.domain.clamping import CHUCK, GRIP, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
-from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
     PARALLEL,
+    TALL,
     TOGETHER,
     Place,
     Refused,
