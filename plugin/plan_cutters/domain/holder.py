@@ -128,9 +128,8 @@ class Holder:
         """
         if not isinstance(spec, str):
             raise CutterError(f"{shown(spec)} is no holder: give a Holder or a text such as 'R15L30'")
-        made = chuck(spec.strip())
-        if made is not None:
-            return cls(tuple(Segment(radius, long) for radius, long in made.stages), made.name, made.bore)
+        if (made := chuck(spec.strip())) is not None:
+            return made
         segments = []
         for word in spec.strip().split("+"):
             match = _STAGE.fullmatch(word.strip())
@@ -209,26 +208,18 @@ _SPELLED = ((r"(?:hsk)?([ae])(32|40|50|63|100)", r"hsk\2\1"), (r"ct(40|50)", r"c
 _WORD = re.compile(rf"(?:(?P<taper>[a-z0-9]+?))?(?P<nose>er[0-9]+)(?:x(?P<length>{LENGTH}))?")
 
 
-class Chuck(NamedTuple):
-    """A holder of the tables: its name, its sections from the nose up (radius, length), and the largest shank; mm."""
-
-    name: str
-    stages: tuple[tuple[float, float], ...]
-    bore: float
-
-
 def words() -> list[str]:
     """Every word of the tables, noses alone first."""
     return [*NOSES, *(f"{taper}-{nose}" for taper in TAPERS for nose in NOSES)]
 
 
-def chuck(text: str) -> Chuck | None:
+def chuck(text: str) -> Holder | None:
     """The holder that a word names; None for a text that looks like no such word.
 
     Raises CutterError: it looks like one and is none, or is too short for its own flange and nut.
 
-    >>> chuck("ER16"), chuck("HSK-A63/ER32x100").name
-    (Chuck(name='ER16', stages=((16.0, 60.0),), bore=10.0), 'HSK63A-ER32x100')
+    >>> chuck("ER16").id, chuck("ER16").bore, chuck("HSK-A63/ER32x100").name
+    ('R16L60', 10.0, 'HSK63A-ER32x100')
     """
     plain = re.sub(r"[-_/\s]+", "", text.lower())
     if not re.match(r"er[0-9]|hsk|bt[0-9]|sk[0-9]|cat|ct[0-9]|iso[0-9]|dv[0-9]|[ae][0-9]{2,3}er", plain):
@@ -250,16 +241,13 @@ def chuck(text: str) -> Chuck | None:
             f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100"
         )
     if taper is None:
-        return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
-    body = max(nose.diameter, taper.body)
-    sections = [(nose.diameter, nose.length), (body, high - least), (taper.flange, taper.depth)]
-    return Chuck(f"{taper.name}-{short}x{high:g}", _merged(sections), nose.bore)
-
-
-def _merged(sections: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Sections, a diameter and a length each, as radii and lengths: those of one diameter that follow each other in one."""
-    there = [(diameter / 2, long) for diameter, long in sections if long > 0.0]
-    return tuple((radius, sum(long for _, long in same)) for radius, same in groupby(there, itemgetter(0)))
+        name = short if not match["length"] else f"{short}x{high:g}"
+        return Holder((Segment(nose.diameter / 2, high),), name, nose.bore)
+    sections = (nose.diameter, nose.length), (max(nose.diameter, taper.body), high - least), (taper.flange, taper.depth)
+    # Those of one diameter that follow each other are one.
+    runs = groupby(((diameter / 2, long) for diameter, long in sections if long > 0.0), itemgetter(0))
+    stages = tuple(Segment(radius, sum(long for _, long in run)) for radius, run in runs)
+    return Holder(stages, f"{taper.name}-{short}x{high:g}", nose.bore)
 
 
 def _taper(plain: str) -> Taper | None:

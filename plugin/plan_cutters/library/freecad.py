@@ -20,7 +20,7 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import lines_of
 from plan_cutters.library import raw_tool
-from plan_cutters.library.cutting import Preset, slack, take_feed
+from plan_cutters.library.cutting import slack, take_feed
 from plan_cutters.library.fusion import MOST_SECTIONS
 from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, LibraryContent, Listed
@@ -252,7 +252,7 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
     _set_in(tool, parameters, content.path.parent)
     attribute = entry.get("attribute")
     if isinstance(attribute, dict):
-        take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
+        take_feed(tool, [("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
 
 

@@ -11,7 +11,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import Element, lines_of
-from plan_cutters.library.cutting import Preset, take_feed
+from plan_cutters.library.cutting import take_feed
 from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import (
     MOST_TOOLS,
@@ -131,8 +131,8 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
             tool.holder = Holder(tuple(stages), name_of(row.get("holder_description")))
     except (FaultError, CutterError) as fault:
         tool.faults.append(str(fault))
-    preset = Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())
-    take_feed(tool, [preset], "tool_feedCutting", _number)
+    feed = row.get("tool_feedCutting", "").strip()
+    take_feed(tool, [(row.get("preset_name", ""), feed)], "tool_feedCutting", _number)
     return tool
 
 
@@ -227,13 +227,13 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
     return tool
 
 
-def _presets(item: dict[str, Any], word: str) -> list[Preset]:
+def _presets(item: dict[str, Any], word: str) -> list[tuple[Any, Any]]:
     """Its presets. They say nothing of its shape: where they cannot be read, there are none."""
     start = item.get("start-values")
     entries = start.get("presets") if isinstance(start, dict) else None
     if not isinstance(entries, list):
         return []
-    return [Preset(name_of(each.get("name")), each.get(word)) for each in entries if isinstance(each, dict)]
+    return [(each.get("name"), each.get(word)) for each in entries if isinstance(each, dict)]
 
 
 def _table(item: dict[str, Any], key: str) -> dict[str, Any]:
@@ -324,10 +324,10 @@ def _hsm_tool(element: Element, place: str) -> Listed:
     return tool
 
 
-def _hsm_presets(element: Element) -> list[Preset]:
+def _hsm_presets(element: Element) -> list[tuple[Any, Any]]:
     """Its presets; without one, what its `motion` states."""
     presets = [
-        Preset(preset.given.get("name", ""), parameter.given.get("value"))
+        (preset.given.get("name", ""), parameter.given.get("value"))
         for preset in element.below(("preset",))
         for parameter in preset.children
         if parameter.given.get("key") == "tool_feedCutting"
@@ -335,7 +335,7 @@ def _hsm_presets(element: Element) -> list[Preset]:
     motion = element.first("motion")
     if presets or motion is None or motion.given.get("feed-mode", "per-minute") != "per-minute":
         return presets
-    return [Preset("", motion.given.get("cutting-feedrate"))]
+    return [("", motion.given.get("cutting-feedrate"))]
 
 
 def _number(value: str, field: str) -> float:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
@@ -16,7 +16,7 @@ from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_a
 from plan_cutters.domain.thread import thread_of
 from plan_cutters.errors import CutterError, HolderFitError
 from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner_of, note_tapered, slack
-from plan_cutters.library.raw_tool import Entry, Listed, Stated
+from plan_cutters.library.raw_tool import Entry, Listed
 
 #: Digits of lengths and radii, mm; see `listed`.
 _DIGITS = 9
@@ -346,20 +346,20 @@ def _shank(tool: Listed, at: float, length: float) -> float:
     return 0.5 * tool.values["DMM"]
 
 
-def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
+def _as_stated(tool: Listed, stated: dict[str, Any], ask: Ask) -> Cutter:
     """A cutter of our own format."""
     radius, neck, shank = 0.5 * tool.values["DC"], tuple(tool.shaft), None
     if "TA" in tool.values and tool.kind in ("flat", "bull", "ball"):
         note_tapered(tool)
-    corner, top = corner_of(tool, radius, tool.kind), stated.attributes.get("flutes")
+    corner, top = corner_of(tool, radius, tool.kind), stated.get("flutes")
     if tool.kind == "lollipop":
         agree_ball(tool)
         corner, shank = radius, 0.5 * tool.values["DN"]
         top = flute_length(Cutter.lollipop(radius=radius, neck_radius=shank, length=10 * radius))
     elif tool.kind == "form":
-        top = stated.attributes["outline"][-1][1]
+        top = stated["outline"][-1][1]
     length, holder = _stickout(tool, ask), _holder(tool, ask)
-    if top is not None and not stated.straight:
+    if top is not None and not tool.straight:
         rest = length - top - math.fsum(stage.length for stage in neck)
         if rest <= SAME:
             # The neck of a lollipop goes on up to the nose, however much longer it is.
@@ -368,7 +368,7 @@ def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
             shank = _shank(tool, length - rest, length)
         else:
             neck = (*neck, Segment(_shank(tool, length - rest, length), rest))
-    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated.attributes)
+    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated)
     return _held(tool, made, holder)
 
 

@@ -184,15 +184,6 @@ def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
 
 
 @dataclass(slots=True)
-class Stated:
-    """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are."""
-
-    #: Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
-    attributes: dict[str, Any] = field(default_factory=dict)
-    straight: bool = False  #: No shank is requested: what is below it goes on.
-
-
-@dataclass(slots=True)
 class Listed:
     """A tool as a file lists it, filled by the readers of formats."""
 
@@ -219,7 +210,10 @@ class Listed:
     needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
     reverse: bool = False  #: A tap of a left-hand thread.
     flutes_everywhere: bool = False  #: Its drawing is as wide everywhere: what states no flutes has them up to its holder.
-    stated: Stated | None = None
+    #: Of our own format alone: attributes of the cutter, as in `Dimensions`, that no dimension here says. With them, lengths in
+    #: mm are taken to the last digit, and sections as they are.
+    stated: dict[str, Any] | None = None
+    straight: bool = False  #: No shank is requested: what is below it goes on.
     feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.
     preset: str = ""
 

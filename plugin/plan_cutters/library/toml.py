@@ -15,9 +15,9 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import toml_text
 from plan_cutters.library import raw_tool
-from plan_cutters.library.cutting import Preset, take_feed
+from plan_cutters.library.cutting import take_feed
 from plan_cutters.library.milling import cause_of
-from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, Library, LibraryContent, Listed, Stated
+from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, Library, LibraryContent, Listed
 
 _LOOKS = re.compile(r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE)
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
@@ -149,8 +149,7 @@ def _meant(word: Any) -> str:
 
 def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) -> Listed:
     """A table as a listed tool; what it needs depends on its type."""
-    stated = Stated()
-    tool = Listed(place, stated=stated)
+    tool = Listed(place, stated={})
     if isinstance(table, dict):
         tool.name = raw_tool.name_of(table.get("name"))
         if isinstance(table.get("number"), int):
@@ -181,14 +180,14 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
     limits = {word: length(value, word) for word in ("allowance", "clearance") if (value := getattr(model, word)) is not None}
-    stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
-    stated.attributes = {"shape": "end" if model.type in (*_ENDS, *KINDS) else model.type, "taper": _taper(model, tool),
-                         "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
-                         "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
+    tool.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
+    tool.stated = {"shape": "end" if model.type in (*_ENDS, *KINDS) else model.type, "taper": _taper(model, tool),
+                   "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
+                   "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
     needs = _needs(model, tool, flutes, outline)
     _neck(model, tool, length(model.LN, "LN"), needs)
     tool.needs = tuple(key for key, needed in needs.items() if needed)
-    take_feed(tool, [Preset("", model.feed)], "feed", lambda value, _: float(value))
+    take_feed(tool, [("", model.feed)], "feed", lambda value, _: float(value))
     return tool
 
 
@@ -217,10 +216,10 @@ def _taper(model: ToolTable, tool: Listed) -> float:
 
 def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) -> None:
     """Read the neck: sections, or DN and LN."""
-    lollipop, stated = model.type == "lollipop", tool.stated or Stated()
+    lollipop = model.type == "lollipop"
     if lollipop:
         # Its neck goes on up to the nose, unless a shank of DMM begins where LN ends.
-        stated.straight = stated.straight or bool(model.neck) or not reach
+        tool.straight = tool.straight or bool(model.neck) or not reach
     needs["DN"] = bool(reach and not model.neck and not lollipop)
     needs["LN"] = "DN" in tool.values and not (lollipop or reach or model.neck)
     if model.neck:
@@ -228,7 +227,7 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
         if twice:
             tool.faults.append(f"neck and {twice}: give one of them")
         tool.shaft = tool.tried(lambda: _stages(model.neck, tool.scale, "neck"), [])
-    elif reach and "DN" in tool.values and not (lollipop and stated.straight):
+    elif reach and "DN" in tool.values and not (lollipop and tool.straight):
         tool.shaft = [Segment(0.5 * tool.values["DN"], reach)]
 
 
