@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Self, TypeVar
+from typing import Any, Generic, TypeVar
 from xml.sax import ContentHandler, SAXException
 from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
@@ -163,34 +163,29 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Content:
-    """A file that is being recognised: its bytes, its text, its JSON, its XML, what a zip archive it is holds.
-
-    What it should be, and the error where it is not, are said by a class of each kind.
-    """
-
-    noun: ClassVar[str] = "file"
-    error: ClassVar[type[PlanError]] = PlanError
+    """A file that is being recognised: its bytes, its text, its JSON, its XML, what a zip archive it is holds."""
 
     path: Path
     data: bytes
-    notes: list[str] = field(default_factory=list)
+    noun: str  #: What it should be, and the error where it is not.
+    error: type[PlanError]
 
     @classmethod
-    def of(cls, path: str | os.PathLike[str]) -> Self:
+    def of(cls, path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> "Content":
         """Read the content of a regular file; `error` names it as no `noun` where it cannot be one."""
         try:
             name = Path(path).name
         except TypeError:
-            raise cls.error(f"a {cls.noun} is a file's name, not a value of type {type(path).__name__}") from None
-        with translated(name, cls.error):
+            raise error(f"a {noun} is a file's name, not a value of type {type(path).__name__}") from None
+        with translated(name, error):
             try:
                 data = user_files.content(path, _FILE + 1)
             except IrregularError as fault:
-                what = f"{cls.noun} in it" if os.path.isdir(path) else "file"
-                raise cls.error(f"{fault}; give a {what}", file=name) from None
+                what = f"{noun} in it" if os.path.isdir(path) else "file"
+                raise error(f"{fault}; give a {what}", file=name) from None
         if len(data) > _FILE:
-            raise cls.error(f"is larger than {_FILE >> 20} MB: no {cls.noun} is; split it", file=name)
-        return cls(Path(path), data)
+            raise error(f"is larger than {_FILE >> 20} MB: no {noun} is; split it", file=name)
+        return cls(Path(path), data, noun, error)
 
     @property
     def name(self) -> str:

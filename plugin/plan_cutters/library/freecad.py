@@ -125,7 +125,7 @@ def _bit(folder: Path, path: str) -> Content:
     if file is None:
         raise FaultError("path: its bit is neither in the folder of the library nor in Bit or ../Bit; put it there")
     try:
-        bit = Content.of(file)
+        bit = raw_tool.opened(file)
     except LibraryError as error:
         raise FaultError(f"{name} {error.cause}") from None
     if not is_bit(bit):
@@ -188,7 +188,7 @@ def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
         tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder {where}")
         return
     try:
-        content = Content.of(file)
+        content = raw_tool.opened(file)
         if not is_holder(content):
             raise FaultError("it is no FreeCAD holder")
         tool.holder = _holder(content.json, raw_tool.name_of(content.json.get("name")) or word)

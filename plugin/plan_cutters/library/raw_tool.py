@@ -1,17 +1,18 @@
 """A tool as its file has it, before it is a cutter, and the records that reading a library gives."""
 
+import os
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar, Literal, overload
+from typing import Any, Literal, overload
 
 from plan_cutters.domain.checks import finite, items, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drill import Drill
 from plan_cutters.domain.holder import Holder, Segment
-from plan_cutters.errors import CutterError, LibraryError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.files.content import Content
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,11 +299,9 @@ def sections(rows: Iterable[tuple[float, float, float]], what: str) -> list[Segm
 MOST_TOOLS = 50_000
 
 
-class Content(content.Content):
-    """A file that may be a tool library."""
-
-    noun: ClassVar[str] = "tool library"
-    error: ClassVar[type[PlanError]] = LibraryError
+def opened(path: str | os.PathLike[str]) -> Content:
+    """Read a file that may be a tool library."""
+    return Content.of(path, "tool library", LibraryError)
 
 
 def too_many(file: str) -> LibraryError:

@@ -12,7 +12,7 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import Foreign, Format, recognised
 from plan_cutters.library import freecad, fusion, toml
 from plan_cutters.library.milling import Ask, entry_of
-from plan_cutters.library.raw_tool import Content, Entry, Library, LibraryContent
+from plan_cutters.library.raw_tool import Content, Entry, Library, LibraryContent, opened
 from plan_cutters_base.user_files import is_there
 
 Reader = Callable[[Content], LibraryContent]
@@ -134,7 +134,7 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
             skip_bad: bool = False) -> Library:  # fmt: skip
     """The same, also where no tool can be used."""
     ask = _ask(assume_stickout, holder)
-    content = Content.of(path)
+    content = opened(path)
     form = recognised(
         content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
         archive="without tools.json, no Fusion tool library; give what is in it",

@@ -1,25 +1,24 @@
 """From the axes that a file lists to a machine: units, limits and signs."""
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 from plan_cutters.domain.checks import finite, shown
 from plan_cutters.domain.machine import Axis, Carried, Machine, X, Y, Z
-from plan_cutters.errors import MachineError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import MachineError
+from plan_cutters.files.content import Content
 
 #: How the two senses of an axis that carries the part are called after `FILE#`.
 TABLE, TOOL = "table", "tool-relative"
 
 
-class Content(content.Content):
-    """A file that may be a machine file."""
-
-    noun: ClassVar[str] = "machine file"
-    error: ClassVar[type[PlanError]] = MachineError
+def opened(path: str | os.PathLike[str]) -> Content:
+    """Read a file that may be a machine file."""
+    return Content.of(path, "machine file", MachineError)
 
 
 class Added(NamedTuple):

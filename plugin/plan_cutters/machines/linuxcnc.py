@@ -45,7 +45,7 @@ class Ini:
                 if any(_same(path, each) for each in above):
                     raise MachineError(f"{content.name}, line {number}: it includes itself by {path.name}")
                 try:
-                    self._take(Content.of(path), (*above, path))
+                    self._take(chain.opened(path), (*above, path))
                 except MachineError as error:
                     what = f"{path.name}, which line {number} includes"
                     raise MachineError(error.cause, file=error.file if error.file != path.name else what) from None
@@ -119,7 +119,7 @@ class Hal:
         if not name or name.upper().startswith("LIB:"):
             return
         try:
-            text = Content.of(self.ini.path.parent / name).text
+            text = chain.opened(self.ini.path.parent / name).text
         except MachineError:
             self.missing.append(Path(name).name)
             return

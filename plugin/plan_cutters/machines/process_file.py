@@ -4,15 +4,15 @@ import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.own_process import LEFT, Forbidden, OwnProcess, OwnStep, unit_axis
-from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import OptionError
+from plan_cutters.files.content import Content
 from plan_cutters.machines.toml import Number, Vector, explained
 
 #: Bytes and steps that no process written by hand has.
@@ -21,13 +21,6 @@ _MOST, _STEPS = 1 << 20, 500
 _Angle = Annotated[Number, Field(ge=-36000.0, le=36000.0)]
 _Cutter = Annotated[str, Field(min_length=1, max_length=300, description="id, the word by which it is given, or its name")]
 _Faces = Annotated[list[str], Field(min_length=1, description="as F12")]
-
-
-class Content(content.Content):
-    """A file that may hold a process."""
-
-    noun: ClassVar[str] = "process file"
-    error: ClassVar[type[PlanError]] = OptionError
 
 
 def _named(value: Any) -> Any:
@@ -95,7 +88,7 @@ def process_of(value: Any) -> OwnProcess:
         return _made(dict(value), "")
     if not isinstance(value, str | os.PathLike):
         raise OptionError(f"process: give a file or the steps, not {shown(value)}")
-    read = Content.of(value)
+    read = Content.of(value, "process file", OptionError)
     if len(read.data) > _MOST:
         raise OptionError("is too large for a process that a person wrote", file=read.name)
     return _made(_document(read), str(read.path))

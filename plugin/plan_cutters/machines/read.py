@@ -10,7 +10,7 @@ from plan_cutters.domain.machine import Machine, builtin_machines
 from plan_cutters.errors import MachineError
 from plan_cutters.files.content import Foreign, Format, recognised
 from plan_cutters.machines import freecad, fusion, linuxcnc, toml
-from plan_cutters.machines.chain import Added, Content
+from plan_cutters.machines.chain import Added, Content, opened
 
 Reader = Callable[[Content, Added], Machine]
 FORMATS: tuple[Format[Reader], ...] = (
@@ -72,7 +72,7 @@ def read_machine(path: str | os.PathLike[str], added: str = "") -> Machine:
 
 def described(path: str | os.PathLike[str], added: str = "") -> tuple[Machine, str]:
     """The same, and the name of the format."""
-    content = Content.of(path)
+    content = opened(path)
     form = recognised(
         content, FORMATS, FOREIGN[1:], first=FOREIGN[:1], xml=f"no machine file that is known; {_TOML}",
         json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",

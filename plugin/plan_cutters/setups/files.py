@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 from pydantic_core import PydanticCustomError
@@ -12,17 +12,10 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along
-from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import OptionError
+from plan_cutters.files.content import Content
 from plan_cutters.machines.chain import scaled
 from plan_cutters.machines.toml import Vector, explained
-
-
-class Content(content.Content):
-    """A file that may be a setup file."""
-
-    noun: ClassVar[str] = "setup file"
-    error: ClassVar[type[PlanError]] = OptionError
 
 
 def _direction(value: Any) -> Any:
@@ -67,7 +60,7 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: none.toml: cannot be read: No such file or directory
     """
-    read = Content.of(path)
+    read = Content.of(path, "setup file", OptionError)
     try:
         return _placement(_table(read), read)
     except OptionError as error:
