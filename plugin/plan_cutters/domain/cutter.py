@@ -201,7 +201,6 @@ class Cutter(Dimensions):
 
 
 def _radius(radius: float | None, diameter: float | None, of: str = "") -> float:
-    """A radius, mm, from itself or from the diameter."""
     if diameter is None:
         if radius is None:
             raise CutterError(f"a cutter needs its {of}radius or its {of}diameter")

@@ -257,7 +257,6 @@ def _taper(plain: str) -> Taper | None:
 
 
 def _near(plain: str) -> str:
-    """Suggest holders whose names are like an unknown one, or list the known ones."""
     known = words()
     by = {word.replace("-", ""): word for word in known}
     near = [by[each] for each in get_close_matches(plain.partition("x")[0], by, 3, 0.5)]
@@ -353,7 +352,6 @@ def _at(lines: Floats, height: Floats) -> Floats:
 
 
 def _crossings(lines: Floats) -> Floats:
-    """Heights at which two lines cross."""
     if len(lines) < 2:
         return np.zeros(0)
     slope = (lines[:, 2] - lines[:, 0]) / (lines[:, 3] - lines[:, 1])

@@ -55,8 +55,6 @@ class Element:
 
 
 class _Tree(ContentHandler):
-    """Elements as they come."""
-
     _locator: Locator
 
     def __init__(self, file: str, error: type[PlanError]) -> None:

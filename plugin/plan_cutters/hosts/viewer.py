@@ -85,7 +85,6 @@ class _Names(set[str]):
 
 
 def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Floats, Floats]:
-    """Tip and axis of a tool."""
     samples = result.samples
     if isinstance(at, WitnessEntry):
         if at.best_posture is None:
@@ -129,7 +128,6 @@ def _row(value: Any, count: int) -> int:
 
 
 def _tool(cutter: Cutter, tip: Floats, axis: Floats, names: _Names) -> Iterator[Shown]:
-    """Each part of a tool assembly as a solid."""
     across = np.eye(3)[int(np.abs(axis).argmin())]
     x = np.cross(across, axis)
     x /= np.linalg.norm(x)

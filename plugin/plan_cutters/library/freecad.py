@@ -324,7 +324,6 @@ def _stem(shape: Any) -> str:
 
 
 def _plain(shape: str) -> str:
-    """One name for each shape that has had two."""
     name = shape.lower().replace("-", "")
     return "bullnose" if name == "torus" else name
 
@@ -377,7 +376,6 @@ def _feed(value: Any, field: str) -> float:
 
 
 def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
-    """mm of a text with a unit."""
     if not isinstance(value, str):
         number, unit = raw_tool.number_of(value, field), ""
     else:

@@ -182,7 +182,6 @@ def cause_of(error: CutterError) -> str:
 
 
 def _sort(tool: Listed) -> str:
-    """Which mill it is."""
     if tool.stated is not None:
         return tool.kind
     kind = " ".join((tool.sort or tool.kind).lower().split())
@@ -223,7 +222,6 @@ def _cutter(tool: Listed, sort: str, ask: Ask) -> Cutter:
 
 
 def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
-    """All that is missing, at once."""
     lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in needs if key not in tool.values]
     if "LPR" not in tool.values and ask.stickout is None:
         lacks.append(
@@ -329,7 +327,6 @@ def _wide(bare: Cutter, diameter: float) -> float:
 
 
 def _widest(tool: Listed, bare: Cutter) -> str:
-    """What `_wide` is the radius of."""
     wide = 2.0 * _wide(bare, tool.values["DC"])
     if wide <= tool.values["DC"] + slack(wide):
         return tool.word("DC")
@@ -347,7 +344,6 @@ def _shank(tool: Listed, at: float, length: float) -> float:
 
 
 def _as_stated(tool: Listed, stated: dict[str, Any], ask: Ask) -> Cutter:
-    """A cutter of our own format."""
     radius, neck, shank = 0.5 * tool.values["DC"], tuple(tool.shaft), None
     if "TA" in tool.values and tool.kind in ("flat", "bull", "ball"):
         note_tapered(tool)

@@ -122,7 +122,6 @@ def read_toml(content: Content) -> LibraryContent:
 
 
 def _why(error: Exception) -> str:
-    """One line of what is wrong with a table."""
     if not isinstance(error, ValidationError):
         return cause_of(error) if isinstance(error, CutterError) else str(error)
     # Of kinds that were tried in turn, the one that was understood the farthest.
@@ -215,7 +214,6 @@ def _taper(model: ToolTable, tool: Listed) -> float:
 
 
 def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) -> None:
-    """Read the neck: sections, or DN and LN."""
     lollipop = model.type == "lollipop"
     if lollipop:
         # Its neck goes on up to the nose, unless a shank of DMM begins where LN ends.
@@ -232,7 +230,6 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
 
 
 def _degrees(value: Any, field: str) -> float:
-    """A half angle: degrees, or a text with its unit."""
     if not isinstance(value, str):
         return raw_tool.number_of(value, field)
     degrees = math.degrees(stated_radians(value))
@@ -242,7 +239,6 @@ def _degrees(value: Any, field: str) -> float:
 
 
 def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder | Literal["none"] | None:
-    """The holder that a tool names or describes."""
     if value is None:
         return None
     if isinstance(value, list):

@@ -155,7 +155,6 @@ def summary(machine: Machine) -> list[str]:
 
 
 def _turning(machine: Machine) -> str:
-    """Name the rotary axes that turn the tool."""
     kinematics = machine.kinematics(_IDENTITY)
     return ", ".join(machine.rotary[k].name for k in kinematics.turning()[1]) if kinematics is not None else ""
 

@@ -108,8 +108,6 @@ def _only(frames: list[Frame], kind: str) -> Frame:
 
 @dataclass(slots=True)
 class _Reading:
-    """The axes of one file being read."""
-
     length: float
     angle: float
     left: bool
@@ -130,7 +128,6 @@ class _Reading:
         return axes
 
     def axis(self, part: dict[str, Any], name: str, kind: str, carries: Carried) -> Axis:
-        """One of them."""
         for key in part:
             if key not in _KEYS and any(word in key.lower() for word in _SUSPECT):
                 raise MachineError(
@@ -156,7 +153,6 @@ class _Reading:
         return axis
 
     def check(self, part: dict[str, Any], axis: Axis) -> None:
-        """Whether the sense of a rotary axis is known, or does not matter."""
         control = self.control.get(str(part.get("id")), {})
         turned, zero = control.get("reversed") is True, control.get("zero_position_offset", 0)
         if chain.even(axis.limits):
@@ -178,7 +174,6 @@ class _Reading:
             )
 
     def limits(self, part: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
-        """Limits of a part, under any of the names that they may have."""
         limits = []
         for key in _RANGES:
             result = part.get(key)

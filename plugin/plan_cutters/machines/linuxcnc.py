@@ -207,8 +207,6 @@ def read_ini(content: Content, added: Added) -> Machine:
 
 
 class _Reading:
-    """One configuration being read."""
-
     def __init__(self, ini: Ini, added: Added) -> None:
         self.ini, self.added = ini, added
         self.notes: list[str] = []
@@ -238,7 +236,6 @@ class _Reading:
         return name, {key.lower(): value for key, value in words_by_key.items()}
 
     def coordinates(self) -> str:
-        """Letters of the axes that the machine has."""
         text = self.ini.one("TRAJ", "COORDINATES") or self.given.get("coordinates")
         if text is None:
             raise MachineError("it names no axes ([TRAJ]COORDINATES)")
@@ -248,7 +245,6 @@ class _Reading:
         return letters
 
     def letters_of_joints(self) -> str:
-        """The letter of each joint."""
         text = self.given.get("coordinates", "").upper() or self._letters_unsaid()
         for i, letter in enumerate(text):
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
@@ -275,7 +271,6 @@ class _Reading:
         return text
 
     def machine(self) -> Machine:
-        """All of it."""
         name = self.ini.one("EMC", "MACHINE") or self.ini.path.stem
         extra = [letter for letter in self.letters if letter in "UVW"]
         if extra:
@@ -330,7 +325,6 @@ class _Reading:
         return arranged(rotary, self.added, self.notes, TRIVIAL)
 
     def known(self) -> list[Axis]:
-        """Kinematics of which the formulas are known."""
         self.added.refuse(self.ini.path.name, order=True, sign=True)
         kins = KINS[self.name]
         listed = [letter for letter in self.letters if letter in "ABC"]

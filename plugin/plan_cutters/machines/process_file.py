@@ -141,7 +141,6 @@ def _step(number: int, table: StepTable, file: str) -> OwnStep:
 
 
 def _numbers(faces: "list[str] | str", file: str, where: str) -> tuple[int, ...]:
-    """Face numbers of words such as F12."""
     numbers = []
     for word in faces:
         if not re.fullmatch(r"F[1-9][0-9]{0,8}", word):

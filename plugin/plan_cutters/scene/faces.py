@@ -266,14 +266,12 @@ def _brief(text: str) -> str:
 
 
 def _words(part: "Part", value: Any, option: str) -> list[str]:
-    """Each of several choices as text."""
     if isinstance(value, list | tuple) and all(isinstance(each, str) for each in value):
         return list(value)
     return [] if value is None else [_word(part, value, option)]
 
 
 def _word(part: "Part", value: Any, option: str) -> str:
-    """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
     from cad_io.read.objects import face_numbers
     from cad_io.read.step_text import typed

@@ -82,7 +82,6 @@ def _tested(
     about = max(FLAT, conditions.accuracy), conditions.tolerance if every else -1.0, every
 
     def tested(piece: NDArray[np.int64]) -> int:
-        """Test a piece of a table of axes by blocks of rows."""
         which, block = np.divmod(piece, blocks)
         boxes = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):

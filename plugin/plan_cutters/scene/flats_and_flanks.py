@@ -153,7 +153,6 @@ def _on_flank(
     away = np.array([0.0, _AWAY * conditions.obstacles.triangles.chord_error, conditions.tolerance])[: 3 if whole else 2]
 
     def tried(tool: Tool, solids: Any, within: float, some: Rows, hint: NDArray[np.int64]) -> NDArray[np.int8]:
-        """How each of some of the rows stands."""
         state = np.full(len(rows), NONE, np.int8)
 
         def piece(which: Rows) -> int:
@@ -196,7 +195,6 @@ def _on_flank(
 
 
 def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Context, verdicts: VerdictBuffer) -> None:
-    """Write postures with axes and tilt directions (m, 3)."""
     normal = contacts.normal[rows]
     verdicts.verdict[rows], verdicts.reason[rows] = ACCESSIBLE, NO_REASON
     verdicts.axis[rows], verdicts.tilt_direction[rows], verdicts.tilt[rows] = axis, f, _between(axis, normal)

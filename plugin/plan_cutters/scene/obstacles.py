@@ -320,7 +320,6 @@ class Obstacles(Record):
 
     @cached_property
     def _rows(self) -> dict[int, NDArray[np.int64]]:
-        """Rows of `triangles` of each face."""
         return rows_by_face(self.triangles.face)
 
     def rows_of(self, faces: Iterable[int]) -> NDArray[np.int64]:

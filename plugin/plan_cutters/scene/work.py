@@ -103,7 +103,6 @@ def in_chunks(
 
 
 def _total(results: Iterable[int | None], count: int, progress: Progress | None) -> int:
-    """Add up what pieces return, as they come."""
     total = 0
     for done, result in enumerate(results, 1):
         total += result or 0
