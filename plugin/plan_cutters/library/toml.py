@@ -130,20 +130,14 @@ def _why(error: Exception) -> str:
     words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
     field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
-        return f"{shown(first['loc'][-1])} is unknown here{_meant(first['loc'][-1])}"
+        unknown, keys = first["loc"][-1], (*ToolTable.model_fields, *HolderTable.model_fields)
+        meant = next((f"; {key} is written so" for key in keys if key.lower() == str(unknown).lower()), "")
+        return f"{shown(unknown)} is unknown here{meant}"
     if not first["loc"]:
         return f"it is {shown(first['input'])}, not a table"
     if first["type"] == "missing":
         return f"{first['loc'][-1]} is missing"
     return f"{field} is {shown(first['input'])}: {first['msg'][:1].lower()}{first['msg'][1:]}"
-
-
-def _meant(word: Any) -> str:
-    """The key that is written almost so."""
-    for key in (*ToolTable.model_fields, *HolderTable.model_fields):
-        if key.lower() == str(word).lower():
-            return f"; {key} is written so"
-    return ""
 
 
 def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) -> Listed:

@@ -157,16 +157,8 @@ class Scene(Record):
     def doubles(self) -> tuple[int, ...]:
         """Ignored faces, ascending, in whose place other faces stand: without them the part is the same."""
         out = set(self.ignored)
-        return tuple(
-            sorted(
-                n
-                for each in repeats(self.part)
-                if any(out.isdisjoint(faces) for faces in each.faces)
-                for faces in each.faces
-                for n in faces
-                if n in out
-            )
-        )
+        doubled = (each.faces for each in repeats(self.part) if any(out.isdisjoint(faces) for faces in each.faces))
+        return tuple(sorted(out.intersection(n for each in doubled for faces in each for n in faces)))
 
     def turned_faces(self) -> tuple[str, ...]:
         """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""
