@@ -218,9 +218,8 @@ class Fixture:
         """Read a text as on the command line. Whether a file exists is seen when it is read.
 
         What follows the last `@` is the placement, unless it holds a slash or ends as a file that is known; a word of letters
-        after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit.
-
-        Raises FixtureError.
+        after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit. Raises
+        FixtureError.
         """
         if not isinstance(text, str):
             raise FixtureError(f"{shown(text)} is no fixture: give a Fixture or a text {_FORM}")

@@ -283,14 +283,10 @@ def enclosing_segments(
 ) -> tuple[tuple[Segment, ...], float]:
     """Stages that enclose lines of a half-plane.
 
-    `line` (n, 4) float: radius and height of both ends, the lower one first, mm.
-    `exact` (n,) bool: lines that become stages as they are where they are the outermost ones.
-    `foot`: height from which on stages are wanted, mm.
-    `tolerance`: how much farther from the axis than the others stages may be, mm; twice as much, and so on, until there are few
-      enough.
-    `most`: stages, at most.
-    Returns `stages`: from the lowest up. `tolerance`: the one that was kept.
-    Raises CutterError: the lines span no height, or leave a gap.
+    `line` (n, 4) float: radius and height of both ends, the lower one first, mm. `exact` (n,) bool: lines that become stages as
+    they are where they are the outermost ones. `foot`: height from which on stages are wanted, mm. `tolerance`: how much farther
+    from the axis than the others stages may be, mm; twice as much, and so on, until there are no more than `most`. Returns the
+    stages, from the lowest up, and the tolerance that was kept. Raises CutterError: the lines span no height, or leave a gap.
     """
     low, high = foot, float(line[:, 3].max())
     if high - low <= _SAME:

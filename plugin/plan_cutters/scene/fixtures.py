@@ -138,8 +138,7 @@ def joined(
         # Of stock that is gripped all bodies are made.
         parts = () if sign is None or blank is not None else material_bodies(surroundings.bodies, sign)
         if clamping is not None and len(parts) > 1:
-            known = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
-            in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, known.triangles, parts))
+            in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, surroundings.certain.triangles, parts))
         placed_fixtures.append(in_place)
         bodies.append(body)
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
@@ -256,11 +255,10 @@ def stock_body(
     """The stock about a part in the frame of a setup. Raises ReadError, OptionError: a file's is none, or does not enclose it."""
     stock, frame = fixture.stock, frame_of(np.asarray(setup, float))
     assert stock is not None, "only stock is made of its word"
-    part = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
-    blank = None
+    corners, blank = surroundings.certain.triangles.vertex.reshape(-1, 3), None
     if stock.file:
         blank = _body(Fixture(stock.file), chord, cache).possible.triangles.vertex.reshape(-1, 3) @ frame.T
-    return StockBody.about(stock, part.triangles.vertex.reshape(-1, 3) @ frame.T, blank)
+    return StockBody.about(stock, corners @ frame.T, blank)
 
 
 def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:

@@ -18,8 +18,7 @@ def with_holes(ready: Prepared) -> Prepared:
     if not below:
         return ready
     scene, surroundings = ready.scene, ready.conditions.surroundings
-    own = surroundings.alone or surroundings
-    near = own.certain if len(own.certain.triangles) else own.possible
+    near = (surroundings.alone or surroundings).certain
     key = scene.part.key, scene.orientation.sign, scene.ignored, near.triangles.vertex
     every = ready.cache.cached("holes", key, lambda: holes(scene.part, scene.orientation, near.triangles, scene.ignored))
     # What the planner's own steps name is milled by them.

@@ -294,8 +294,7 @@ class Scene(Record):
         if key not in memory.holds:
             alone = memory.alone
             assert alone is not None, "a part is tessellated before it is clamped"
-            obstacles = alone.certain if len(alone.certain.triangles) else alone.possible
-            triangles, tolerance = obstacles.triangles, alone.tolerance(self.asked)
+            triangles, tolerance = alone.certain.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
             of_part = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
             piece = Workpiece.of(
@@ -306,7 +305,7 @@ class Scene(Record):
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
                 # What the full search would find as well, for most places where the part is in the way, at once.
-                return entered(obstacles, placed, clamping, tolerance + triangles.chord_error)
+                return entered(alone.certain, placed, clamping, tolerance + triangles.chord_error)
 
             def searched(placed: Fixture, clamping: Clamping) -> bool:
                 return overlaps(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance)
