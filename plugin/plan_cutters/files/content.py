@@ -293,29 +293,17 @@ class Content:
 
 def lines_of(text: str, key: str) -> list[int]:
     """Lines, from 1, in which the items of the list `key` of a JSON object begin; none where that cannot be told."""
-    decode = json.JSONDecoder()
-    blank = re.compile(r"[ \t\n\r,]*")
-    at = re.compile(r"\s*\{").match(text)
-    place, lines = at.end() if at else len(text), []
-    line, seen = 1, 0
+    decode, between, lines = json.JSONDecoder(), re.compile(r"[ \t\n\r,]*"), list[int]()
+    begins = re.search(rf'"{key}"\s*:\s*\[', text)
+    place, line, seen = begins.end() if begins else len(text), 1, 0
     try:
-        while place < len(text):
-            place = blank.match(text, place).end()  # type: ignore[union-attr]
-            name, place = decode.raw_decode(text, place)
-            place = re.compile(r"\s*:\s*").match(text, place).end()  # type: ignore[union-attr]
-            if name != key:
-                _, place = decode.raw_decode(text, place)
-                continue
-            place = blank.match(text, place + 1).end()  # type: ignore[union-attr]
-            while text[place] != "]":
-                line, seen = line + text.count("\n", seen, place), place
-                lines.append(line)
-                _, place = decode.raw_decode(text, place)
-                place = blank.match(text, place).end()  # type: ignore[union-attr]
-            return lines
-    except (ValueError, AttributeError, IndexError, RecursionError):
-        pass
-    return []
+        while text[place := between.match(text, place).end()] != "]":  # type: ignore[union-attr]
+            line, seen = line + text.count("\n", seen, place), place
+            lines.append(line)
+            _, place = decode.raw_decode(text, place)
+    except (ValueError, IndexError, RecursionError):
+        return []
+    return lines
 
 
 #: A function of a content, and of what a room adds to it.

@@ -210,17 +210,19 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
         whole = Obstacles(_triangles(source.vertex, fixture.chord_error), shells.weight)
         return _Body(whole, whole, (), tuple(notes))
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
-    if key not in cache and source is not None:
-        cache[key] = _of_part(source, fixture, chord)
-    elif key not in cache and fixture.kind == "box":
-        cache[key] = _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
-    elif key not in cache and (clamping := fixture.clamping) is not None:
-        cache[key] = _solid(*triangles_of(clamping, chord))
-    elif key not in cache:
-        radius, height = fixture.sizes
-        sides = sides_of(radius, chord)
-        # The chord of a side is this far from the arc.
-        cache[key] = _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
+    if key not in cache:
+        if source is not None:
+            made = _of_part(source, fixture, chord)
+        elif fixture.kind == "box":
+            made = _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
+        elif (clamping := fixture.clamping) is not None:
+            made = _solid(*triangles_of(clamping, chord))
+        else:
+            radius, height = fixture.sizes
+            sides = sides_of(radius, chord)
+            # The chord of a side is this far from the arc.
+            made = _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
+        cache[key] = made
     body: _Body = cache[key]
     return body
 
