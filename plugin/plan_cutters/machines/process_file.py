@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.own_process import LEFT, Forbidden, OwnProcess, OwnStep, unit_axis
 from plan_cutters.errors import OptionError
 from plan_cutters.files.content import Content
-from plan_cutters.machines.toml import Number, Vector, explained
+from plan_cutters.machines.toml import Number, Table, Vector, explained
 
 #: Bytes and steps that no process written by hand has.
 _MOST, _STEPS = 1 << 20, 500
@@ -30,11 +30,7 @@ def _named(value: Any) -> Any:
     return value
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class StepTable(_Table):
+class StepTable(Table):
     """A step: one cutter in one setup, at one fixed orientation or simultaneous, on some faces."""
 
     setup: Annotated[int, Field(ge=1, le=1000, strict=True, description="from 1")] = 1
@@ -56,14 +52,14 @@ class StepTable(_Table):
     )
 
 
-class ForbidTable(_Table):
+class ForbidTable(Table):
     """A cutter that is not to be planned on some faces."""
 
     cutter: _Cutter
     faces: _Faces
 
 
-class ProcessTable(_Table):
+class ProcessTable(Table):
     """Steps that are judged as they stand, in their order, and what is done with what they leave."""
 
     format: Literal["plan-cutters-process"] = "plan-cutters-process"

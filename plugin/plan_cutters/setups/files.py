@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from cad_io.units import UNITS
@@ -15,7 +15,7 @@ from plan_cutters.domain.posture import along
 from plan_cutters.errors import OptionError
 from plan_cutters.files.content import Content
 from plan_cutters.machines.chain import scaled
-from plan_cutters.machines.toml import Vector, explained
+from plan_cutters.machines.toml import Table, Vector, explained
 
 
 def _direction(value: Any) -> Any:
@@ -31,18 +31,16 @@ def _direction(value: Any) -> Any:
 _Direction = Annotated[Vector, BeforeValidator(_direction)]
 
 
-class SetupTable(BaseModel):
+class SetupTable(Table):
     """A setup; `axis` is another name of `z`, `origin` is in `unit`, the other words are those of the command line."""
-
-    model_config = ConfigDict(extra="forbid")
 
     unit: str
     axis: _Direction | None = None
     z: _Direction | None = None
     x: _Direction | None = None
     origin: Vector | None = None
-    clamped: str | list[str] = []
-    fixtures: list[str] = []
+    clamped: str | list[str] = Field(default=[])
+    fixtures: list[str] = Field(default=[])
 
 
 def read_setup(path: str | os.PathLike[str]) -> Placement:

@@ -9,7 +9,7 @@ from typing import Any
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import along, plane_of, unit
+from plan_cutters.domain.posture import Direction, along, plane_of, unit
 from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import OptionError
 
@@ -17,6 +17,8 @@ from plan_cutters.errors import OptionError
 AUTO = "auto"
 #: Setups that are proposed together, at most.
 MOST_PROPOSED = 3
+#: A setup axis, and what more is known of the setup.
+_Stand = tuple[Direction, Placement | None]
 
 
 def is_auto(value: Any) -> bool:
@@ -74,22 +76,22 @@ def setups_requested(
             "fixtures, or name the setup"
         )
     shared = without(common, () if placed is None else placed.fixtures)
+    stands = [_setup(each, place) for each, place in zip(listed, places, strict=True)]
     if listed and gripping:
         # What grips the part is placed for each setup: it is that one's own.
         shared = without(shared, gripping)
         placed = _holding((axis, placed), gripping)
-        places = [_holding(_setup(each, place), gripping) for each, place in zip(listed, places, strict=True)]
-        listed = [each.z for each in places]
-    setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
+        stands = [(each.z, each) for each in (_holding(stand, gripping) for stand in stands)]
+    setups = [_own(stand, shared) for stand in stands]
     known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
             "other_setups": tuple(each for each, _ in setups),
             "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
 
 
-def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:
+def _holding(stand: _Stand, gripping: Sequence[Fixture]) -> Placement:
     """A setup that is held by some fixtures of its own, too."""
-    axis, place = setup
+    axis, place = stand
     if place is None:
         return Placement(axis, fixtures=gripping)
     return replace(place, fixtures=joined_fixtures(place.fixtures, _to_place(gripping, place)))
@@ -101,19 +103,17 @@ def _to_place(gripping: Sequence[Fixture], place: Placement | None) -> Sequence[
     return [each for each in gripping if each.kind not in there]
 
 
-def _own(
-    placed: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
-) -> tuple[tuple[float, float, float], Placement | None]:
+def _own(stand: _Stand, shared: Sequence[Fixture]) -> _Stand:
     """A setup without those fixtures that stand in all setups; a table that lies across its own axis is another one."""
-    axis, place = placed
+    axis, place = stand
     if place is None:
-        return placed
+        return stand
     own = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
     return axis, replace(place, fixtures=own)
 
 
-def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
-    """A setup axis, and what more is known of the setup.
+def _setup(value: Any, placed: Placement | None) -> _Stand:
+    """A setup as a caller gives it.
 
     A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
     """
