@@ -329,6 +329,17 @@ class Foreign:
     instead: str
 
 
+def rooted(*names: str) -> Callable[[Content], bool]:
+    """Recognise XML or HTML by names of which one begins an element near its start."""
+    pattern = re.compile(rf"<\s*(?:\w+:)?(?:{'|'.join(names)})\b", re.IGNORECASE)
+    return lambda c: c.head.startswith("<") and pattern.search(c.head) is not None
+
+
+def called(*suffixes: str) -> Callable[[Content], bool]:
+    """Recognise a file by the suffix of its name."""
+    return lambda c: c.path.suffix.lower() in suffixes
+
+
 def recognised(
     content: Content, formats: Sequence[Format[Reader]], foreign: Iterable[Foreign], *, xml: str, json: str,
     archive: str = "", first: Iterable[Foreign] = (),

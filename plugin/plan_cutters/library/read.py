@@ -9,7 +9,7 @@ from typing import Any, Literal
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, positive, words
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.files.content import Foreign, Format, recognised
+from plan_cutters.files.content import Foreign, Format, called, recognised, rooted
 from plan_cutters.library import freecad, fusion, toml
 from plan_cutters.library.milling import Ask, entry_of
 from plan_cutters.library.raw_tool import Content, Entry, Library, LibraryContent, opened
@@ -33,10 +33,6 @@ _TOML = "write the tools as TOML (docs/tool_libraries.md)"
 _FUSION = "export from a program that writes Fusion .tools, .json or CSV, or HSMWorks .hsmlib, or " + _TOML
 
 
-def _suffix(*words: str) -> Callable[[Content], bool]:
-    return lambda c: c.path.suffix.lower() in words
-
-
 def _sqlite(word: bytes, *suffixes: str) -> Callable[[Content], bool]:
     return lambda c: c.data.startswith(_SQLITE) and (word in c.data or c.path.suffix.lower() in suffixes)
 
@@ -51,10 +47,6 @@ def _kirimoto(content: Content) -> bool:
 
 def _member(word: str) -> Callable[[Content], bool]:
     return lambda c: c.members is not None and any(name.lower().endswith(word) for name in c.members)
-
-
-def _page(content: Content) -> bool:
-    return content.head.startswith("<") and re.search(r"<(!doctype\s+html|html|head|body)\b", content.head) is not None
 
 
 def _table(content: Content) -> bool:
@@ -75,13 +67,14 @@ FOREIGN = (
     Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
     Foreign("a spreadsheet or office document", _member("[content_types].xml"), "save it as CSV in Fusion's columns"),
     Foreign("an ISO 10303-21 file (STEP or ISO 13399)", lambda c: c.head.startswith("iso-10303-21"), _FUSION),
-    Foreign("an Estlcam tool list", lambda c: "estlcam" in c.head or (_suffix(".tl")(c) and c.head.startswith("<")), _TOML),
-    Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
-    Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
+    Foreign("an Estlcam tool list", lambda c: "estlcam" in c.head or (called(".tl")(c) and c.head.startswith("<")), _TOML),
+    Foreign("MTConnect assets", rooted("MTConnectAssets"), _FUSION),
+    Foreign("a web page (HTML)", rooted("!doctype html", "html", "head", "body"),
+            "download the library itself: perhaps a log-in stands before it"),
     Foreign("a Carbide 3D tool list", lambda c: c.head.startswith("number,vendor,model,"), f"it has no holder; {_TOML}"),
-    Foreign("a table (CSV) without Fusion's columns", _suffix(".csv", ".tsv"),
+    Foreign("a table (CSV) without Fusion's columns", called(".csv", ".tsv"),
             f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}"),
-    Foreign("a CAM machine or setting of FreeCAD", _suffix(".fcm"), "give its tools (.fctl)"),
+    Foreign("a CAM machine or setting of FreeCAD", called(".fcm"), "give its tools (.fctl)"),
 )  # fmt: skip
 
 

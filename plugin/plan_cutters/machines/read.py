@@ -8,7 +8,7 @@ from typing import Any
 
 from plan_cutters.domain.machine import Machine, builtin_machines
 from plan_cutters.errors import MachineError
-from plan_cutters.files.content import Foreign, Format, recognised
+from plan_cutters.files.content import Foreign, Format, called, recognised, rooted
 from plan_cutters.machines import freecad, fusion, linuxcnc, toml
 from plan_cutters.machines.chain import Added, Content, opened
 
@@ -27,25 +27,16 @@ FORMATS: tuple[Format[Reader], ...] = (
 _TOML = "write the machine as TOML (docs/machines.md)"
 
 
-def _root(*names: str) -> Callable[[Content], bool]:
-    pattern = re.compile(rf"<\s*(?:\w+:)?(?:{'|'.join(names)})\b", re.IGNORECASE)
-    return lambda c: c.head.startswith("<") and pattern.search(c.head) is not None
-
-
-def _suffix(*words: str) -> Callable[[Content], bool]:
-    return lambda c: c.path.suffix.lower() in words
-
-
 FOREIGN = (
-    Foreign("a web page (HTML)", _root("!doctype html", "html", "head", "body"),
+    Foreign("a web page (HTML)", rooted("!doctype html", "html", "head", "body"),
             "download the machine itself: perhaps a log-in stands before it"),
-    Foreign("a robot (URDF)", _root("robot"), f"no machine tool is known in it; {_TOML}"),
-    Foreign("a robot (SDF)", _root("sdf"), f"no machine tool is known in it; {_TOML}"),
-    Foreign("MTConnect data", _root("MTConnectDevices", "MTConnectStreams", "MTConnectAssets", "MTConnectError"),
+    Foreign("a robot (URDF)", rooted("robot"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("a robot (SDF)", rooted("sdf"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("MTConnect data", rooted("MTConnectDevices", "MTConnectStreams", "MTConnectAssets", "MTConnectError"),
             f"it does not say how the axes stand on each other; {_TOML}, ten lines do"),
-    Foreign("a PowerMill machine", _suffix(".mtd"), _TOML),
-    Foreign("a LinuxCNC HAL file", _suffix(".hal", ".tcl"), "give the .ini that names it"),
-    Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
+    Foreign("a PowerMill machine", called(".mtd"), _TOML),
+    Foreign("a LinuxCNC HAL file", called(".hal", ".tcl"), "give the .ini that names it"),
+    Foreign("a LinuxCNC tool table", called(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
     Foreign("a Fusion tool library", lambda c: isinstance(c.json, dict) and isinstance(c.json.get("data"), list),
             "give it with --cutters"),
     Foreign("an ISO 10303-21 file (STEP)", lambda c: c.head.startswith("iso-10303-21"), _TOML),
