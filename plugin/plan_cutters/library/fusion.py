@@ -101,7 +101,7 @@ def read_csv(content: Content) -> LibraryContent:
     return library
 
 
-def _take_all(tool: Listed, form: int, values: Mapping[str | None, Any], number: Any = number_of) -> None:
+def _take_all(tool: Listed, form: int, values: Mapping[Any, Any], number: Any = number_of) -> None:
     """Take all dimensions by the words of a form: 0 CSV, 1 JSON, 2 XML."""
     for key, *words in (*_FIELDS, *(_OF_DRILLS if kind_of_drill(tool) is not None else ())):
         if words[form]:

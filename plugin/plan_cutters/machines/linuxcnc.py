@@ -8,7 +8,7 @@ Only kinematics whose sources were read are taken (src/emc/kinematics of LinuxCN
 import math
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.machine import Axis, Carried, Machine
@@ -307,9 +307,9 @@ class _Reading:
     def ends(self, section: str, size: float) -> tuple[float, float] | None:
         return chain.ranged(self.ini.number(section, "MIN_LIMIT"), self.ini.number(section, "MAX_LIMIT"), size)
 
-    def speeds(self, letter: str) -> dict[str, float | None]:
+    def speeds(self, letter: str) -> dict[str, Any]:
         """The largest speed and acceleration of an axis: the least of what it and its joints say."""
-        (size, sections), result = self.of_joints(letter), dict[str, float | None]()
+        (size, sections), result = self.of_joints(letter), dict[str, Any]()
         for name, word in (("rate", "MAX_VELOCITY"), ("acceleration", "MAX_ACCELERATION")):
             stated = [self.ini.number(section, word) for section in (f"AXIS_{letter}", *sections)]
             result[name] = min((chain.scaled(each, size) for each in stated if each is not None and each > 0.0), default=None)
