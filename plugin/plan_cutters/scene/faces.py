@@ -235,8 +235,8 @@ def _numbered(word: str, count: int | None, where: str) -> set[int]:
         ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
         # No more digits than can count: neither a huge number nor a huge range is ever built.
         first, last = int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS])
-        for end, number in ((ends[0], first), (ends[-1], last)) if count is not None else ():
-            if not 1 <= number <= count:
+        for end, number in ((ends[0], first), (ends[-1], last)):
+            if count is not None and not 1 <= number <= count:
                 raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
         if first > last:
             raise OptionError(f"{where}: {_brief(item.strip())} runs backwards")
