@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,7 @@ class Obstacles(Record):
     near: Floats | None = None
     #: So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
     first: int | None = None
+    _own: ClassVar["Obstacles | None"] = None  #: Those that share the tree of their triangles.
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
@@ -76,14 +77,8 @@ class Obstacles(Record):
         """The same, which take the tree of their first triangles from others: those alone, or with more of their own."""
         own = own._own or own
         if own.first is None and self.first == len(own.triangles):
-            self.__dict__["_shared"] = own
+            self.__dict__["_own"] = own
         return self
-
-    @property
-    def _own(self) -> "Obstacles | None":
-        """Those that share the tree of their triangles."""
-        shared: Obstacles | None = self.__dict__.get("_shared")
-        return shared
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
