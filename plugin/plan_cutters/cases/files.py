@@ -171,14 +171,11 @@ class CaseFiles:
         """Write each file whole or not at all, or a PlanError; its folder is made. `name`: of the command."""
         cases = list(cases)
         for path, document in ((self.junit, junit), (self.sarif, sarif)):
-            if path is not None:
-                _write(Path(path), document(name, cases))
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-    with whole(path, PlanError) as temporary:
-        temporary.write_bytes(data)
+            if path is None:
+                continue
+            try:
+                Path(path).parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise PlanError(f"cannot be written: {error.strerror}", file=path) from None
+            with whole(Path(path), PlanError) as temporary:
+                temporary.write_bytes(document(name, cases))

@@ -192,13 +192,10 @@ _PIVOT = {"maxkins": 0.666, "5axiskins": 250.0}
 
 
 def is_ini(content: Content) -> bool:
-    """Sections of a LinuxCNC configuration."""
-    return content.head[:1] not in ("{", "<") and len(set(_LOOKS.findall(content.text))) >= 2
-
-
-def includes(content: Content) -> bool:
-    """A short configuration that includes the rest."""
-    return "#INCLUDE" in content.text and _LOOKS.search(content.text) is not None
+    """Sections of a LinuxCNC configuration, or one of them and what includes the rest."""
+    sections = set(_LOOKS.findall(content.text))
+    whole = len(sections) >= 2 and content.head[:1] not in ("{", "<")
+    return whole or (bool(sections) and "#INCLUDE" in content.text)
 
 
 def read_ini(content: Content, added: Added) -> Machine:

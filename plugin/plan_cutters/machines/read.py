@@ -19,7 +19,6 @@ FORMATS: tuple[Format[Reader], ...] = (
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
     Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
-    Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
     # By its name alone, so that it is said where it is no TOML or what is missing.
     Format("plan-cutters TOML", (".toml",), toml.is_named, toml.read_toml),
 )
