@@ -117,7 +117,9 @@ def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int,
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
     """The choice of faces to leave out as words."""
-    return tuple(_words(part, ignore, "--ignore"))
+    if isinstance(ignore, list | tuple) and all(isinstance(each, str) for each in ignore):
+        return tuple(ignore)
+    return () if ignore is None else (_word(part, ignore, "--ignore"),)
 
 
 def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
@@ -263,12 +265,6 @@ def _brief(text: str) -> str:
     """A text as errors show it: one line, not too long."""
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
-
-
-def _words(part: "Part", value: Any, option: str) -> list[str]:
-    if isinstance(value, list | tuple) and all(isinstance(each, str) for each in value):
-        return list(value)
-    return [] if value is None else [_word(part, value, option)]
 
 
 def _word(part: "Part", value: Any, option: str) -> str:
