@@ -96,7 +96,11 @@ class Fixture:
         if self.source is None or isinstance(self.source, bool | int | float) or self.source == "":
             raise FixtureError(f"{shown(self.source)} is no fixture: give {_FORM}, or a body")
         placement = numbers(self.placement, "a fixture's placement")
-        object.__setattr__(self, "placement", _placed(placement, str(self)))
+        if len(placement) not in (3, 6):
+            raise FixtureError(f"{self}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(placement)} numbers")
+        if not all(abs(each) <= _FARTHEST for each in placement):
+            raise FixtureError(f"{self}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
+        object.__setattr__(self, "placement", (*placement, 0.0, 0.0, 0.0)[:6])
         if self.unit is not None and self.unit not in UNITS:
             raise FixtureError(f"{self}: no length unit is called {shown(self.unit)}; give one of {', '.join(UNITS)}")
         label = name(self.name, "a fixture's name", error=FixtureError)
@@ -284,14 +288,6 @@ def _numbers(text: str, what: str, form: str) -> tuple[float, ...]:
     if not all(math.isfinite(each) for each in sizes):
         raise FixtureError(f"{what} {text!r} must be finite numbers {form}")
     return sizes
-
-
-def _placed(numbers: tuple[float, ...], which: str) -> tuple[float, ...]:
-    if len(numbers) not in (3, 6):
-        raise FixtureError(f"{which}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(numbers)} numbers")
-    if not all(abs(each) <= _FARTHEST for each in numbers):
-        raise FixtureError(f"{which}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
-    return tuple(float(each) for each in (*numbers, 0.0, 0.0, 0.0)[:6])
 
 
 def _cosine_and_sine(angle: float) -> tuple[float, float]:

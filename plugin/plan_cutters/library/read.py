@@ -126,7 +126,12 @@ def read_library(
 def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = None, holder: Holder | str | None = None,
             skip_bad: bool = False) -> Library:  # fmt: skip
     """The same, also where no tool can be used."""
-    ask = _ask(assume_stickout, holder)
+    choice: Holder | Literal["none"] | None = None
+    if isinstance(holder, str) and holder.strip().lower() == "none":
+        choice = "none"
+    elif holder is not None:
+        choice = Holder.of(holder)
+    ask = Ask(None if assume_stickout is None else positive(assume_stickout, "assumed stick-out"), choice)
     content = opened(path)
     form = recognised(
         content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
@@ -146,15 +151,6 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
         use = f"; --skip-bad uses the other {len(library)} cutters" if library else "; no other tool can be used"
         raise LibraryError(f"{library.format}, {first.label}: {first.unused}{others}{use}", file=library.file)
     return library
-
-
-def _ask(stickout: float | None, holder: Holder | str | None) -> Ask:
-    choice: Holder | Literal["none"] | None
-    if isinstance(holder, str) and holder.strip().lower() == "none":
-        choice = "none"
-    else:
-        choice = None if holder is None else Holder.of(holder)
-    return Ask(None if stickout is None else positive(stickout, "assumed stick-out"), choice)
 
 
 def nothing(library: Library) -> LibraryError:

@@ -87,18 +87,13 @@ def process_of(value: Any) -> OwnProcess:
     read = Content.of(value, "process file", OptionError)
     if len(read.data) > _MOST:
         raise OptionError("is too large for a process that a person wrote", file=read.name)
-    return _made(_document(read), str(read.path))
-
-
-def _document(read: Content) -> Any:
-    """The content of a file: JSON if it is called so or looks so, else TOML."""
     if read.path.suffix.lower() == ".json" or read.head.startswith("{"):
         if read.json is None:
             raise read.broken_json()
-        return read.json
+        return _made(read.json, str(read.path))
     if read.head.startswith("<"):
         raise OptionError("is a web page or XML, no process file: give the process.toml of a plan", file=read.name)
-    return read.toml()
+    return _made(read.toml(), str(read.path))
 
 
 def _made(document: Any, file: str) -> OwnProcess:

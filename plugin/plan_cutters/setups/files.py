@@ -58,20 +58,15 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
     """
     read = Content.of(path, "setup file", OptionError)
     try:
-        return _placement(_table(read), read)
+        if read.head.startswith("<"):
+            raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
+        return _placement(SetupTable.model_validate(read.toml()), read)
+    except ValidationError as error:
+        raise OptionError(explained(error), file=read.name) from None
     except OptionError as error:
         if error.file == read.name:
             raise
         raise type(error)(error.cause, file=read.name) from None
-
-
-def _table(read: Content) -> SetupTable:
-    if read.head.startswith("<"):
-        raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
-    try:
-        return SetupTable.model_validate(read.toml())
-    except ValidationError as error:
-        raise OptionError(explained(error)) from None
 
 
 def _placement(table: SetupTable, read: Content) -> Placement:
