@@ -34,6 +34,11 @@ _SIDES = np.array([(1, 3, 0), (4, 1, 0), (0, 3, 2), (2, 4, 0), (1, 7, 3), (5, 1,
                    (5, 7, 1), (3, 7, 2), (6, 4, 2), (2, 7, 6), (6, 5, 4), (7, 5, 6)])  # fmt: skip
 
 
+def boxed(low: Floats, high: Floats) -> Floats:
+    """Triangles (12, 3, 3) of the box between two corners (3,), counter-clockwise from outside."""
+    return np.asarray((low + _CORNERS * (high - low))[_SIDES])
+
+
 StandIn = Literal["triangles", "box", "edges", "none"]
 
 
@@ -70,7 +75,7 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
             how[number], own[number] = "triangles", triangles
         elif np.isfinite(box := face_box(part.face(number), tight=False)).all():
             how[number], sign = "box", 1
-            made = (box[0] + _CORNERS * (box[1] - box[0]))[_SIDES]
+            made = boxed(*box)
         else:
             how[number] = "none"
         vertex.append(made)
@@ -79,7 +84,7 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
     for known in (each.box for each in part.lost if each.face is None and each.box is not None):
         # A face of the file that is not here at all: it stood at least about there.
         low, high = (np.array(corner) for corner in known)
-        vertex.append((low + _CORNERS * (high - low))[_SIDES])
+        vertex.append(boxed(low, high))
         owner.append(np.zeros(len(_SIDES), np.int32))
         weight.append(np.ones(len(_SIDES), np.int8))
     if own:

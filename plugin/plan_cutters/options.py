@@ -91,9 +91,9 @@ def _own_process(value: Any) -> OwnProcess | None:
     if value is None:
         return None
     # Readers of machine files load pydantic.
-    from plan_cutters.machines.read import process_requested
+    from plan_cutters.machines.process_file import process_of
 
-    return process_requested(value)
+    return process_of(value)
 
 
 def _with_attributes(made: type[_Class]) -> type[_Class]:

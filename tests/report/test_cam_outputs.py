@@ -13,7 +13,7 @@ import trimesh
 
 import plan_cutters.report.arrays as to_csv
 from plan_cutters import Cutter, plan, posture_map
-from plan_cutters.domain.assembly import MOST, grown, working_height
+from plan_cutters.domain.assembly import MOST, grown
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics
@@ -49,7 +49,7 @@ def to_band(q, w, low, high, lower, upper):
 
 def bands(cutter):
     """What of an end mill counts, as truncated cones."""
-    low, top = working_height(cutter), flute_length(cutter)
+    low, top = 2.0 * cutter.radius, flute_length(cutter)
     flutes = [(low, top, cutter.radius, cutter.radius)] if top > low and not cutter.stages else []
     return flutes + [(at, at + s.length, s.radius, s.upper_radius) for _, at, s in cutter.stages]
 

@@ -23,24 +23,11 @@ from cad_io.part.bodies import bodies
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.kernels.material import far_inside, in_known_ball, keep_ball, outside, way_out, windings
-from plan_cutters.scene.inside_material import SortedPoints
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import surroundings
 from tests.support import shapes
 from tests.support.bodies import SMALL, judged, reached, stacked, within
 from tests.support.cad_parts import ball, box, compound, cut
-
-
-@settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), n=st.integers(0, 30))
-def test_points_in_a_box_are_those_that_every_axis_says(seed, n):
-    """On the border, too, and twice at one place; rows that are left out are not looked at."""
-    rng = np.random.default_rng(seed)
-    point = rng.integers(-3, 4, (n, 3)).astype(float) * rng.uniform(0.1, 5.0, 3)
-    rows = np.flatnonzero(rng.uniform(size=n) < 0.8)
-    low, high = np.sort(rng.integers(-3, 4, (2, 3)), axis=0).astype(float)
-    inside = ((point >= low) & (point <= high)).all(axis=1)
-    assert SortedPoints.of(point, rows).within(low, high).tolist() == [row for row in rows.tolist() if inside[row]]
 
 
 @settings(max_examples=60, deadline=None)

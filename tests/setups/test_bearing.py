@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.setups import solids
-from plan_cutters.setups.bearing import Bearing, enclosed
-from plan_cutters.setups.workpiece import Workpiece
+from plan_cutters.setups.workpiece import Bearing, Workpiece, enclosed
 
 UP = (0.0, 0.0, 1.0)
 SIZE = st.floats(1.0, 100.0)

@@ -8,7 +8,7 @@ import pytest
 
 from cad_io import read_part
 from plan_cutters import plan
-from plan_cutters.domain.drill_sizes import inch_name
+from plan_cutters.domain.drill import inch_name
 from plan_cutters.options import Options
 from plan_cutters.plan_file import load_plan
 from plan_cutters.plan_file.words.holes import group_words, missing_tools

@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, QhullError
 from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.bearing import Bearing, enclosed
+from plan_cutters.setups.workpiece import Bearing, enclosed
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60

@@ -25,19 +25,14 @@ Outcome = Literal["passed", "skipped", "failure", "error"]
 
 
 class Case(NamedTuple):
-    """A test case says what was looked at, and what came of it.
+    """A test case says what was looked at, and what came of it."""
 
-    `classname` is the part's file, or the name of its plan; `name` what of it: a face and a cutter, say. `failure`: it is not
-    reached; `error`: that is not known; `skipped`: it does not count. `kind` is a code, of a reason or another word of the
-    plan; the message is one line, the details are more.
-    """
-
-    classname: str
-    name: str
-    outcome: Outcome = "passed"
-    kind: str = ""
-    message: str = ""
-    details: str = ""
+    classname: str  #: The part's file, or the name of its plan.
+    name: str  #: What of it was looked at: a face and a cutter, say.
+    outcome: Outcome = "passed"  #: `failure`: it is not reached; `error`: that is not known; `skipped`: it does not count.
+    kind: str = ""  #: A code, of a reason or another word of the plan.
+    message: str = ""  #: One line.
+    details: str = ""  #: More lines.
     seconds: float = 0.0
 
 
@@ -69,11 +64,11 @@ def junit(name: str, cases: Iterable[Case]) -> bytes:
     counts = Counter(case.outcome for case in cases)
     suite = ET.Element(
         "testsuite", name=written(name), tests=str(len(cases)), failures=str(counts["failure"]), errors=str(counts["error"]),
-        skipped=str(counts["skipped"]), time=_time(sum(_finite(case.seconds) for case in cases)),
+        skipped=str(counts["skipped"]), time=f"{sum(map(_seconds, cases)):.3f}",
     )  # fmt: skip
     for case in cases:
         row = ET.SubElement(
-            suite, "testcase", name=written(case.name), classname=written(case.classname), time=_time(_finite(case.seconds))
+            suite, "testcase", name=written(case.name), classname=written(case.classname), time=f"{_seconds(case):.3f}"
         )
         if case.outcome != "passed":
             more = {"message": line(case.message)}
@@ -84,12 +79,8 @@ def junit(name: str, cases: Iterable[Case]) -> bytes:
     return bytes(ET.tostring(suite, encoding="utf-8", xml_declaration=True)) + b"\n"
 
 
-def _finite(seconds: float) -> float:
-    return max(0.0, seconds) if math.isfinite(seconds) else 0.0
-
-
-def _time(seconds: float) -> str:
-    return f"{seconds:.3f}"
+def _seconds(case: Case) -> float:
+    return max(0.0, case.seconds) if math.isfinite(case.seconds) else 0.0
 
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -180,14 +171,11 @@ class CaseFiles:
         """Write each file whole or not at all, or a PlanError; its folder is made. `name`: of the command."""
         cases = list(cases)
         for path, document in ((self.junit, junit), (self.sarif, sarif)):
-            if path is not None:
-                _write(Path(path), document(name, cases))
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-    with whole(path, PlanError) as temporary:
-        temporary.write_bytes(data)
+            if path is None:
+                continue
+            try:
+                Path(path).parent.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise PlanError(f"cannot be written: {error.strerror}", file=path) from None
+            with whole(Path(path), PlanError) as temporary:
+                temporary.write_bytes(document(name, cases))

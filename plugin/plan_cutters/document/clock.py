@@ -55,11 +55,11 @@ class Clock:
                 self.progress(name, done, total)
 
         tell(0, 1)
-        began, boxes = time.monotonic(), METER.boxes
+        began, boxes = time.monotonic(), METER.looked
         try:
             yield tell
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.monotonic() - began
-            if METER.boxes > boxes:
-                self.boxes[name] = self.boxes.get(name, 0) + METER.boxes - boxes
+            if METER.looked > boxes:
+                self.boxes[name] = self.boxes.get(name, 0) + METER.looked - boxes
         tell(1, 1)

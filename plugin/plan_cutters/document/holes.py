@@ -23,8 +23,8 @@ from plan_cutters.plan_file.holes import (
     WorkplaneEntry,
 )
 from plan_cutters.plan_file.operations import ProcessEntry
+from plan_cutters.scene.fixed_axis import tilted_plane
 from plan_cutters.scene.holes import groups
-from plan_cutters.scene.planes import tilted_plane
 from plan_cutters.scene.preparation import Prepared, places
 
 #: Decimals of lengths and angles: behind them there is noise alone.

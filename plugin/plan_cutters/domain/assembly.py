@@ -63,22 +63,15 @@ class Assembly(Record):
     @property
     def flat(self) -> float:
         """Radius of the flat of the tip, mm; 0 where the tip is round."""
-        return self.offset_at(0.0)
+        return self.touching_at(0.0)[0]
 
-    def offset_at(self, tilt: float) -> float:
-        """How far from the axis it touches at a tilt, rad: at 0 the radius of the flat of its tip, at pi that of its upper face,
-        mm; 0 where it touches at none or in the middle.
+    def touching_at(self, tilt: float) -> tuple[float, float]:
+        """How far from the axis it touches at a tilt, rad, and its radius of curvature there with the allowance, mm.
+
+        At tilt 0 the first is the radius of the flat of its tip, at pi that of its upper face; both 0 where it touches at none.
         """
-        touching = self._touching(tilt)
-        return float(touching[0, OFFSET_OF]) if len(touching) else 0.0
-
-    def rise_at(self, tilt: float) -> float:
-        """Its radius of curvature where it touches at a tilt, rad, with the allowance, mm; 0 where it touches at none."""
-        touching = self._touching(tilt)
-        return float(touching[0, RISE]) if len(touching) else 0.0
-
-    def _touching(self, tilt: float) -> Floats:
-        return self.mode[(self.mode[:, TILT_FROM] <= tilt + HAIR) & (self.mode[:, TILT_TO] >= tilt - HAIR)]
+        modes = self.mode[(self.mode[:, TILT_FROM] <= tilt + HAIR) & (self.mode[:, TILT_TO] >= tilt - HAIR)]
+        return (float(modes[0, OFFSET_OF]), float(modes[0, RISE])) if len(modes) else (0.0, 0.0)
 
     def only(self, part: int) -> "Assembly":
         """The pieces of one part alone."""
@@ -302,15 +295,9 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     return most
 
 
-#: Neck, shank and holder count for a clearance: flutes lie along the walls that they cut. Of a bare cutter its flutes count, but
-#: for the lowest of them, up to their diameter over the tip, where it works.
+#: Neck, shank and holder count for a clearance: flutes lie along the walls that they cut. Of a bare cutter its flutes count, too.
 #: Clearances are looked for up to this, mm, and told to this share of them, or to `FINEST`, whichever is more.
 MOST, SHARE, FINEST = 100.0, 0.02, 0.005
-
-
-def working_height(cutter: Cutter) -> float:
-    """Height over the tip, mm, above which flutes of a bare cutter count: their diameter."""
-    return 2.0 * cutter.radius
 
 
 def grown(cutter: Cutter, by: float) -> Assembly:
@@ -320,7 +307,8 @@ def grown(cutter: Cutter, by: float) -> Assembly:
 
     `cutter`: its own allowance and clearance are not counted in. `by`: not negative.
     """
-    rows, low = list[list[float]](), working_height(cutter)
+    # Where a bare cutter works, up to its diameter, flutes do not count.
+    rows, low = list[list[float]](), 2.0 * cutter.radius
     if not cutter.stages and flute_length(cutter) > low:
         rows = [_from(row, low - by) for row in pieces.flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
     for part, low, stage in cutter.stages:

@@ -294,7 +294,6 @@ def requested(kind: str, text: str | None, scale: float, which: str) -> Requeste
 
 
 def _check(kind: str, sizes: Sequence[float], grip: float, last: float | None, which: str) -> None:
-    """Refuse sizes that no vise and no chuck has."""
     if kind == CHUCK and (sizes[0] != int(sizes[0]) or not _FEWEST <= sizes[0] <= _MOST):
         raise FixtureError(f"{which}: a chuck has {_FEWEST} to {_MOST} jaws, not {sizes[0]:g}: {FORMS[kind]}")
     if grip >= sizes[1]:

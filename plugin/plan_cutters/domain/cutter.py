@@ -171,14 +171,9 @@ class Cutter(Dimensions):
         """List the segments above the flutes, upwards: the part, the height over the tip at which it begins, mm, the segment."""
         return stages(self)
 
-    @property
-    def thinnest(self) -> float:
-        """Of radius and height, that of the cutting part which is the least, mm."""
-        return min(self.radius, flute_length(self))
-
     def large_enough(self, tolerance: float) -> bool:
         """Whether verdicts to a tolerance, mm, say anything about this cutter: it is at least four of it thick and long."""
-        return tolerance < JUDGED_SHARE * self.thinnest
+        return tolerance < JUDGED_SHARE * min(self.radius, flute_length(self))
 
     @property
     def plain(self) -> bool:
@@ -206,7 +201,6 @@ class Cutter(Dimensions):
 
 
 def _radius(radius: float | None, diameter: float | None, of: str = "") -> float:
-    """A radius, mm, from itself or from the diameter."""
     if diameter is None:
         if radius is None:
             raise CutterError(f"a cutter needs its {of}radius or its {of}diameter")

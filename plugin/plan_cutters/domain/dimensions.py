@@ -223,7 +223,6 @@ def dimensions(spec: str) -> dict[str, Any]:
 
 
 def _wrong(spec: str) -> str:
-    """Say why a text is no valid cutter, and how it should be written."""
     begun = _CUTTER.match(spec.strip())
     if begun is None:
         return (

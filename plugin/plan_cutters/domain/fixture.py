@@ -102,7 +102,11 @@ class Fixture:
         if self.source is None or isinstance(self.source, bool | int | float) or self.source == "":
             raise FixtureError(f"{shown(self.source)} is no fixture: give {_FORM}, or a body")
         placement = numbers(self.placement, "a fixture's placement")
-        object.__setattr__(self, "placement", _placed(placement, str(self)))
+        if len(placement) not in (3, 6):
+            raise FixtureError(f"{self}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(placement)} numbers")
+        if not all(abs(each) <= _FARTHEST for each in placement):
+            raise FixtureError(f"{self}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
+        object.__setattr__(self, "placement", (*placement, 0.0, 0.0, 0.0)[:6])
         if self.unit is not None and self.unit not in UNITS:
             raise FixtureError(f"{self}: no length unit is called {shown(self.unit)}; give one of {', '.join(UNITS)}")
         label = name(self.name, "a fixture's name", error=FixtureError)
@@ -123,17 +127,15 @@ class Fixture:
         return f"fixture {text!r}"
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Fixture):
-            return NotImplemented
-        same = self.source is other.source or (isinstance(self.source, str) and self.source == other.source)
-        return same and self._rest == other._rest
+        return isinstance(other, Fixture) and self._key == other._key
 
     def __hash__(self) -> int:
-        return hash((self.source if isinstance(self.source, str) else id(self.source), self._rest))
+        return hash(self._key)
 
     @property
-    def _rest(self) -> tuple[Any, ...]:
-        return self.placement, self.unit, self.name, self.chord_error, self.up
+    def _key(self) -> tuple[Any, ...]:
+        source = self.source if isinstance(self.source, str) else id(self.source)
+        return source, self.placement, self.unit, self.name, self.chord_error, self.up
 
     def stands_along(self, setup: Sequence[float]) -> Sequence[float]:
         """The direction (3,) along which a vise or chuck stands in a setup, or is to: the setup axis, or one across it."""
@@ -231,9 +233,8 @@ class Fixture:
         """Read a text as on the command line. Whether a file exists is seen when it is read.
 
         What follows the last `@` is the placement, unless it holds a slash or ends as a file that is known; a word of letters
-        after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit.
-
-        Raises FixtureError.
+        after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit. Raises
+        FixtureError.
         """
         if not isinstance(text, str):
             raise FixtureError(f"{shown(text)} is no fixture: give a Fixture or a text {_FORM}")
@@ -298,14 +299,6 @@ def _numbers(text: str, what: str, form: str) -> tuple[float, ...]:
     if not all(math.isfinite(each) for each in sizes):
         raise FixtureError(f"{what} {text!r} must be finite numbers {form}")
     return sizes
-
-
-def _placed(numbers: tuple[float, ...], which: str) -> tuple[float, ...]:
-    if len(numbers) not in (3, 6):
-        raise FixtureError(f"{which}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(numbers)} numbers")
-    if not all(abs(each) <= _FARTHEST for each in numbers):
-        raise FixtureError(f"{which}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
-    return tuple(float(each) for each in (*numbers, 0.0, 0.0, 0.0)[:6])
 
 
 def _cosine_and_sine(angle: float) -> tuple[float, float]:

@@ -6,9 +6,11 @@ is smaller than what it encloses.
 
 import math
 import re
+from bisect import bisect_right
 from dataclasses import dataclass
 from difflib import get_close_matches
-from itertools import pairwise
+from itertools import groupby, pairwise
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -126,9 +128,8 @@ class Holder:
         """
         if not isinstance(spec, str):
             raise CutterError(f"{shown(spec)} is no holder: give a Holder or a text such as 'R15L30'")
-        made = chuck(spec.strip())
-        if made is not None:
-            return cls(tuple(Segment(radius, long) for radius, long in made.stages), made.name, made.bore)
+        if (made := chuck(spec.strip())) is not None:
+            return made
         segments = []
         for word in spec.strip().split("+"):
             match = _STAGE.fullmatch(word.strip())
@@ -207,26 +208,18 @@ _SPELLED = ((r"(?:hsk)?([ae])(32|40|50|63|100)", r"hsk\2\1"), (r"ct(40|50)", r"c
 _WORD = re.compile(rf"(?:(?P<taper>[a-z0-9]+?))?(?P<nose>er[0-9]+)(?:x(?P<length>{LENGTH}))?")
 
 
-class Chuck(NamedTuple):
-    """A holder of the tables: its name, its sections from the nose up (radius, length), and the largest shank; mm."""
-
-    name: str
-    stages: tuple[tuple[float, float], ...]
-    bore: float
-
-
 def words() -> list[str]:
     """Every word of the tables, noses alone first."""
     return [*NOSES, *(f"{taper}-{nose}" for taper in TAPERS for nose in NOSES)]
 
 
-def chuck(text: str) -> Chuck | None:
+def chuck(text: str) -> Holder | None:
     """The holder that a word names; None for a text that looks like no such word.
 
     Raises CutterError: it looks like one and is none, or is too short for its own flange and nut.
 
-    >>> chuck("ER16"), chuck("HSK-A63/ER32x100").name
-    (Chuck(name='ER16', stages=((16.0, 60.0),), bore=10.0), 'HSK63A-ER32x100')
+    >>> chuck("ER16").id, chuck("ER16").bore, chuck("HSK-A63/ER32x100").name
+    ('R16L60', 10.0, 'HSK63A-ER32x100')
     """
     plain = re.sub(r"[-_/\s]+", "", text.lower())
     if not re.match(r"er[0-9]|hsk|bt[0-9]|sk[0-9]|cat|ct[0-9]|iso[0-9]|dv[0-9]|[ae][0-9]{2,3}er", plain):
@@ -248,21 +241,13 @@ def chuck(text: str) -> Chuck | None:
             f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100"
         )
     if taper is None:
-        return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
-    body = max(nose.diameter, taper.body)
-    sections = [(nose.diameter, nose.length), (body, high - least), (max(taper.flange, 0.0), taper.depth)]
-    return Chuck(f"{taper.name}-{short}x{high:g}", _merged(sections), nose.bore)
-
-
-def _merged(sections: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Sections, a diameter and a length each, as radii and lengths: those of one diameter that follow each other in one."""
-    merged: list[tuple[float, float]] = []
-    for diameter, long in sections:
-        if merged and merged[-1][0] == diameter / 2:
-            merged[-1] = (diameter / 2, merged[-1][1] + long)
-        elif long > 0.0:
-            merged.append((diameter / 2, long))
-    return tuple(merged)
+        name = short if not match["length"] else f"{short}x{high:g}"
+        return Holder((Segment(nose.diameter / 2, high),), name, nose.bore)
+    sections = (nose.diameter, nose.length), (max(nose.diameter, taper.body), high - least), (taper.flange, taper.depth)
+    # Those of one diameter that follow each other are one.
+    runs = groupby(((diameter / 2, long) for diameter, long in sections if long > 0.0), itemgetter(0))
+    stages = tuple(Segment(radius, sum(long for _, long in run)) for radius, run in runs)
+    return Holder(stages, f"{taper.name}-{short}x{high:g}", nose.bore)
 
 
 def _taper(plain: str) -> Taper | None:
@@ -272,7 +257,6 @@ def _taper(plain: str) -> Taper | None:
 
 
 def _near(plain: str) -> str:
-    """Suggest holders whose names are like an unknown one, or list the known ones."""
     known = words()
     by = {word.replace("-", ""): word for word in known}
     near = [by[each] for each in get_close_matches(plain.partition("x")[0], by, 3, 0.5)]
@@ -299,14 +283,10 @@ def enclosing_segments(
 ) -> tuple[tuple[Segment, ...], float]:
     """Stages that enclose lines of a half-plane.
 
-    `line` (n, 4) float: radius and height of both ends, the lower one first, mm.
-    `exact` (n,) bool: lines that become stages as they are where they are the outermost ones.
-    `foot`: height from which on stages are wanted, mm.
-    `tolerance`: how much farther from the axis than the others stages may be, mm; twice as much, and so on, until there are few
-      enough.
-    `most`: stages, at most.
-    Returns `stages`: from the lowest up. `tolerance`: the one that was kept.
-    Raises CutterError: the lines span no height, or leave a gap.
+    `line` (n, 4) float: radius and height of both ends, the lower one first, mm. `exact` (n,) bool: lines that become stages as
+    they are where they are the outermost ones. `foot`: height from which on stages are wanted, mm. `tolerance`: how much farther
+    from the axis than the others stages may be, mm; twice as much, and so on, until there are no more than `most`. Returns the
+    stages, from the lowest up, and the tolerance that was kept. Raises CutterError: the lines span no height, or leave a gap.
     """
     low, high = foot, float(line[:, 3].max())
     if high - low <= _SAME:
@@ -368,7 +348,6 @@ def _at(lines: Floats, height: Floats) -> Floats:
 
 
 def _crossings(lines: Floats) -> Floats:
-    """Heights at which two lines cross."""
     if len(lines) < 2:
         return np.zeros(0)
     slope = (lines[:, 2] - lines[:, 0]) / (lines[:, 3] - lines[:, 1])
@@ -388,24 +367,11 @@ def _joined_lines(top: list[tuple[Line, bool]], tolerance: float, *, keep: bool)
     while at < len(top):
         own = top[at][1] and keep
         allowed = _SAME if own else tolerance
-        few, many = 1, 1
         run = next((i for i in range(at, len(top)) if (top[i][1] and keep) != own), len(top)) - at
-        best = _enclosing([top[at][0]])[0]
-        while few < run:
-            # Twice as many while that goes well, then halves in between.
-            many = min(run, 2 * few)
-            line, off = _enclosing([each for each, _ in top[at : at + many]])
-            if off > allowed:
-                break
-            best, few = line, many
-        while many - few > 1:
-            middle = (few + many) // 2
-            line, off = _enclosing([each for each, _ in top[at : at + middle]])
-            if off > allowed:
-                many = middle
-            else:
-                best, few = line, middle
-        merged.append(best)
+        lines = [line for line, _ in top[at : at + run]]
+        # The line around more is nowhere nearer.
+        few = 1 + bisect_right(range(2, run + 1), allowed, key=lambda count: _enclosing(lines[:count])[1])
+        merged.append(_enclosing(lines[:few])[0])
         at += few
     return merged
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -323,10 +323,6 @@ class Machine:
         if given is None:
             return cls()
         return given if isinstance(given, cls) else cls.parse(given)
-
-    def named(self, name: str) -> "Machine":
-        """The same under another name."""
-        return replace(self, name=name)
 
     @property
     def limit_cos(self) -> float:

@@ -1,6 +1,5 @@
 """Where a part stands in a machine: its directions along the machine's, its point at the machine's zero, and what holds it."""
 
-import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -98,10 +97,6 @@ class Placement:
         object.__setattr__(self, "fixtures", Fixture.each_of(self.fixtures))
         if not isinstance(self.file, str):
             raise OptionError(f"a setup's file is a name, not {shown(self.file)}")
-
-    def stands_as(self, axis: Any) -> bool:
-        """Whether a unit direction (3,) is its `z`."""
-        return math.dist(axis, self.z) <= 1e-12
 
     @property
     def where(self) -> str:

@@ -119,9 +119,8 @@ def order(cutters: Sequence[Cutter]) -> list[Cutter]:
 def inside(cutter: Cutter, other: Cutter) -> bool:
     """True if, touching the same contact with the same axis at any tilt, one cutter lies within another.
 
-    Of straight end mills alone: Lemma N2 of `docs/proofs.md`.
-    The disk of the one's corner lies in the other's, its corner radius is
-    no larger; what stands above may be shifted against the other by as much as these differ, and what does not cut lies in
+    Of straight end mills alone: Lemma N2 of `docs/proofs.md`. The disk of the one's corner lies in the other's, its corner radius
+    is no larger; what stands above may be shifted against the other by as much as these differ, and what does not cut lies in
     what does not cut either and has no less clearance.
     """
     if any(each.shape != "end" or each.taper for each in (cutter, other)) or cutter.allowance != other.allowance:

@@ -139,7 +139,6 @@ class Archive:
 
 
 def _most() -> int:
-    """Bytes that an archive may unpack to."""
     try:
         return int(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) // 2
     except (AttributeError, ValueError, OSError):
@@ -147,6 +146,5 @@ def _most() -> int:
 
 
 def _cause(fault: BaseException) -> str:
-    """Shorten the message of a fault to one line."""
     text = " ".join(str(fault).split())[:80]
     return f": {ascii(text)[1:-1]}" if text else ""

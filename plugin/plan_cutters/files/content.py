@@ -6,6 +6,7 @@ import json
 import lzma
 import os
 import re
+import tomllib
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -13,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Self, TypeVar
+from typing import Any, Generic, TypeVar
 from xml.sax import ContentHandler, SAXException
 from xml.sax.xmlreader import AttributesImpl, InputSource, Locator
 
@@ -54,8 +55,6 @@ class Element:
 
 
 class _Tree(ContentHandler):
-    """Elements as they come."""
-
     _locator: Locator
 
     def __init__(self, file: str, error: type[PlanError]) -> None:
@@ -162,31 +161,29 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Content:
-    """A file that is being recognised: its bytes, its text, its JSON, its XML, what a zip archive it is holds.
-
-    What it should be, and the error where it is not, are said by a class of each kind.
-    """
-
-    noun: ClassVar[str] = "file"
-    error: ClassVar[type[PlanError]] = PlanError
+    """A file that is being recognised: its bytes, its text, its JSON, its XML, what a zip archive it is holds."""
 
     path: Path
     data: bytes
-    notes: list[str] = field(default_factory=list)
+    noun: str  #: What it should be, and the error where it is not.
+    error: type[PlanError]
 
     @classmethod
-    def of(cls, path: str | os.PathLike[str]) -> Self:
+    def of(cls, path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> "Content":
         """Read the content of a regular file; `error` names it as no `noun` where it cannot be one."""
-        name = Path(path).name
-        with translated(name, cls.error):
+        try:
+            name = Path(path).name
+        except TypeError:
+            raise error(f"a {noun} is a file's name, not a value of type {type(path).__name__}") from None
+        with translated(name, error):
             try:
                 data = user_files.content(path, _FILE + 1)
             except IrregularError as fault:
-                what = f"{cls.noun} in it" if os.path.isdir(path) else "file"
-                raise cls.error(f"{fault}; give a {what}", file=name) from None
+                what = f"{noun} in it" if os.path.isdir(path) else "file"
+                raise error(f"{fault}; give a {what}", file=name) from None
         if len(data) > _FILE:
-            raise cls.error(f"is larger than {_FILE >> 20} MB: no {cls.noun} is; split it", file=name)
-        return cls(Path(path), data)
+            raise error(f"is larger than {_FILE >> 20} MB: no {noun} is; split it", file=name)
+        return cls(Path(path), data, noun, error)
 
     @property
     def name(self) -> str:
@@ -246,6 +243,19 @@ class Content:
             why = "it holds nothing that is known"
         return self.error(f"looks like JSON but cannot be read ({why}); export it anew", file=self.name)
 
+    def toml(self) -> dict[str, Any]:
+        """The content as TOML. Raises `error`: it is none."""
+        try:
+            return tomllib.loads(self.text)
+        except RecursionError:
+            why = "it is nested too deeply"
+        except tomllib.TOMLDecodeError as error:
+            why = " ".join(str(error).split())
+        except ValueError:
+            # Python's own words about numbers of thousands of digits are for programmers.
+            why = "a number has too many digits"
+        raise self.error(f"is no TOML: {why}", file=self.name)
+
     @cached_property
     def members(self) -> dict[str, zipfile.ZipInfo] | None:
         """List the members of a zip archive by name; the result is None where the file is no zip archive."""
@@ -283,29 +293,17 @@ class Content:
 
 def lines_of(text: str, key: str) -> list[int]:
     """Lines, from 1, in which the items of the list `key` of a JSON object begin; none where that cannot be told."""
-    decode = json.JSONDecoder()
-    blank = re.compile(r"[ \t\n\r,]*")
-    at = re.compile(r"\s*\{").match(text)
-    place, lines = at.end() if at else len(text), []
-    line, seen = 1, 0
+    decode, between, lines = json.JSONDecoder(), re.compile(r"[ \t\n\r,]*"), list[int]()
+    begins = re.search(rf'"{key}"\s*:\s*\[', text)
+    place, line, seen = begins.end() if begins else len(text), 1, 0
     try:
-        while place < len(text):
-            place = blank.match(text, place).end()  # type: ignore[union-attr]
-            name, place = decode.raw_decode(text, place)
-            place = re.compile(r"\s*:\s*").match(text, place).end()  # type: ignore[union-attr]
-            if name != key:
-                _, place = decode.raw_decode(text, place)
-                continue
-            place = blank.match(text, place + 1).end()  # type: ignore[union-attr]
-            while text[place] != "]":
-                line, seen = line + text.count("\n", seen, place), place
-                lines.append(line)
-                _, place = decode.raw_decode(text, place)
-                place = blank.match(text, place).end()  # type: ignore[union-attr]
-            return lines
-    except (ValueError, AttributeError, IndexError, RecursionError):
-        pass
-    return []
+        while text[place := between.match(text, place).end()] != "]":  # type: ignore[union-attr]
+            line, seen = line + text.count("\n", seen, place), place
+            lines.append(line)
+            _, place = decode.raw_decode(text, place)
+    except (ValueError, IndexError, RecursionError):
+        return []
+    return lines
 
 
 #: A function of a content, and of what a room adds to it.
@@ -329,6 +327,17 @@ class Foreign:
     name: str
     recognises: Callable[[Any], bool]
     instead: str
+
+
+def rooted(*names: str) -> Callable[[Content], bool]:
+    """Recognise XML or HTML by names of which one begins an element near its start."""
+    pattern = re.compile(rf"<\s*(?:\w+:)?(?:{'|'.join(names)})\b", re.IGNORECASE)
+    return lambda c: c.head.startswith("<") and pattern.search(c.head) is not None
+
+
+def called(*suffixes: str) -> Callable[[Content], bool]:
+    """Recognise a file by the suffix of its name."""
+    return lambda c: c.path.suffix.lower() in suffixes
 
 
 def recognised(

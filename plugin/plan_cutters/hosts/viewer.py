@@ -85,8 +85,7 @@ class _Names(set[str]):
 
 
 def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Floats, Floats]:
-    """Tip and axis of a tool."""
-    samples = result.samples
+    samples, reach = result.samples, result.reaches[cutter.id]
     if isinstance(at, WitnessEntry):
         if at.best_posture is None:
             raise OptionError(f"no posture is within the axis limits at {at.face}: there is none to show")
@@ -94,32 +93,30 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
             row = row_of(samples, at)
         except ValueError as error:
             raise OptionError(str(error)) from None
-        axis, tilt = np.array(at.best_posture.axis), np.radians(at.best_posture.tilt)
+        axis, tilt, normal = np.array(at.best_posture.axis), np.radians(at.best_posture.tilt), samples.normal[row]
+        tilt_direction = axis - (axis @ normal) * normal
+        size = float(np.linalg.norm(tilt_direction))
+        if size < 1e-9:
+            # Upright it says where under the tool the sample is.
+            own = reach.tilt_direction[row]
+            tilt_direction, size = (own if tilt == 0.0 and np.isfinite(own).all() else samples.direction_max[row]), 1.0
+        one = blank(1)
+        one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / size, tilt
+        posture = one.freeze()
     else:
         row = _row(at, len(samples))
-        reach = result.reaches[cutter.id]
-        if not np.isfinite(reach.tilt[row]):
-            what = "undecided" if reach.verdict[row] == UNDECIDED else "not reached"
+        posture = reach.of(np.array([row]))
+        if not np.isfinite(posture.tilt[0]):
+            what = "undecided" if posture.verdict[0] == UNDECIDED else "not reached"
             raise OptionError(
                 f"sample {row} is {what} with {cutter.id}, so no posture is known there: give a witness of the plan, as "
                 "result.face(...).worst"
             )
-        axis, tilt = reach.axis[row], float(reach.tilt[row])
-    normal = samples.normal[row]
-    tilt_direction = axis - (axis @ normal) * normal
-    size = float(np.linalg.norm(tilt_direction))
-    if size < 1e-9:
-        # Upright it says where under the tool the sample is.
-        own = result.reaches[cutter.id].tilt_direction[row]
-        tilt_direction, size = (own if tilt == 0.0 and np.isfinite(own).all() else samples.direction_max[row]), 1.0
-    one = blank(1)
-    one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / size, tilt
-    if not isinstance(at, WitnessEntry):
-        one.shift[0] = result.reaches[cutter.id].shift[row]
-    tip = tips(cutter, samples.point[row : row + 1], normal[None], one.freeze())[0]
+    tip = tips(cutter, samples.point[row : row + 1], samples.normal[row : row + 1], posture)[0]
     if not np.isfinite(tip).all():
-        raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")
-    return tip, axis
+        tilt = np.degrees(posture.tilt[0])
+        raise OptionError(f"{cutter.id} cannot touch at a tilt of {tilt:.3g} deg: there is nothing to show")
+    return tip, posture.axis[0]
 
 
 def _row(value: Any, count: int) -> int:
@@ -129,7 +126,6 @@ def _row(value: Any, count: int) -> int:
 
 
 def _tool(cutter: Cutter, tip: Floats, axis: Floats, names: _Names) -> Iterator[Shown]:
-    """Each part of a tool assembly as a solid."""
     across = np.eye(3)[int(np.abs(axis).argmin())]
     x = np.cross(across, axis)
     x /= np.linalg.norm(x)

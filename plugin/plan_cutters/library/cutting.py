@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -17,37 +16,30 @@ _FINISHING = re.compile(r"(?<!semi)(?<!semi[- _])finish|(?<!vor)schlicht", re.IG
 _LEAST, _MOST = 0.1, 1e6
 
 
-@dataclass(frozen=True, slots=True)
-class Preset:
-    """A preset as a file lists it: its name, and its feed as a number or a text; None where it states none."""
-
-    name: str
-    feed: Any
-
-
 def is_finishing(name: str) -> bool:
     """Whether a preset is for finishing, by its name."""
     return _FINISHING.search(name) is not None
 
 
-def take_feed(tool: Listed, presets: Iterable[Preset], field: str, number: Callable[[Any, str], float] = number_of) -> None:
+def take_feed(
+    tool: Listed, presets: Iterable[tuple[Any, Any]], field: str, number: Callable[[Any, str], float] = number_of
+) -> None:
     """Keep the feed of one preset, mm/min; a feed that no machine has is ignored, and noted.
 
-    `tool`: its `scale` turns the feeds into mm/min. `presets`: in the file's order. `field`: what the file calls the feed.
-    `number`: reads a feed, given it and the field.
+    `tool`: its `scale` turns the feeds into mm/min. `presets`: their names and feeds, as a number or a text, None where it states
+    none, in the file's order. `field`: what the file calls the feed. `number`: reads a feed, given it and the field.
     """
     usable = list[tuple[str, float]]()
-    for preset in presets:
-        name = name_of(preset.name)
-        if preset.feed is None or preset.feed == "":
+    for name, stated in presets:
+        if stated is None or stated == "":
             continue
         try:
-            feed = round(number(preset.feed, field) * tool.scale, 9)
+            feed = round(number(stated, field) * tool.scale, 9)
         except (FaultError, OverflowError) as fault:
             tool.notes.append(f"{fault}: no feed")
             continue
         if math.isfinite(feed) and _LEAST <= feed <= _MOST:
-            usable.append((name, feed))
+            usable.append((name_of(name), feed))
         else:
             tool.notes.append(f"{field} of {feed:g} mm/min is no feed")
     if not usable:

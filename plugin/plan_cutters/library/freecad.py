@@ -20,7 +20,7 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import lines_of
 from plan_cutters.library import raw_tool
-from plan_cutters.library.cutting import Preset, slack, take_feed
+from plan_cutters.library.cutting import slack, take_feed
 from plan_cutters.library.fusion import MOST_SECTIONS
 from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, LibraryContent, Listed
@@ -121,16 +121,20 @@ def _bit(folder: Path, path: str) -> Content:
     name = PurePosixPath(PureWindowsPath(path).as_posix()).name
     if not name.lower().endswith(".fctb"):
         raise FaultError(f"path {shown(path)} is no .fctb file")
-    for each in (folder / place / name for place in _FOLDERS):
-        if is_there(each):
-            try:
-                bit = Content.of(each)
-            except LibraryError as error:
-                raise FaultError(f"{name} {error.cause}") from None
-            if not is_bit(bit):
-                raise FaultError(f"{name} is no FreeCAD bit")
-            return bit
-    raise FaultError("path: its bit is neither in the folder of the library nor in Bit or ../Bit; put it there")
+    file = _first(folder, _FOLDERS, name)
+    if file is None:
+        raise FaultError("path: its bit is neither in the folder of the library nor in Bit or ../Bit; put it there")
+    try:
+        bit = raw_tool.opened(file)
+    except LibraryError as error:
+        raise FaultError(f"{name} {error.cause}") from None
+    if not is_bit(bit):
+        raise FaultError(f"{name} is no FreeCAD bit")
+    return bit
+
+
+def _first(folder: Path, places: Sequence[str], name: str) -> Path | None:
+    return next((file for place in places if is_there(file := folder / place / name)), None)
 
 
 def read_holder(content: Content) -> LibraryContent:
@@ -177,20 +181,20 @@ def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
     if not isinstance(word, str) or not word.isprintable() or PurePosixPath(PureWindowsPath(word).as_posix()).name != word:
         tool.faults.append(f"ToolHolder {shown(word)} is no name of a holder")
         return
-    for each in (folder / place / f"{word}.fcholder" for place in _HOLDERS):
-        if is_there(each):
-            try:
-                content = Content.of(each)
-                if not is_holder(content):
-                    raise FaultError("it is no FreeCAD holder")
-                tool.holder = _holder(content.json, raw_tool.name_of(content.json.get("name")) or word)
-            except LibraryError as error:
-                tool.faults.append(f"ToolHolder {shown(word)}: {error.cause}")
-            except (FaultError, CutterError) as fault:
-                tool.faults.append(f"ToolHolder {shown(word)}: {fault}")
-            return
-    # What is assumed for tools without a holder is another one than this.
-    tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder into the folder of the bit or ../ToolHolder")
+    file = _first(folder, _HOLDERS, f"{word}.fcholder")
+    if file is None:
+        # What is assumed for tools without a holder is another one than this.
+        where = "into the folder of the bit or ../ToolHolder"
+        tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder {where}")
+        return
+    try:
+        content = raw_tool.opened(file)
+        if not is_holder(content):
+            raise FaultError("it is no FreeCAD holder")
+        tool.holder = _holder(content.json, raw_tool.name_of(content.json.get("name")) or word)
+    except (FaultError, CutterError, LibraryError) as fault:
+        why = fault.cause if isinstance(fault, LibraryError) else fault
+        tool.faults.append(f"ToolHolder {shown(word)}: {why}")
 
 
 def _tool(content: Content, place: str, number: int | None) -> Listed:
@@ -248,7 +252,7 @@ def _tool(content: Content, place: str, number: int | None) -> Listed:
     _set_in(tool, parameters, content.path.parent)
     attribute = entry.get("attribute")
     if isinstance(attribute, dict):
-        take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
+        take_feed(tool, [("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
 
 
@@ -320,7 +324,6 @@ def _stem(shape: Any) -> str:
 
 
 def _plain(shape: str) -> str:
-    """One name for each shape that has had two."""
     name = shape.lower().replace("-", "")
     return "bullnose" if name == "torus" else name
 
@@ -373,7 +376,6 @@ def _feed(value: Any, field: str) -> float:
 
 
 def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
-    """mm of a text with a unit."""
     if not isinstance(value, str):
         number, unit = raw_tool.number_of(value, field), ""
     else:

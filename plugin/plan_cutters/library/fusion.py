@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +11,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import Element, lines_of
-from plan_cutters.library.cutting import Preset, take_feed
+from plan_cutters.library.cutting import take_feed
 from plan_cutters.library.milling import kind_of_drill
 from plan_cutters.library.raw_tool import (
     MOST_TOOLS,
@@ -45,6 +46,8 @@ _FIELDS = (
     ("LH", "tool_holderGaugeLength", "", ""),
     ("DCX", "tool_maximumCuttingDiameter", "DCX", ""),
 )
+#: The same of tools for holes alone.
+_OF_DRILLS = (("SIG", "tool_tipAngle", "SIG", "tip-angle"), ("TP", "tool_threadPitch", "TP", "thread-pitch"))
 _NAME = re.compile(r"\((\w+)\)\s*$")
 _SECTION = re.compile(r"H\s*(\S+)\s+U\s*(\S+)\s+L\s*(\S+)")
 
@@ -98,6 +101,13 @@ def read_csv(content: Content) -> LibraryContent:
     return library
 
 
+def _take_all(tool: Listed, form: int, values: Mapping[Any, Any], number: Any = number_of) -> None:
+    """Take all dimensions by the words of a form: 0 CSV, 1 JSON, 2 XML."""
+    for key, *words in (*_FIELDS, *(_OF_DRILLS if kind_of_drill(tool) is not None else ())):
+        if words[form]:
+            tool.take(key, values.get(words[form]), words[form], number)
+
+
 def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
     name = name_of(row.get("tool_description")) or name_of(row.get("tool_productId"))
     tool = Listed(place, name=name, kind=name_of(row.get("tool_type")), tapered=name_of(row.get("tool_taperedType")))
@@ -113,11 +123,7 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
             tool.notes.append("decimal commas")
         return result
 
-    for key, column, _, _ in _FIELDS:
-        tool.take(key, row.get(column, "").strip(), column, number)
-    if kind_of_drill(tool) is not None:
-        for key, column in (("SIG", "tool_tipAngle"), ("TP", "tool_threadPitch")):
-            tool.take(key, row.get(column, "").strip(), column, number)
+    _take_all(tool, 0, {column: cell.strip() for column, cell in row.items()}, number)
     try:
         tool.shaft = _csv_sections(row.get("shaft_segments", ""), tool, "shaft_segments")
         stages = _csv_sections(row.get("holder_segments", ""), tool, "holder_segments")
@@ -125,8 +131,8 @@ def _csv_tool(row: dict[str | None, str], place: str) -> Listed:
             tool.holder = Holder(tuple(stages), name_of(row.get("holder_description")))
     except (FaultError, CutterError) as fault:
         tool.faults.append(str(fault))
-    preset = Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())
-    take_feed(tool, [preset], "tool_feedCutting", _number)
+    feed = row.get("tool_feedCutting", "").strip()
+    take_feed(tool, [(row.get("preset_name", ""), feed)], "tool_feedCutting", _number)
     return tool
 
 
@@ -202,14 +208,7 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
     tool.unit, tool.scale = tool.tried(lambda: unit_of(item.get("unit"), "unit"), ("", 1.0))
     post = tool.tried(lambda: _table(item, "post-process"), {})
     tool.number = tool.tried(lambda: whole_of(post.get("number"), "post-process.number"), None)
-    geometry = tool.tried(lambda: _table(item, "geometry"), {})
-    for key, _, word, _ in _FIELDS:
-        if word:
-            tool.take(key, geometry.get(word), word)
-    drills = kind_of_drill(tool) is not None
-    if drills:
-        for key in ("SIG", "TP"):
-            tool.take(key, geometry.get(key), key)
+    _take_all(tool, 1, tool.tried(lambda: _table(item, "geometry"), {}))
     shaft = tool.tried(lambda: _table(item, "shaft"), {})
     if shaft.get("segments"):
         tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
@@ -221,19 +220,20 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
         tool.take("LH", holder.get("gaugeLength"), "holder.gaugeLength")
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)
-    take_feed(tool, _presets(item, "v_f_plunge") if drills else [], "v_f_plunge")
+    if kind_of_drill(tool) is not None:
+        take_feed(tool, _presets(item, "v_f_plunge"), "v_f_plunge")
     if tool.feed is None:
         take_feed(tool, _presets(item, "v_f"), "v_f")
     return tool
 
 
-def _presets(item: dict[str, Any], word: str) -> list[Preset]:
+def _presets(item: dict[str, Any], word: str) -> list[tuple[Any, Any]]:
     """Its presets. They say nothing of its shape: where they cannot be read, there are none."""
     start = item.get("start-values")
     entries = start.get("presets") if isinstance(start, dict) else None
     if not isinstance(entries, list):
         return []
-    return [Preset(name_of(each.get("name")), each.get(word)) for each in entries if isinstance(each, dict)]
+    return [(each.get("name"), each.get(word)) for each in entries if isinstance(each, dict)]
 
 
 def _table(item: dict[str, Any], key: str) -> dict[str, Any]:
@@ -311,12 +311,7 @@ def _hsm_tool(element: Element, place: str) -> Listed:
     if nc is not None:
         tool.number = tool.tried(lambda: whole_of(nc.given.get("number"), "nc number"), None)
     tool.tapered = name_of(body.given.get("tapered-type")) if body else ""
-    for key, _, _, word in _FIELDS:
-        if word:
-            tool.take(key, body.given.get(word) if body else None, word, _number)
-    if kind_of_drill(tool) is not None:
-        for key, word in (("SIG", "tip-angle"), ("TP", "thread-pitch")):
-            tool.take(key, body.given.get(word) if body else None, word, _number)
+    _take_all(tool, 2, body.given if body else {}, _number)
     if shaft is not None:
         tool.shaft = tool.tried(lambda: _hsm_sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:
@@ -329,10 +324,10 @@ def _hsm_tool(element: Element, place: str) -> Listed:
     return tool
 
 
-def _hsm_presets(element: Element) -> list[Preset]:
+def _hsm_presets(element: Element) -> list[tuple[Any, Any]]:
     """Its presets; without one, what its `motion` states."""
     presets = [
-        Preset(preset.given.get("name", ""), parameter.given.get("value"))
+        (preset.given.get("name", ""), parameter.given.get("value"))
         for preset in element.below(("preset",))
         for parameter in preset.children
         if parameter.given.get("key") == "tool_feedCutting"
@@ -340,7 +335,7 @@ def _hsm_presets(element: Element) -> list[Preset]:
     motion = element.first("motion")
     if presets or motion is None or motion.given.get("feed-mode", "per-minute") != "per-minute":
         return presets
-    return [Preset("", motion.given.get("cutting-feedrate"))]
+    return [("", motion.given.get("cutting-feedrate"))]
 
 
 def _number(value: str, field: str) -> float:

@@ -16,7 +16,7 @@ from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_a
 from plan_cutters.domain.thread import thread_of
 from plan_cutters.errors import CutterError, HolderFitError
 from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner_of, note_tapered, slack
-from plan_cutters.library.raw_tool import Entry, Listed, Stated
+from plan_cutters.library.raw_tool import Entry, Listed
 
 #: Digits of lengths and radii, mm; see `listed`.
 _DIGITS = 9
@@ -123,16 +123,10 @@ _MOST_ABOVE = 6
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """These values are assumed for tools that do not state them.
+    """These values are assumed for tools that do not state them."""
 
-    stickout : float, optional
-        mm.
-    holder : Holder, str, optional
-        `none`: they are judged without one.
-    """
-
-    stickout: float | None = None
-    holder: Holder | Literal["none"] | None = None
+    stickout: float | None = None  #: mm.
+    holder: Holder | Literal["none"] | None = None  #: `none`: they are judged without one.
 
 
 def entry_of(tool: Listed, ask: Ask) -> Entry:
@@ -188,15 +182,14 @@ def cause_of(error: CutterError) -> str:
 
 
 def _sort(tool: Listed) -> str:
-    """Which mill it is."""
     if tool.stated is not None:
         return tool.kind
     kind = " ".join((tool.sort or tool.kind).lower().split())
     if kind in MILLS:
         return MILLS[kind]
-    text = f'type "{tool.kind}"' if tool.kind else "its type is missing"
     if not tool.kind:
-        raise UnfitError(f"{text}: add one, as flat end mill")
+        raise UnfitError("its type is missing: add one, as flat end mill")
+    text = f'type "{tool.kind}"'
     if kind in _OUTLINE:
         raise UnfitError(f"{text}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)")
     if _OTHERS.search(kind):
@@ -229,7 +222,6 @@ def _cutter(tool: Listed, sort: str, ask: Ask) -> Cutter:
 
 
 def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
-    """All that is missing, at once."""
     lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in needs if key not in tool.values]
     if "LPR" not in tool.values and ask.stickout is None:
         lacks.append(
@@ -335,7 +327,6 @@ def _wide(bare: Cutter, diameter: float) -> float:
 
 
 def _widest(tool: Listed, bare: Cutter) -> str:
-    """What `_wide` is the radius of."""
     wide = 2.0 * _wide(bare, tool.values["DC"])
     if wide <= tool.values["DC"] + slack(wide):
         return tool.word("DC")
@@ -352,20 +343,19 @@ def _shank(tool: Listed, at: float, length: float) -> float:
     return 0.5 * tool.values["DMM"]
 
 
-def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
-    """A cutter of our own format."""
+def _as_stated(tool: Listed, stated: dict[str, Any], ask: Ask) -> Cutter:
     radius, neck, shank = 0.5 * tool.values["DC"], tuple(tool.shaft), None
     if "TA" in tool.values and tool.kind in ("flat", "bull", "ball"):
         note_tapered(tool)
-    corner, top = corner_of(tool, radius, tool.kind), stated.attributes.get("flutes")
+    corner, top = corner_of(tool, radius, tool.kind), stated.get("flutes")
     if tool.kind == "lollipop":
         agree_ball(tool)
         corner, shank = radius, 0.5 * tool.values["DN"]
         top = flute_length(Cutter.lollipop(radius=radius, neck_radius=shank, length=10 * radius))
     elif tool.kind == "form":
-        top = stated.attributes["outline"][-1][1]
+        top = stated["outline"][-1][1]
     length, holder = _stickout(tool, ask), _holder(tool, ask)
-    if top is not None and not stated.straight:
+    if top is not None and not tool.straight:
         rest = length - top - math.fsum(stage.length for stage in neck)
         if rest <= SAME:
             # The neck of a lollipop goes on up to the nose, however much longer it is.
@@ -374,7 +364,7 @@ def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
             shank = _shank(tool, length - rest, length)
         else:
             neck = (*neck, Segment(_shank(tool, length - rest, length), rest))
-    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated.attributes)
+    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated)
     return _held(tool, made, holder)
 
 
@@ -383,12 +373,9 @@ def _with_length(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cut
     if bare.shape == "lollipop":
         plain = all(stage.radius == stage.upper_radius == bare.shank_radius for stage in above)
         return replace(bare, length=length, neck=None if plain else above)
-    if not above:
-        return replace(bare, length=length)
-    last = above[-1]
-    if last.slope:
-        return replace(bare, length=length, neck=above)
-    return replace(bare, length=length, neck=above[:-1], shank_radius=last.radius)
+    if not above or above[-1].slope:
+        return replace(bare, length=length, neck=above or bare.neck)
+    return replace(bare, length=length, neck=above[:-1], shank_radius=above[-1].radius)
 
 
 def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cutter:
@@ -396,7 +383,12 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     if holder == "none":
         return cutter
     plain = holder if tool.stated is not None else Holder(fewer(holder.stages)[0], holder.name)
-    fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
+    values = {word: getattr(cutter, word) for word in Dimensions.__slots__}
+
+    def fits(holder: Holder) -> bool:
+        # The same dimensions with a holder, not yet checked to be a cutter.
+        return pieces_at_most(Dimensions(**{**values, "holder": holder})) <= MOST_PIECES
+
     # A section has three pieces at least: no more than a third of them is worth a trial.
     most = min(len(plain.stages) - 1, MOST_PIECES // 3)
     while not fits(plain) and most > 0:
@@ -411,9 +403,3 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     except CutterError as error:
         unheld = isinstance(error, HolderFitError)
         raise UnfitError(cause_of(error), broken=tool.holder is not None, unheld=unheld) from None
-
-
-def _with(cutter: Cutter, holder: Holder) -> Dimensions:
-    """The same dimensions with a holder, not yet checked to be a cutter."""
-    values = {word: getattr(cutter, word) for word in Dimensions.__slots__}
-    return Dimensions(**{**values, "holder": holder})

@@ -1,17 +1,18 @@
 """A tool as its file has it, before it is a cutter, and the records that reading a library gives."""
 
+import os
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, ClassVar, Literal, overload
+from typing import Any, Literal, overload
 
 from plan_cutters.domain.checks import finite, items, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drill import Drill
 from plan_cutters.domain.holder import Holder, Segment
-from plan_cutters.errors import CutterError, LibraryError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.files.content import Content
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,15 +185,6 @@ def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
 
 
 @dataclass(slots=True)
-class Stated:
-    """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are."""
-
-    #: Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
-    attributes: dict[str, Any] = field(default_factory=dict)
-    straight: bool = False  #: No shank is requested: what is below it goes on.
-
-
-@dataclass(slots=True)
 class Listed:
     """A tool as a file lists it, filled by the readers of formats."""
 
@@ -219,7 +211,10 @@ class Listed:
     needs: tuple[str, ...] = ("DC", "LCF")  #: Dimensions without which there is no cutter.
     reverse: bool = False  #: A tap of a left-hand thread.
     flutes_everywhere: bool = False  #: Its drawing is as wide everywhere: what states no flutes has them up to its holder.
-    stated: Stated | None = None
+    #: Of our own format alone: attributes of the cutter, as in `Dimensions`, that no dimension here says. With them, lengths in
+    #: mm are taken to the last digit, and sections as they are.
+    stated: dict[str, Any] | None = None
+    straight: bool = False  #: No shank is requested: what is below it goes on.
     feed: float | None = None  #: mm/min, and the name of the `preset` that it is of.
     preset: str = ""
 
@@ -304,11 +299,9 @@ def sections(rows: Iterable[tuple[float, float, float]], what: str) -> list[Segm
 MOST_TOOLS = 50_000
 
 
-class Content(content.Content):
-    """A file that may be a tool library."""
-
-    noun: ClassVar[str] = "tool library"
-    error: ClassVar[type[PlanError]] = LibraryError
+def opened(path: str | os.PathLike[str]) -> Content:
+    """Read a file that may be a tool library."""
+    return Content.of(path, "tool library", LibraryError)
 
 
 def too_many(file: str) -> LibraryError:

@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -10,10 +9,10 @@ from typing import Any, Literal
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, positive, words
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.files.content import Foreign, Format, recognised
+from plan_cutters.files.content import Foreign, Format, called, recognised, rooted
 from plan_cutters.library import freecad, fusion, toml
 from plan_cutters.library.milling import Ask, entry_of
-from plan_cutters.library.raw_tool import Content, Entry, Library, LibraryContent
+from plan_cutters.library.raw_tool import Content, Entry, Library, LibraryContent, opened
 from plan_cutters_base.user_files import is_there
 
 Reader = Callable[[Content], LibraryContent]
@@ -50,18 +49,10 @@ def _member(word: str) -> Callable[[Content], bool]:
     return lambda c: c.members is not None and any(name.lower().endswith(word) for name in c.members)
 
 
-def _page(content: Content) -> bool:
-    return content.head.startswith("<") and re.search(r"<(!doctype\s+html|html|head|body)\b", content.head) is not None
-
-
 def _table(content: Content) -> bool:
     """Whether the first line that is no comment has T and a number, then letters with numbers."""
     lines = (line for line in content.text.splitlines() if line.strip() and not line.lstrip().startswith(";"))
     return _TOOL.match(next(lines, "")) is not None
-
-
-def _estlcam(content: Content) -> bool:
-    return "estlcam" in content.head or (content.path.suffix.lower() == ".tl" and content.head.startswith("<"))
 
 
 FOREIGN = (
@@ -69,27 +60,22 @@ FOREIGN = (
     Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"), f"it has no shank, stick-out or holder; {_TOML}"),
     Foreign("a Mastercam tool database", _sqlite(b"TlTool", ".tooldb"), _FUSION),
     Foreign("an SQLite database", _sqlite(_SQLITE), _FUSION),
-    Foreign(
-        "a DeskProto cutter",
-        lambda c: "[deskproto cutter]" in c.text.lower(),
-        f"it has no holder, and one cutter a file; {_TOML}",
-    ),
+    Foreign("a DeskProto cutter", lambda c: "[deskproto cutter]" in c.text.lower(),
+            f"it has no holder, and one cutter a file; {_TOML}"),
     Foreign("a Kiri:Moto tool list", _kirimoto, f"it has no stick-out and no holder; {_TOML}"),
     Foreign("a GTC package (ISO 13399)", lambda c: _member("package_meta_data.xml")(c) or _member(".p21")(c), _FUSION),
     Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
     Foreign("a spreadsheet or office document", _member("[content_types].xml"), "save it as CSV in Fusion's columns"),
     Foreign("an ISO 10303-21 file (STEP or ISO 13399)", lambda c: c.head.startswith("iso-10303-21"), _FUSION),
-    Foreign("an Estlcam tool list", _estlcam, _TOML),
-    Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
-    Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
+    Foreign("an Estlcam tool list", lambda c: "estlcam" in c.head or (called(".tl")(c) and c.head.startswith("<")), _TOML),
+    Foreign("MTConnect assets", rooted("MTConnectAssets"), _FUSION),
+    Foreign("a web page (HTML)", rooted("!doctype html", "html", "head", "body"),
+            "download the library itself: perhaps a log-in stands before it"),
     Foreign("a Carbide 3D tool list", lambda c: c.head.startswith("number,vendor,model,"), f"it has no holder; {_TOML}"),
-    Foreign(
-        "a table (CSV) without Fusion's columns",
-        lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
-        f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}",
-    ),
-    Foreign("a CAM machine or setting of FreeCAD", lambda c: c.path.suffix.lower() == ".fcm", "give its tools (.fctl)"),
-)
+    Foreign("a table (CSV) without Fusion's columns", called(".csv", ".tsv"),
+            f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}"),
+    Foreign("a CAM machine or setting of FreeCAD", called(".fcm"), "give its tools (.fctl)"),
+)  # fmt: skip
 
 
 #: How many reasons an error names, of all.
@@ -140,12 +126,13 @@ def read_library(
 def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = None, holder: Holder | str | None = None,
             skip_bad: bool = False) -> Library:  # fmt: skip
     """The same, also where no tool can be used."""
-    ask = _ask(assume_stickout, holder)
-    try:
-        file = Path(path)
-    except TypeError:
-        raise LibraryError(f"a tool library is a file's name, not a value of type {type(path).__name__}") from None
-    content = Content.of(file)
+    choice: Holder | Literal["none"] | None = None
+    if isinstance(holder, str) and holder.strip().lower() == "none":
+        choice = "none"
+    elif holder is not None:
+        choice = Holder.of(holder)
+    ask = Ask(None if assume_stickout is None else positive(assume_stickout, "assumed stick-out"), choice)
+    content = opened(path)
     form = recognised(
         content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
         archive="without tools.json, no Fusion tool library; give what is in it",
@@ -156,7 +143,7 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
     notes = list(raw.notes)
     if content.members is None and content.encoded[1] == "cp1252":
         notes.append("it is not in UTF-8: its text is read as Windows-1252")
-    library = Library(file.name, form.name, (*entries, *raw.faulty), tuple(raw.holders), tuple(notes))
+    library = Library(content.name, form.name, (*entries, *raw.faulty), tuple(raw.holders), tuple(notes))
     broken = [entry for entry in library.entries if entry.broken]
     if broken and not skip_bad:
         first, more = broken[0], len(broken) - 1
@@ -166,15 +153,6 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
     return library
 
 
-def _ask(stickout: float | None, holder: Holder | str | None) -> Ask:
-    choice: Holder | Literal["none"] | None
-    if isinstance(holder, str) and holder.strip().lower() == "none":
-        choice = "none"
-    else:
-        choice = None if holder is None else Holder.of(holder)
-    return Ask(None if stickout is None else positive(stickout, "assumed stick-out"), choice)
-
-
 def nothing(library: Library) -> LibraryError:
     """Why a library has no cutter."""
     if not library.entries:
@@ -182,16 +160,13 @@ def nothing(library: Library) -> LibraryError:
         what = f"lists {held} holder{'s' if held > 1 else ''} and no tools; give it with --holder" if held else "lists no tools"
         return LibraryError(f"{library.format}: {what}", file=library.file)
     count = len(library.entries)
-    reasons = Counter(entry.unused or "" for entry in library.entries)
-    first: dict[str, Entry] = {}
+    reasons: dict[str, list[str]] = {}
     for entry in library.entries:
-        first.setdefault(entry.unused or "", entry)
-    causes = []
-    for why, often in list(reasons.items())[:_NAMED]:
-        causes.append(f"{first[why].label}{f' and {often - 1} more' if often > 1 else ''}: {why}")
-    if len(reasons) > _NAMED:
-        rest = count - sum(list(reasons.values())[:_NAMED])
-        causes.append(f"{rest} more for {len(reasons) - _NAMED} other reasons")
+        reasons.setdefault(entry.unused or "", []).append(entry.label)
+    named, others = list(reasons.items())[:_NAMED], list(reasons.values())[_NAMED:]
+    causes = [f"{who[0]}{f' and {len(who) - 1} more' if len(who) > 1 else ''}: {why}" for why, who in named]
+    if others:
+        causes.append(f"{sum(map(len, others))} more for {len(others)} other reasons")
     tools = "its only tool cannot" if count == 1 else f"none of its {count} tools can"
     return LibraryError(f"{library.format}: {tools} be used: {'; '.join(causes)}", file=library.file)
 

@@ -2,7 +2,6 @@
 
 import math
 import re
-import tomllib
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
@@ -16,9 +15,9 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.content import toml_text
 from plan_cutters.library import raw_tool
-from plan_cutters.library.cutting import Preset, take_feed
+from plan_cutters.library.cutting import take_feed
 from plan_cutters.library.milling import cause_of
-from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, Library, LibraryContent, Listed, Stated
+from plan_cutters.library.raw_tool import MOST_TOOLS, Content, Entry, FaultError, Library, LibraryContent, Listed
 
 _LOOKS = re.compile(r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE)
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
@@ -88,9 +87,11 @@ def read_toml(content: Content) -> LibraryContent:
     if len(_TABLE.findall(content.text)) > MOST_TOOLS:
         raise raw_tool.too_many(content.name)
     try:
-        document = tomllib.loads(content.text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
+        document = content.toml()
+    except LibraryError as error:
+        unquoted = "Expected newline" in error.cause or "Invalid value" in error.cause
+        hint = '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")' if unquoted else ""
+        raise LibraryError(f"{error.cause}{hint}", file=content.name) from None
     for key in document:
         if key not in ("unit", "tool", "holder"):
             raise LibraryError(f"{shown(key)} is unknown; a library has unit, [[tool]] and [[holder]]", file=content.name)
@@ -120,20 +121,7 @@ def read_toml(content: Content) -> LibraryContent:
     return library
 
 
-def _syntax(error: Exception) -> str:
-    """Why a text is no TOML, and what it mostly is."""
-    if isinstance(error, RecursionError):
-        return "it is nested too deeply"
-    if not isinstance(error, tomllib.TOMLDecodeError):
-        return "it has a number of thousands of digits"
-    why = " ".join(str(error).split())
-    if "Expected newline" in why or "Invalid value" in why:
-        why += '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")'
-    return why
-
-
 def _why(error: Exception) -> str:
-    """One line of what is wrong with a table."""
     if not isinstance(error, ValidationError):
         return cause_of(error) if isinstance(error, CutterError) else str(error)
     # Of kinds that were tried in turn, the one that was understood the farthest.
@@ -142,7 +130,9 @@ def _why(error: Exception) -> str:
     words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
     field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
-        return f"{shown(first['loc'][-1])} is unknown here{_meant(first['loc'][-1])}"
+        unknown, keys = first["loc"][-1], (*ToolTable.model_fields, *HolderTable.model_fields)
+        meant = next((f"; {key} is written so" for key in keys if key.lower() == str(unknown).lower()), "")
+        return f"{shown(unknown)} is unknown here{meant}"
     if not first["loc"]:
         return f"it is {shown(first['input'])}, not a table"
     if first["type"] == "missing":
@@ -150,18 +140,9 @@ def _why(error: Exception) -> str:
     return f"{field} is {shown(first['input'])}: {first['msg'][:1].lower()}{first['msg'][1:]}"
 
 
-def _meant(word: Any) -> str:
-    """The key that is written almost so."""
-    for key in (*ToolTable.model_fields, *HolderTable.model_fields):
-        if key.lower() == str(word).lower():
-            return f"; {key} is written so"
-    return ""
-
-
 def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) -> Listed:
     """A table as a listed tool; what it needs depends on its type."""
-    stated = Stated()
-    tool = Listed(place, stated=stated)
+    tool = Listed(place, stated={})
     if isinstance(table, dict):
         tool.name = raw_tool.name_of(table.get("name"))
         if isinstance(table.get("number"), int):
@@ -192,14 +173,14 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
     limits = {word: length(value, word) for word in ("allowance", "clearance") if (value := getattr(model, word)) is not None}
-    stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
-    stated.attributes = {"shape": "end" if model.type in (*_ENDS, *KINDS) else model.type, "taper": _taper(model, tool),
-                         "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
-                         "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
+    tool.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
+    tool.stated = {"shape": "end" if model.type in (*_ENDS, *KINDS) else model.type, "taper": _taper(model, tool),
+                   "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
+                   "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
     needs = _needs(model, tool, flutes, outline)
     _neck(model, tool, length(model.LN, "LN"), needs)
     tool.needs = tuple(key for key, needed in needs.items() if needed)
-    take_feed(tool, [Preset("", model.feed)], "feed", lambda value, _: float(value))
+    take_feed(tool, [("", model.feed)], "feed", lambda value, _: float(value))
     return tool
 
 
@@ -227,11 +208,10 @@ def _taper(model: ToolTable, tool: Listed) -> float:
 
 
 def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) -> None:
-    """Read the neck: sections, or DN and LN."""
-    lollipop, stated = model.type == "lollipop", tool.stated or Stated()
+    lollipop = model.type == "lollipop"
     if lollipop:
         # Its neck goes on up to the nose, unless a shank of DMM begins where LN ends.
-        stated.straight = stated.straight or bool(model.neck) or not reach
+        tool.straight = tool.straight or bool(model.neck) or not reach
     needs["DN"] = bool(reach and not model.neck and not lollipop)
     needs["LN"] = "DN" in tool.values and not (lollipop or reach or model.neck)
     if model.neck:
@@ -239,12 +219,11 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
         if twice:
             tool.faults.append(f"neck and {twice}: give one of them")
         tool.shaft = tool.tried(lambda: _stages(model.neck, tool.scale, "neck"), [])
-    elif reach and "DN" in tool.values and not (lollipop and stated.straight):
+    elif reach and "DN" in tool.values and not (lollipop and tool.straight):
         tool.shaft = [Segment(0.5 * tool.values["DN"], reach)]
 
 
 def _degrees(value: Any, field: str) -> float:
-    """A half angle: degrees, or a text with its unit."""
     if not isinstance(value, str):
         return raw_tool.number_of(value, field)
     degrees = math.degrees(stated_radians(value))
@@ -254,7 +233,6 @@ def _degrees(value: Any, field: str) -> float:
 
 
 def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder | Literal["none"] | None:
-    """The holder that a tool names or describes."""
     if value is None:
         return None
     if isinstance(value, list):
@@ -310,39 +288,31 @@ def _kind(cutter: Cutter) -> str:
 
 
 def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None, drill: Drill | None = None) -> list[str]:
-    entry: dict[str, Any] = {} if number is None else {"number": number}
-    if name:
-        entry["name"] = name
-    entry["type"] = _kind(cutter) if drill is None else drill.kind
-    if cutter.shape != "form":
-        entry["DC"] = 2.0 * cutter.radius
-    if drill is not None and drill.point is not None:
-        entry["SIG"] = stated_degrees(drill.point)
-    if drill is not None:
-        entry |= {"TP": drill.pitch} if drill.pitch is not None else {}
-        entry |= {"HAND": "L"} if drill.left else {}
-    if cutter.corner_radius and cutter.shape != "lollipop":
-        entry["RE"] = cutter.corner_radius
-    if cutter.taper:
-        entry["TA"] = stated_degrees(abs(cutter.taper))
-    if cutter.shape in ("barrel", "lens"):
-        entry |= {"PRFRAD": cutter.arc_radius, "profile_height": cutter.arc_height}
-    if cutter.outline:
-        entry["outline"] = [[height, radius] for radius, height in cutter.outline]
-    if cutter.shape not in ("lollipop", "form"):
-        entry["LCF"] = "rest" if cutter.flutes is None else cutter.flutes
-    entry["LPR"] = cutter.length
-    if cutter.necks:
-        entry["neck"] = _rows(cutter.necks)
-    if cutter.shape == "lollipop":
-        entry["DN"] = 2.0 * (cutter.shank_radius or 0.0)
-    else:
-        entry["DMM"] = "same" if cutter.shank_radius is None else 2.0 * cutter.shank_radius
+    lollipop, arc = cutter.shape == "lollipop", cutter.shape in ("barrel", "lens")
     called = {"name": cutter.holder.name} if cutter.holder and cutter.holder.name else {}
-    entry["holder"] = "none" if cutter.holder is None else {**called, "stages": _rows(cutter.holder.stages)}
-    stated = {"allowance": cutter.allowance, "clearance": cutter.clearance, "feed": None if feed is None else float(feed)}
-    entry |= {word: value for word, value in stated.items() if value is not None}
-    return ["", "[[tool]]", *(f"{word} = {toml_text(value)}" for word, value in entry.items())]
+    entry: dict[str, Any] = {
+        "number": number,
+        "name": name or None,
+        "type": _kind(cutter) if drill is None else drill.kind,
+        "DC": None if cutter.shape == "form" else 2.0 * cutter.radius,
+        "SIG": None if drill is None or drill.point is None else stated_degrees(drill.point),
+        "TP": None if drill is None else drill.pitch,
+        "HAND": "L" if drill is not None and drill.left else None,
+        "RE": None if lollipop else cutter.corner_radius or None,
+        "TA": stated_degrees(abs(cutter.taper)) if cutter.taper else None,
+        "PRFRAD": cutter.arc_radius if arc else None,
+        "profile_height": cutter.arc_height if arc else None,
+        "outline": [[height, radius] for radius, height in cutter.outline] or None,
+        "LCF": None if cutter.shape in ("lollipop", "form") else cutter.flutes or "rest",
+        "LPR": cutter.length,
+        "neck": _rows(cutter.necks) or None,
+        "DN" if lollipop else "DMM": "same" if cutter.shank_radius is None else 2.0 * cutter.shank_radius,
+        "holder": "none" if cutter.holder is None else {**called, "stages": _rows(cutter.holder.stages)},
+        "allowance": cutter.allowance,
+        "clearance": cutter.clearance,
+        "feed": None if feed is None else float(feed),
+    }
+    return ["", "[[tool]]", *(f"{word} = {toml_text(value)}" for word, value in entry.items() if value is not None)]
 
 
 def to_toml(cutters: Library | Iterable[Cutter]) -> str:

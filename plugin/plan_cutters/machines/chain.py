@@ -1,25 +1,24 @@
 """From the axes that a file lists to a machine: units, limits and signs."""
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 from plan_cutters.domain.checks import finite, shown
-from plan_cutters.domain.machine import Axis, Carried, Kind, Machine, X, Y, Z
-from plan_cutters.errors import MachineError, PlanError
-from plan_cutters.files import content
+from plan_cutters.domain.machine import Axis, Carried, Machine, X, Y, Z
+from plan_cutters.errors import MachineError
+from plan_cutters.files.content import Content
 
 #: How the two senses of an axis that carries the part are called after `FILE#`.
 TABLE, TOOL = "table", "tool-relative"
 
 
-class Content(content.Content):
-    """A file that may be a machine file."""
-
-    noun: ClassVar[str] = "machine file"
-    error: ClassVar[type[PlanError]] = MachineError
+def opened(path: str | os.PathLike[str]) -> Content:
+    """Read a file that may be a machine file."""
+    return Content.of(path, "machine file", MachineError)
 
 
 class Added(NamedTuple):
@@ -90,7 +89,7 @@ ANGLES = {
 }  # fmt: skip
 #: Directions by the names of ISO 841.
 ISO = {"X": X, "Y": Y, "Z": Z, "A": X, "B": Y, "C": Z}
-#: Limits of one axis that are both turned back to front are the same up to this, rad or mm.
+#: Limits of one axis that are both turned back to front are the same up to this, rad.
 _EVEN = 1e-9
 
 
@@ -147,24 +146,12 @@ def narrowed(limits: Sequence[tuple[float, float] | None], what: str) -> tuple[f
     return low, high
 
 
-def even(limits: tuple[float, float] | None, *, turns: bool) -> bool:
-    """Whether the sense in which an axis is counted matters to nothing that it allows."""
+def even(limits: tuple[float, float] | None) -> bool:
+    """Whether the sense in which a rotary axis is counted matters to nothing that it allows."""
     if limits is None:
         return True
     low, high = limits
-    return low == -high or abs(low + high) <= _EVEN or (turns and high - low >= 2.0 * math.pi)
-
-
-def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None,
-           acceleration: float | None = None) -> Axis:  # fmt: skip
-    """X, Y or Z as ISO 841 has it."""
-    return Axis(name, "linear", carries, ISO[name], limits, rate=rate, acceleration=acceleration)
-
-
-def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: tuple[float, float] | None = None,
-         point: Vector = (0.0, 0.0, 0.0), rate: float | None = None, acceleration: float | None = None) -> Axis:  # fmt: skip
-    """An axis of a file; a speed of 0 is none."""
-    return Axis(name, kind, carries, direction, limits, point, rate or None, None, acceleration or None)
+    return low == -high or abs(low + high) <= _EVEN or high - low >= 2.0 * math.pi
 
 
 def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool: Vector = ISO["Z"]) -> Machine:

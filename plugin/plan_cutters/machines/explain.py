@@ -92,17 +92,16 @@ def tool_axis(machine: Machine, angles: dict[str, float]) -> tuple[Floats, list[
             known = ", ".join(each.name for each in machine.rotary) or "none"
             raise MachineError(f"machine {machine.name} has no rotary axis {shown(name)}: its rotary axes are {known}")
     by_name = {name.upper(): angle for name, angle in angles.items()}
+    row = [by_name.get(axis.name.upper(), 0.0) for axis in machine.rotary]
     beyond = [
         axis.name
-        for axis in machine.rotary
-        if axis.limits is not None
-        and not axis.limits[0] - ON_LIMIT <= by_name.get(axis.name.upper(), 0.0) <= axis.limits[1] + ON_LIMIT
+        for axis, at in zip(machine.rotary, row, strict=True)
+        if axis.limits is not None and not axis.limits[0] - ON_LIMIT <= at <= axis.limits[1] + ON_LIMIT
     ]
     kinematics = machine.kinematics(_IDENTITY)
     if kinematics is None or not machine.rotary:
         return np.array(machine.tool_axis), beyond
-    row = np.array([[by_name.get(axis.name.upper(), 0.0) for axis in machine.rotary]])
-    return np.asarray(kinematics.axis(row)[0]), beyond
+    return np.asarray(kinematics.axis(np.array([row]))[0]), beyond
 
 
 def share_text(machine: Machine, held: float) -> str:
@@ -123,8 +122,7 @@ def limits_text(axis: Axis) -> str:
 
 def summary(machine: Machine) -> list[str]:
     """Describe in plain sentences which tool axes a machine can hold."""
-    rotary = machine.rotary
-    lines = []
+    rotary, kinematics, lines = machine.rotary, machine.kinematics(_IDENTITY), list[str]()
     if not machine.limited:
         return ["It holds any tool axis: no limit is counted."]
     if machine.tilt_limit is not None:
@@ -135,8 +133,9 @@ def summary(machine: Machine) -> list[str]:
         lines.append("Nothing turns the tool: it holds the setup axis alone.")
     elif machine.turning == 0:
         lines.append("Nothing turns the tool, for the limits leave its axes no range: it holds one tool axis.")
-    elif machine.turning == 1:
-        lines.append(f"Only {_turning(machine)} turns the tool against the part: the tool axes lie on one circle.")
+    elif machine.turning == 1 and kinematics is not None:
+        only = rotary[kinematics.turning()[1][0]].name
+        lines.append(f"Only {only} turns the tool against the part: the tool axes lie on one circle.")
     else:
         first, second = rotary
         lines.append(
@@ -152,12 +151,6 @@ def summary(machine: Machine) -> list[str]:
             f"turns fast; {percent(result.singular)} of all directions are held there."
         )
     return lines
-
-
-def _turning(machine: Machine) -> str:
-    """Name the rotary axes that turn the tool."""
-    kinematics = machine.kinematics(_IDENTITY)
-    return ", ".join(machine.rotary[k].name for k in kinematics.turning()[1]) if kinematics is not None else ""
 
 
 def vector_text(direction: tuple[float, float, float]) -> str:

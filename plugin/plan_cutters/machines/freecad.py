@@ -13,12 +13,7 @@ from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
 from plan_cutters.machines.chain import Added, Content
 
-_ROLES: dict[str, tuple[str, Carried]] = {
-    "table_linear": ("linear", "part"),
-    "table_rotary": ("rotary", "part"),
-    "head_linear": ("linear", "tool"),
-    "head_rotary": ("rotary", "tool"),
-}
+_SIDES: dict[str, Carried] = {"table": "part", "head": "tool"}
 _TYPES = {"linear": "linear", "rotary": "rotary", "angular": "rotary"}
 #: Speeds are given for a minute.
 _MINUTE = 60.0
@@ -83,10 +78,10 @@ def _check_parents(axes: dict[str, Any]) -> None:
 
 def _axis(name: str, entry: dict[str, Any], kind: str, length: float) -> Axis:
     role = entry.get("role")
-    known = _ROLES.get(role) if isinstance(role, str) else None
-    if known is None or known[0] != kind:
+    side, _, of = role.partition("_") if isinstance(role, str) else ("", "", "")
+    carries = _SIDES.get(side)
+    if carries is None or of != kind:
         raise MachineError(f"axis {name}: its role {shown(role)} is none of a {kind} axis (table_{kind}, head_{kind})")
-    carries = known[1]
     point, direction = _joint(entry.get("joint"), name, kind)
     size = chain.ANGLES["deg"] if kind == "rotary" else length
     ends = entry.get("limits") or {}
@@ -100,9 +95,9 @@ def _axis(name: str, entry: dict[str, Any], kind: str, length: float) -> Axis:
     turned = chain.opposite(direction) if kind == "rotary" and carries == "part" else direction
     place = (point[0] * length, point[1] * length, point[2] * length)
     limits = chain.ranged(low, high, size)
-    if kind == "rotary":
-        return chain.axis(name, "rotary", carries, turned, limits=limits, point=place, rate=rate)
-    return chain.axis(name, "linear", carries, turned, limits=limits, rate=rate)
+    if kind == "linear":
+        return Axis(name, "linear", carries, turned, limits, rate=rate or None)
+    return Axis(name, "rotary", carries, turned, limits, place, rate or None)
 
 
 def _joint(entry: Any, name: str, kind: str) -> tuple[chain.Vector, chain.Vector]:

@@ -4,6 +4,7 @@ Directions are those in which a part itself moves, by the right-hand rule for ro
 that carry the part; of rotary ones it is not documented, so that it must be said where it matters.
 """
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from plan_cutters.domain.checks import shown
@@ -31,20 +32,20 @@ class Frame(NamedTuple):
 
 def is_mch(content: Content) -> bool:
     """JSON with the kinematics of a machine."""
-    return _kinematics(content.json) is not None
+    return isinstance(_tree(content.json, "kinematics").get("parts"), list)
 
 
-def _kinematics(entry: Any) -> dict[str, Any] | None:
-    inner = entry.get("kinematics") if isinstance(entry, dict) else None
+def _tree(entry: Any, key: str) -> dict[str, Any]:
+    """What a file says by a word, as default if it has several; empty where that is no table."""
+    inner = entry.get(key) if isinstance(entry, dict) else None
     default = inner.get("default", inner) if isinstance(inner, dict) else None
-    return default if isinstance(default, dict) and isinstance(default.get("parts"), list) else None
+    return default if isinstance(default, dict) else {}
 
 
 def read_mch(content: Content, added: Added) -> Machine:
     """Read it."""
     added.refuse(content.name, order=True)
-    entry = _kinematics(content.json)
-    assert entry is not None
+    entry = _tree(content.json, "kinematics")
     units = entry.get("units")
     if not isinstance(units, dict):
         raise MachineError("its kinematics have no units")
@@ -56,7 +57,8 @@ def read_mch(content: Content, added: Added) -> Machine:
     frames = _frames(entry["parts"])
     table, head = (_only(frames, kind) for kind in ("table", "head"))
     notes: list[str] = []
-    control = _controls(content.json)
+    settings = _tree(content.json, "controller").get("parts")
+    control = {key: each for key, each in settings.items() if isinstance(each, dict)} if isinstance(settings, dict) else {}
     reading = _Reading(length, angle, hand == "left-handed", added.sign, control, notes)
     axes = [*reading.axes(table.parts, "part")[::-1], *reading.axes(head.parts, "tool")]
     for each in table.parts:
@@ -71,21 +73,10 @@ def read_mch(content: Content, added: Added) -> Machine:
         notes.append("its speeds are not used: their units are not documented")
     if not any(each.kind == "rotary" and each.carries == "part" for each in axes):
         added.refuse(content.name, sign=True)
-    return chain.machine(_name(content), axes, notes, tool=tool)
-
-
-def _name(content: Content) -> str:
     general = content.json.get("general")
     words = [general.get(key) for key in ("vendor", "model")] if isinstance(general, dict) else []
-    return " ".join(word for word in words if isinstance(word, str) and word) or content.path.stem
-
-
-def _controls(entry: Any) -> dict[str, dict[str, Any]]:
-    """Gather the controller's settings of each part, by its id."""
-    controller = entry.get("controller")
-    inner = controller.get("default", controller) if isinstance(controller, dict) else None
-    parts = inner.get("parts") if isinstance(inner, dict) else None
-    return {key: each for key, each in parts.items() if isinstance(each, dict)} if isinstance(parts, dict) else {}
+    name = " ".join(word for word in words if isinstance(word, str) and word) or content.path.stem
+    return chain.machine(name, axes, notes, tool=tool)
 
 
 def _frames(parts: list[Any]) -> list[Frame]:
@@ -115,15 +106,14 @@ def _only(frames: list[Frame], kind: str) -> Frame:
     return matches[0]
 
 
+@dataclass(slots=True)
 class _Reading:
-    """The axes of one file being read."""
-
-    def __init__(
-        self, length: float, angle: float, left_handed: bool, sign: str, control: dict[str, dict[str, Any]], notes: list[str]
-    ) -> None:
-        self.length, self.angle, self.left, self.sign, self.control, self.notes = (
-            length, angle, left_handed, sign, control, notes,
-        )  # fmt: skip
+    length: float
+    angle: float
+    left: bool
+    sign: str
+    control: dict[str, Any]  #: The controller's settings of each part, by its id.
+    notes: list[str]
 
     def axes(self, parts: list[dict[str, Any]], carries: Carried) -> list[Axis]:
         """The axes among the parts above a table or a head, the one next to the bed first."""
@@ -138,7 +128,6 @@ class _Reading:
         return axes
 
     def axis(self, part: dict[str, Any], name: str, kind: str, carries: Carried) -> Axis:
-        """One of them."""
         for key in part:
             if key not in _KEYS and any(word in key.lower() for word in _SUSPECT):
                 raise MachineError(
@@ -150,9 +139,7 @@ class _Reading:
         limits = self.limits(part, name, self.angle if kind == "rotary" else self.length)
         if kind == "linear":
             direction = chain.vector(part.get("direction"), f"axis {name}: its direction")
-            return chain.axis(
-                name, "linear", carries, chain.opposite(direction) if carries == "part" else direction, limits=limits
-            )
+            return Axis(name, "linear", carries, chain.opposite(direction) if carries == "part" else direction, limits)
         about = part.get("axis_of_rotation")
         if not isinstance(about, dict):
             raise MachineError(f"axis {name} has no axis_of_rotation")
@@ -161,15 +148,14 @@ class _Reading:
         place = (point[0] * self.length, point[1] * self.length, point[2] * self.length)
         if self.left != ((carries == "part") and self.sign != TOOL):
             direction = chain.opposite(direction)
-        axis = chain.axis(name, "rotary", carries, direction, limits=limits, point=place)
+        axis = Axis(name, "rotary", carries, direction, limits, place)
         self.check(part, axis)
         return axis
 
     def check(self, part: dict[str, Any], axis: Axis) -> None:
-        """Whether the sense of a rotary axis is known, or does not matter."""
         control = self.control.get(str(part.get("id")), {})
         turned, zero = control.get("reversed") is True, control.get("zero_position_offset", 0)
-        if chain.even(axis.limits, turns=True):
+        if chain.even(axis.limits):
             if axis.carries == "part" and not self.sign:
                 self.notes.append(
                     f"{axis.name}: whether its positive angles are those of the table or of the tool is not stated; that of the "
@@ -188,7 +174,6 @@ class _Reading:
             )
 
     def limits(self, part: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
-        """Limits of a part, under any of the names that they may have."""
         limits = []
         for key in _RANGES:
             result = part.get(key)

@@ -5,12 +5,13 @@ Only kinematics whose sources were read are taken (src/emc/kinematics of LinuxCN
 `conventional-directions` is set, which `5axiskins` does not have.
 """
 
+import math
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.machine import Axis, Machine
+from plan_cutters.domain.machine import Axis, Carried, Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
 from plan_cutters.machines.chain import Added, Content, arranged
@@ -44,7 +45,7 @@ class Ini:
                 if any(_same(path, each) for each in above):
                     raise MachineError(f"{content.name}, line {number}: it includes itself by {path.name}")
                 try:
-                    self._take(Content.of(path), (*above, path))
+                    self._take(chain.opened(path), (*above, path))
                 except MachineError as error:
                     what = f"{path.name}, which line {number} includes"
                     raise MachineError(error.cause, file=error.file if error.file != path.name else what) from None
@@ -85,12 +86,11 @@ def _same(one: Path, other: Path) -> bool:
 def number(text: str, what: str) -> float:
     """A finite number at the beginning of a value."""
     words = text.split(None, 1)
-    rest = words[1].lstrip() if len(words) > 1 else ""
     try:
-        result = float(words[0]) if words and (not rest or rest[0] in "#;") else float("nan")
+        result = float(words[0]) if words and (len(words) == 1 or words[1].lstrip()[:1] in ("#", ";")) else math.nan
     except ValueError:
-        result = float("nan")
-    if result != result or result in (float("inf"), float("-inf")):
+        result = math.nan
+    if not math.isfinite(result):
         raise MachineError(f"{what} is {shown(text)}, which is no number")
     return result
 
@@ -119,7 +119,7 @@ class Hal:
         if not name or name.upper().startswith("LIB:"):
             return
         try:
-            text = Content.of(self.ini.path.parent / name).text
+            text = chain.opened(self.ini.path.parent / name).text
         except MachineError:
             self.missing.append(Path(name).name)
             return
@@ -192,26 +192,20 @@ _PIVOT = {"maxkins": 0.666, "5axiskins": 250.0}
 
 
 def is_ini(content: Content) -> bool:
-    """Sections of a LinuxCNC configuration."""
-    return content.head[:1] not in ("{", "<") and len(set(_LOOKS.findall(content.text))) >= 2
-
-
-def includes(content: Content) -> bool:
-    """A short configuration that includes the rest."""
-    return "#INCLUDE" in content.text and _LOOKS.search(content.text) is not None
+    """Sections of a LinuxCNC configuration, or one of them and what includes the rest."""
+    sections = set(_LOOKS.findall(content.text))
+    whole = len(sections) >= 2 and content.head[:1] not in ("{", "<")
+    return whole or (bool(sections) and "#INCLUDE" in content.text)
 
 
 def read_ini(content: Content, added: Added) -> Machine:
     """Read it."""
-    ini = Ini(content)
-    return _Reading(ini, added, content.path.stem).machine()
+    return _Reading(Ini(content), added).machine()
 
 
 class _Reading:
-    """One configuration being read."""
-
-    def __init__(self, ini: Ini, added: Added, stem: str) -> None:
-        self.ini, self.added, self.stem = ini, added, stem
+    def __init__(self, ini: Ini, added: Added) -> None:
+        self.ini, self.added = ini, added
         self.notes: list[str] = []
         self.name, self.given = self.kinematics()
         self.length = chain.unit(ini.one("TRAJ", "LINEAR_UNITS"), chain.LENGTHS, "[TRAJ]LINEAR_UNITS")
@@ -239,7 +233,6 @@ class _Reading:
         return name, {key.lower(): value for key, value in words_by_key.items()}
 
     def coordinates(self) -> str:
-        """Letters of the axes that the machine has."""
         text = self.ini.one("TRAJ", "COORDINATES") or self.given.get("coordinates")
         if text is None:
             raise MachineError("it names no axes ([TRAJ]COORDINATES)")
@@ -249,7 +242,6 @@ class _Reading:
         return letters
 
     def letters_of_joints(self) -> str:
-        """The letter of each joint."""
         text = self.given.get("coordinates", "").upper() or self._letters_unsaid()
         for i, letter in enumerate(text):
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
@@ -276,22 +268,29 @@ class _Reading:
         return text
 
     def machine(self) -> Machine:
-        """All of it."""
-        name = self.ini.one("EMC", "MACHINE") or self.stem
+        name = self.ini.one("EMC", "MACHINE") or self.ini.path.stem
         extra = [letter for letter in self.letters if letter in "UVW"]
         if extra:
             self.notes.append(f"{', '.join(extra)}: second linear axes are not used; their travel is not counted")
         lacking = [letter for letter in "XYZ" if letter not in self.letters]
         if lacking:
             self.notes.append(f"it has no axis {', '.join(lacking)}")
-        straight = [self.linear(letter) for letter in "XYZ" if letter in self.letters]
-        part, tool = self.trivial() if self.name == TRIVIAL else self.known()
+        straight = [
+            Axis(letter, "linear", "tool", chain.ISO[letter], self.limits(letter, self.name == TRIVIAL), **self.speeds(letter))
+            for letter in "XYZ" if letter in self.letters
+        ]  # fmt: skip
+        rotary = self.trivial() if self.name == TRIVIAL else self.known()
+        part, tool = ([each for each in rotary if each.carries == side] for side in ("part", "tool"))
         return chain.machine(name, [*part, *straight, *tool], self.notes)
+
+    def of_joints(self, letter: str) -> tuple[float, list[str]]:
+        """The size of the unit of an axis, and the sections of its joints."""
+        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
+        return self.angle if letter in "ABC" else self.length, sections
 
     def limits(self, letter: str, trivial: bool) -> tuple[float, float] | None:
         """Limits of an axis, in rad or mm: those of its joint, and where both mean the same those of the axis."""
-        size = self.angle if letter in "ABC" else self.length
-        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
+        size, sections = self.of_joints(letter)
         stated = [self.ends(section, size) for section in sections if section in self.ini.values]
         own = self.ends(f"AXIS_{letter}", size)
         # Of kinematics that couple axes, those of a linear axis are of the programmed place, not of the machine's.
@@ -305,32 +304,24 @@ class _Reading:
     def ends(self, section: str, size: float) -> tuple[float, float] | None:
         return chain.ranged(self.ini.number(section, "MIN_LIMIT"), self.ini.number(section, "MAX_LIMIT"), size)
 
-    def least(self, letter: str, word: str) -> float | None:
-        """The least of what an axis and its joints say by a word: of the largest speeds, or accelerations."""
-        size = self.angle if letter in "ABC" else self.length
-        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
-        rates = [self.ini.number(section, word) for section in (f"AXIS_{letter}", *sections)]
-        speeds = [chain.scaled(each, size) for each in rates if each is not None and each > 0.0]
-        return min(speeds, default=None)
+    def speeds(self, letter: str) -> dict[str, Any]:
+        """The largest speed and acceleration of an axis: the least of what it and its joints say."""
+        (size, sections), result = self.of_joints(letter), dict[str, Any]()
+        for name, word in (("rate", "MAX_VELOCITY"), ("acceleration", "MAX_ACCELERATION")):
+            stated = [self.ini.number(section, word) for section in (f"AXIS_{letter}", *sections)]
+            result[name] = min((chain.scaled(each, size) for each in stated if each is not None and each > 0.0), default=None)
+        return result
 
-    def linear(self, letter: str) -> Axis:
-        rate, change = (self.least(letter, word) for word in ("MAX_VELOCITY", "MAX_ACCELERATION"))
-        return chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), rate, change)
-
-    def rotary(self, letter: str, carries: str, against: bool, point: chain.Vector) -> Axis:
+    def rotary(self, letter: str, carries: Carried, against: bool, point: chain.Vector) -> Axis:
         direction = chain.opposite(chain.ISO[letter]) if against else chain.ISO[letter]
-        rate, change = (self.least(letter, word) for word in ("MAX_VELOCITY", "MAX_ACCELERATION"))
-        return chain.axis(letter, "rotary", "part" if carries == "part" else "tool", direction,
-                          limits=self.limits(letter, False), point=point, rate=rate, acceleration=change)  # fmt: skip
+        return Axis(letter, "rotary", carries, direction, self.limits(letter, False), point, **self.speeds(letter))
 
-    def trivial(self) -> tuple[list[Axis], list[Axis]]:
+    def trivial(self) -> list[Axis]:
         """Kinematics that say nothing of how axes stand on each other."""
         rotary = [self.rotary(letter, "part", False, (0.0, 0.0, 0.0)) for letter in self.letters if letter in "ABC"]
-        axes = arranged(rotary, self.added, self.notes, TRIVIAL)
-        return [each for each in axes if each.carries == "part"], [each for each in axes if each.carries == "tool"]
+        return arranged(rotary, self.added, self.notes, TRIVIAL)
 
-    def known(self) -> tuple[list[Axis], list[Axis]]:
-        """Kinematics of which the formulas are known."""
+    def known(self) -> list[Axis]:
         self.added.refuse(self.ini.path.name, order=True, sign=True)
         kins = KINS[self.name]
         listed = [letter for letter in self.letters if letter in "ABC"]
@@ -346,9 +337,8 @@ class _Reading:
         hal = Hal(self.ini)
         against = self.against(kins, hal)
         points = self.points(hal)
-        part = [self.rotary(letter, "part", letter in against, points[letter]) for letter in kins.part]
-        tool = [self.rotary(letter, "tool", letter in against, points[letter]) for letter in kins.tool]
-        return part, tool
+        sides: list[tuple[Carried, str]] = [("part", kins.part), ("tool", kins.tool)]
+        return [self.rotary(each, side, each in against, points[each]) for side, letters in sides for each in letters]
 
     def against(self, kins: Kins, hal: Hal) -> str:
         """Letters that are counted against ISO 841."""
@@ -356,7 +346,7 @@ class _Reading:
         result = hal.value(pin, 0.0) if kins.pin else 0.0
         if result is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
             why = "something else feeds it" if result is None else f"{', '.join(hal.missing)} is not at hand"
-            if not all(chain.even(self.limits(letter, False), turns=True) for letter in kins.against):
+            if not all(chain.even(self.limits(letter, False)) for letter in kins.against):
                 raise MachineError(
                     f"the sense of its angles hangs on {pin}, and {why}: put the HAL file next to it, or a line "
                     f"HALCMD = setp {pin} 0 (or 1) into [HAL]"

@@ -2,19 +2,18 @@
 
 import os
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.own_process import LEFT, Forbidden, OwnProcess, OwnStep, unit_axis
-from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.files import content
-from plan_cutters.machines.toml import Number, Vector, explained
+from plan_cutters.errors import OptionError
+from plan_cutters.files.content import Content
+from plan_cutters.machines.toml import Number, Table, Vector, explained
 
 #: Bytes and steps that no process written by hand has.
 _MOST, _STEPS = 1 << 20, 500
@@ -24,13 +23,6 @@ _Cutter = Annotated[str, Field(min_length=1, max_length=300, description="id, th
 _Faces = Annotated[list[str], Field(min_length=1, description="as F12")]
 
 
-class Content(content.Content):
-    """A file that may hold a process."""
-
-    noun: ClassVar[str] = "process file"
-    error: ClassVar[type[PlanError]] = OptionError
-
-
 def _named(value: Any) -> Any:
     """The word `left`, or names of faces; what is neither is told so, once for both."""
     if value != LEFT and not (isinstance(value, list) and value and all(isinstance(each, str) for each in value)):
@@ -38,11 +30,7 @@ def _named(value: Any) -> Any:
     return value
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class StepTable(_Table):
+class StepTable(Table):
     """A step: one cutter in one setup, at one fixed orientation or simultaneous, on some faces."""
 
     setup: Annotated[int, Field(ge=1, le=1000, strict=True, description="from 1")] = 1
@@ -64,14 +52,14 @@ class StepTable(_Table):
     )
 
 
-class ForbidTable(_Table):
+class ForbidTable(Table):
     """A cutter that is not to be planned on some faces."""
 
     cutter: _Cutter
     faces: _Faces
 
 
-class ProcessTable(_Table):
+class ProcessTable(Table):
     """Steps that are judged as they stand, in their order, and what is done with what they leave."""
 
     format: Literal["plan-cutters-process"] = "plan-cutters-process"
@@ -96,28 +84,16 @@ def process_of(value: Any) -> OwnProcess:
         return _made(dict(value), "")
     if not isinstance(value, str | os.PathLike):
         raise OptionError(f"process: give a file or the steps, not {shown(value)}")
-    read = Content.of(Path(value))
+    read = Content.of(value, "process file", OptionError)
     if len(read.data) > _MOST:
         raise OptionError("is too large for a process that a person wrote", file=read.name)
-    return _made(_document(read), str(read.path))
-
-
-def _document(read: Content) -> Any:
-    """The content of a file: JSON if it is called so or looks so, else TOML."""
     if read.path.suffix.lower() == ".json" or read.head.startswith("{"):
         if read.json is None:
             raise read.broken_json()
-        return read.json
+        return _made(read.json, str(read.path))
     if read.head.startswith("<"):
         raise OptionError("is a web page or XML, no process file: give the process.toml of a plan", file=read.name)
-    try:
-        return tomllib.loads(read.text)
-    except RecursionError:
-        raise OptionError("is no TOML: it is nested too deeply", file=read.name) from None
-    except ValueError as error:
-        # Python's own words about numbers of thousands of digits are for programmers.
-        why = " ".join(str(error).split()) if isinstance(error, tomllib.TOMLDecodeError) else "a number has too many digits"
-        raise OptionError(f"is no TOML: {why}", file=read.name) from None
+    return _made(read.toml(), str(read.path))
 
 
 def _made(document: Any, file: str) -> OwnProcess:
@@ -156,7 +132,6 @@ def _step(number: int, table: StepTable, file: str) -> OwnStep:
 
 
 def _numbers(faces: "list[str] | str", file: str, where: str) -> tuple[int, ...]:
-    """Face numbers of words such as F12."""
     numbers = []
     for word in faces:
         if not re.fullmatch(r"F[1-9][0-9]{0,8}", word):

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from plan_cutters.domain.machine import Machine, builtin_machines
-from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.errors import MachineError
-from plan_cutters.files.content import Foreign, Format, recognised
+from plan_cutters.files.content import Foreign, Format, called, recognised, rooted
 from plan_cutters.machines import freecad, fusion, linuxcnc, toml
-from plan_cutters.machines.chain import Added, Content
+from plan_cutters.machines.chain import Added, Content, opened
 
 Reader = Callable[[Content, Added], Machine]
 FORMATS: tuple[Format[Reader], ...] = (
@@ -20,7 +19,6 @@ FORMATS: tuple[Format[Reader], ...] = (
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
     Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
-    Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
     # By its name alone, so that it is said where it is no TOML or what is missing.
     Format("plan-cutters TOML", (".toml",), toml.is_named, toml.read_toml),
 )
@@ -28,25 +26,16 @@ FORMATS: tuple[Format[Reader], ...] = (
 _TOML = "write the machine as TOML (docs/machines.md)"
 
 
-def _root(*names: str) -> Callable[[Content], bool]:
-    pattern = re.compile(rf"<\s*(?:\w+:)?(?:{'|'.join(names)})\b", re.IGNORECASE)
-    return lambda c: c.head.startswith("<") and pattern.search(c.head) is not None
-
-
-def _suffix(*words: str) -> Callable[[Content], bool]:
-    return lambda c: c.path.suffix.lower() in words
-
-
 FOREIGN = (
-    Foreign("a web page (HTML)", _root("!doctype html", "html", "head", "body"),
+    Foreign("a web page (HTML)", rooted("!doctype html", "html", "head", "body"),
             "download the machine itself: perhaps a log-in stands before it"),
-    Foreign("a robot (URDF)", _root("robot"), f"no machine tool is known in it; {_TOML}"),
-    Foreign("a robot (SDF)", _root("sdf"), f"no machine tool is known in it; {_TOML}"),
-    Foreign("MTConnect data", _root("MTConnectDevices", "MTConnectStreams", "MTConnectAssets", "MTConnectError"),
+    Foreign("a robot (URDF)", rooted("robot"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("a robot (SDF)", rooted("sdf"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("MTConnect data", rooted("MTConnectDevices", "MTConnectStreams", "MTConnectAssets", "MTConnectError"),
             f"it does not say how the axes stand on each other; {_TOML}, ten lines do"),
-    Foreign("a PowerMill machine", _suffix(".mtd"), _TOML),
-    Foreign("a LinuxCNC HAL file", _suffix(".hal", ".tcl"), "give the .ini that names it"),
-    Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
+    Foreign("a PowerMill machine", called(".mtd"), _TOML),
+    Foreign("a LinuxCNC HAL file", called(".hal", ".tcl"), "give the .ini that names it"),
+    Foreign("a LinuxCNC tool table", called(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
     Foreign("a Fusion tool library", lambda c: isinstance(c.json, dict) and isinstance(c.json.get("data"), list),
             "give it with --cutters"),
     Foreign("an ISO 10303-21 file (STEP)", lambda c: c.head.startswith("iso-10303-21"), _TOML),
@@ -73,11 +62,7 @@ def read_machine(path: str | os.PathLike[str], added: str = "") -> Machine:
 
 def described(path: str | os.PathLike[str], added: str = "") -> tuple[Machine, str]:
     """The same, and the name of the format."""
-    try:
-        file = Path(path)
-    except TypeError:
-        raise MachineError(f"a machine file is a file's name, not a value of type {type(path).__name__}") from None
-    content = Content.of(file)
+    content = opened(path)
     form = recognised(
         content, FORMATS, FOREIGN[1:], first=FOREIGN[:1], xml=f"no machine file that is known; {_TOML}",
         json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",
@@ -129,12 +114,3 @@ def _there(text: str) -> bool:
 
 def _file_like(text: str) -> bool:
     return os.sep in text or Path(text).suffix.lower() in (".toml", ".json", ".fcm", ".mch", ".ini", ".xml", ".urdf")
-
-
-def process_requested(value: Any) -> OwnProcess | None:
-    """The planner's own process as it was requested: a file, a mapping, or None. What reads it is loaded where it is needed."""
-    if value is None:
-        return None
-    from plan_cutters.machines.process_file import process_of
-
-    return process_of(value)

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import tomllib
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -23,18 +22,20 @@ Size = Annotated[float, Field(strict=True)] | str
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
 
-class _Table(BaseModel):
+class Table(BaseModel):
+    """A table of a file: what it does not know is refused."""
+
     model_config = ConfigDict(extra="forbid")
 
 
-class Units(_Table):
+class Units(Table):
     """Units of all lengths and angles."""
 
     length: Literal["mm", "cm", "m", "inch"]
     angle: Literal["deg", "rad"]
 
 
-class AxisTable(_Table):
+class AxisTable(Table):
     """An axis; `limits` missing or null: none, one of them null or inf: none on that side.
 
     `rate` is a speed a second, `acceleration` what that may change by in a second; `accuracy` an angle, of a rotary axis alone.
@@ -50,21 +51,21 @@ class AxisTable(_Table):
     acceleration: Size | None = None
 
 
-class MaxTool(_Table):
+class MaxTool(Table):
     """The largest tool that fits."""
 
     length: Number | None = None
     diameter: Number | None = None
 
 
-class Mount(_Table):
+class Mount(Table):
     """Where the part stands."""
 
     origin: Vector | None = None
     z: Vector | None = None
 
 
-class MachineTable(_Table):
+class MachineTable(Table):
     """A machine: each chain runs from the bed outward."""
 
     format: Literal["plan-cutters-machine"]
@@ -100,12 +101,7 @@ def is_json(content: Content) -> bool:
 
 def read_toml(content: Content, added: Added) -> Machine:
     """Read it."""
-    try:
-        document = tomllib.loads(content.text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        why = "it is nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
-        raise MachineError(f"is no TOML: {why}", file=content.name) from None
-    return _machine(document, content, added)
+    return _machine(content.toml(), content, added)
 
 
 def read_json(content: Content, added: Added) -> Machine:

@@ -35,8 +35,7 @@ from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.holes import WorkplaneEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import least_clearance
-from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
-from plan_cutters.scene.planes import tilted_plane
+from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, tilted_plane
 from plan_cutters.scene.preparation import Prepared, places
 
 

@@ -234,7 +234,7 @@ class Walls:
             direction_max=samples.direction_max[rows], curvature=samples.curvature[rows],
         )  # fmt: skip
         self._probes.made += len(rows)
-        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s], held=True)
+        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s])
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""

@@ -28,31 +28,24 @@ _PROVED_AT, _CLEAR = np.array([1.0, 0.3, 0.1, 0.03]), 4.0
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Conditions(Record):
-    """The same for all cutters of a plan, in one setup.
-
-    `setup` (3,) float: unit setup axis.
-    `surroundings`: what is, and what may be, in the way.
-    `tolerance`: gouge tolerance that is kept, mm.
-    `jobs`: threads.
-    `x` (3,) float: unit direction of the part along the machine's X, as `Placement` has it.
-    `accuracy`: of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
-    `obstacles`: everything that may be in the way. It follows from the fields above, as the next three do.
-    `frame` (3, 3) float: the machine's X, Y and Z in part coordinates, as rows, at zero angles.
-    `kinematics`: the machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
-    `ranges`: the postures and the limits of the machine, in the form that kernels take.
-    """
+    """The same for all cutters of a plan, in one setup."""
 
     machine: Machine
-    setup: Floats
+    setup: Floats  #: (3,) float: unit setup axis.
     postures: PostureRange
-    surroundings: Surroundings
-    tolerance: float
-    jobs: int
-    x: Floats | None = None
+    surroundings: Surroundings  #: What is, and what may be, in the way.
+    tolerance: float  #: Gouge tolerance that is kept, mm.
+    jobs: int  #: Threads.
+    x: Floats | None = None  #: (3,) float: unit direction of the part along the machine's X, as `Placement` has it.
+    #: Of the machine's rotary axes, rad: what is off by no more is upright, or along a wall (`scene.fixed_axis`).
     accuracy: float = 0.0
+    #: Everything that may be in the way. It follows from the fields above, as the next three do.
     obstacles: Obstacles = field(init=False, compare=False)
+    #: (3, 3) float: the machine's X, Y and Z in part coordinates, as rows, at zero angles.
     frame: Floats = field(init=False, compare=False)
+    #: The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
     kinematics: Kinematics | None = field(init=False, compare=False)
+    #: The postures and the limits of the machine, in the form that kernels take.
     ranges: Ranges = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -82,25 +75,20 @@ class Conditions(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Context(Record):
-    """One cutter under the conditions of one setup: what every judgement of it needs, made once and handed on.
-
-    `outer_tool`: a triangle that does not reach into it lets the surface come no deeper than allowed.
-    `inner_tool`: a triangle that reaches into it proves that a point of the surface is too deep in the cutter.
-    `outer`, `inner`: the same two in the form that kernels take.
-    `dummy` (k, COLUMNS) float: of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
-    `proved_at` (k,) float: distances along the normal, mm, at which material proves that every posture is blocked, those that are
-        tried.
-    `judges`: whether the tolerance that is kept is fine enough to say anything about the cutter.
-    """
+    """One cutter under the conditions of one setup: what every judgement of it needs, made once and handed on."""
 
     cutter: Cutter
     conditions: Conditions
-    outer_tool: Assembly
-    inner_tool: Assembly
+    outer_tool: Assembly  #: A triangle that does not reach into it lets the surface come no deeper than allowed.
+    inner_tool: Assembly  #: A triangle that reaches into it proves that a point of the surface is too deep in the cutter.
+    #: `outer`, `inner`: the same two in the form that kernels take.
     outer: Tool = field(init=False, compare=False)
     inner: Tool = field(init=False, compare=False)
+    #: (k, COLUMNS) float: of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
     dummy: Floats = field(init=False, compare=False)
+    #: (k,) float: distances along the normal, mm, at which material proves that every posture is blocked, those that are tried.
     proved_at: Floats = field(init=False, compare=False)
+    #: Whether the tolerance that is kept is fine enough to say anything about the cutter.
     judges: bool = field(init=False, compare=False)
 
     def __post_init__(self) -> None:

@@ -20,31 +20,21 @@ How = Literal["overlaps", "stands_on", "touches_or_overlaps"]
 
 #: A contact is surely within a body from so many depths on beyond which a posture is blocked, and on its skin up to so many.
 _DEEP, _ON = 1.5, 1.5
-#: Contacts that are asked first.
-_FEW = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Covering(Record):
-    """A body, and what of the samples lies inside it.
+    """A body, and what of the samples lies inside it."""
 
-    `index`: into the part's bodies.
-    `rows` (m,) int64: samples, those of sheets that lie on bodies not among them.
-    `how`: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its
-        skin. Otherwise neither is sure.
-    `faces`: of the body, ascending.
-    `largest`: no other body is larger.
-    `name`: of its component; empty where it has none of its own.
-    `selection`: words for faces that choose this body and no other one.
-    """
-
-    index: int
-    rows: NDArray[np.int64]
+    index: int  #: Into the part's bodies.
+    rows: NDArray[np.int64]  #: (m,) int64: samples, those of sheets that lie on bodies not among them.
+    #: `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
+    #: Otherwise neither is sure.
     how: How
-    faces: tuple[int, ...]
-    largest: bool
-    name: str
-    selection: str
+    faces: tuple[int, ...]  #: Of the body, ascending.
+    largest: bool  #: No other body is larger.
+    name: str  #: Of its component; empty where it has none of its own.
+    selection: str  #: Words for faces that choose this body and no other one.
 
 
 def coverings(ready: Prepared) -> tuple[Covering, ...]:
@@ -80,11 +70,8 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     _, deep = certain.depths(ready.conditions.tolerance)
     point, shell = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
-    # Where a body overlaps, a few of them tell.
-    few = np.arange(len(point)) % (1 + len(point) // _FEW) == 0
-    for some in (point[few], point[~few]):
-        if balls_inside(some, _DEEP * deep, shell, ready.options.jobs).any():
-            return "overlaps"
+    if balls_inside(point, _DEEP * deep, shell, ready.options.jobs).any():
+        return "overlaps"
     near_shell(point, _ON * deep, shell.solids, on)
     return "stands_on" if on.all() else "touches_or_overlaps"
 

@@ -32,16 +32,14 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Clearances(Record):
-    """Of n samples at the postures found; where there is no posture nan and -1.
+    """Of n samples at the postures found; where there is no posture nan and -1."""
 
-    `distance` (n,) float: no more than the true clearance, mm, and within 2 % or 0.005 mm of it, unless the flutes' edges are
-    nearest. At `domain.clearance.MOST` it is that or more. `part` (n,) int8: of the tool what is nearest: FLUTES, NECK, SHANK or
-    HOLDER; -1 where nothing is near. `face` (n,) int32: the face in the way if that part were a little larger, negative for a
-    fixture (`Surroundings.called`); 0 for none.
-    """
-
+    #: (n,) float: no more than the true clearance, mm, and within 2 % or 0.005 mm of it, unless the flutes' edges are nearest. At
+    #: `domain.clearance.MOST` it is that or more.
     distance: Floats
-    part: NDArray[np.int8]
+    part: NDArray[np.int8]  #: (n,) int8: of the tool what is nearest: FLUTES, NECK, SHANK or HOLDER; -1 where nothing is near.
+    #: (n,) int32: the face in the way if that part were a little larger, negative for a fixture (`Surroundings.called`); 0 for
+    #: none.
     face: Ints
 
 
@@ -152,16 +150,12 @@ _EXACT = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Deepest(Record):
-    """The deepest point of what stands around a tool.
+    """The deepest point of what stands around a tool."""
 
-    `face`: its face; negative for a fixture, as in `Surroundings.called`. `triangle`: of the obstacles. `point` (3,) float: on
-    the surface, where it could be found there, else on the triangle. `depth`: mm; negative outside the tool.
-    """
-
-    face: int
-    triangle: int
-    point: Floats
-    depth: float
+    face: int  #: Its face; negative for a fixture, as in `Surroundings.called`.
+    triangle: int  #: Of the obstacles.
+    point: Floats  #: (3,) float: on the surface, where it could be found there, else on the triangle.
+    depth: float  #: mm; negative outside the tool.
 
 
 def deepest_of(cutter: Cutter) -> float:

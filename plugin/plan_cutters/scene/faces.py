@@ -1,7 +1,7 @@
 """Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from numbers import Integral
 from types import MappingProxyType
@@ -38,26 +38,19 @@ _LONGEST = 60
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """The choice makes some faces of a part targets and ignores some; those in neither list are other faces.
+    """The choice makes some faces of a part targets and ignores some; those in neither list are other faces."""
 
-    `targets`, `ignored`: face numbers, ascending.
-    `asked`: the words for `targets`.
-    `ignore`: the words for `ignored`.
-    `unshaped`: the targets are all faces for which no list was given, and none of them that can be judged is sculptured.
-    `clamped`: targets that are held in all setups.
-    `blends`: faces of the part that are fillets and rounds, whether chosen or not.
-    `free_form`: share of the targets' area that is bent in both directions (`preference.free_form_share`).
-    `repeated`: ignored faces that lie where others lie: which face stands for each.
-    """
-
+    #: `targets`, `ignored`: face numbers, ascending.
     targets: tuple[int, ...]
     ignored: tuple[int, ...]
-    asked: str
-    ignore: tuple[str, ...]
+    asked: str  #: The words for `targets`.
+    ignore: tuple[str, ...]  #: The words for `ignored`.
+    #: The targets are all faces for which no list was given, and none of them that can be judged is sculptured.
     unshaped: bool = False
-    clamped: tuple[int, ...] = ()
-    blends: frozenset[int] = frozenset()
-    free_form: float = 0.0
+    clamped: tuple[int, ...] = ()  #: Targets that are held in all setups.
+    blends: frozenset[int] = frozenset()  #: Faces of the part that are fillets and rounds, whether chosen or not.
+    free_form: float = 0.0  #: Share of the targets' area that is bent in both directions (`preference.free_form_share`).
+    #: Ignored faces that lie where others lie: which face stands for each.
     repeated: Mapping[int, int] = field(default_factory=dict)
 
 
@@ -72,15 +65,11 @@ def choose(
 ) -> Chosen:
     """Target and ignored faces of a part.
 
-    Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all
-    setups.
-
-    `faces`: without it those picked on the host's object, else `DEFAULT`.
-    `ignored`: faces to leave out.
-    `ignore`: the words for these.
-    `placed`: its clamped faces stay targets: they are left for another setup, and named.
-    `others` (sequence of (Placement or None)): of other setups: only what is clamped in all of them, too, is left.
-    `repeated`: faces, ignored too, that lie where others lie: which face stands for each.
+    `faces`: without it those picked on the host's object, else `DEFAULT`. `ignored`: faces to leave out; `ignore`: the words for
+    these. `placed`: its clamped faces stay targets: they are left for another setup, and named. `others`: of other setups: only
+    what is clamped in all of them, too, is left. `repeated`: faces, ignored too, that lie where others lie: which face stands for
+    each. Raises OptionError: a choice has no meaning, a face is requested by its number and ignored, or every target is clamped
+    in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
@@ -128,7 +117,9 @@ def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int,
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
     """The choice of faces to leave out as words."""
-    return tuple(_words(part, ignore, "--ignore"))
+    if isinstance(ignore, list | tuple) and all(isinstance(each, str) for each in ignore):
+        return tuple(ignore)
+    return () if ignore is None else (_word(part, ignore, "--ignore"),)
 
 
 def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
@@ -158,16 +149,11 @@ def select_faces(
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
-    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
-
-    `faces`: all faces of the part.
     `text`: `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
-        `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
-        sculptured.
-    `tree`: components of the part.
-    `ignored`: faces that cannot be targets.
-    `blends`: numbers of the faces that are fillets and rounds.
-    `repeated`: faces that lie where others lie, and which one is taken for each.
+    `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
+    sculptured. `faces`, `tree`: all faces and components of the part. `ignored`: faces that cannot be targets. `blends`: numbers
+    of the faces that are fillets and rounds. `repeated`: faces that lie where others lie, and which one is taken for each.
+    Raises OptionError: the text is not of that form, selects nothing, or names an ignored face by its number.
     """
     out = frozenset(ignored)
     remaining = [f for f in faces if f.number not in out]
@@ -207,11 +193,7 @@ def grammar(text: str, option: str) -> None:
         except (re.error, RecursionError, OverflowError) as error:
             raise OptionError(f"{where}: not a regular expression ({error})") from None
     elif _LIST.fullmatch(plain):
-        for item, first, last, _ in _ends(plain):
-            if first > last:
-                raise OptionError(f"{where}: {_brief(item)} runs backwards")
-            if not first:
-                raise OptionError(f"{where}: there is no face F0; they are numbered from 1")
+        _numbered(plain, None, where)
     else:
         raise OptionError(f"{where}: give {_WORDS}")
 
@@ -246,27 +228,25 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     return chosen
 
 
-def _numbered(word: str, count: int, where: str) -> set[int]:
-    """Numbers in a list of numbers and ranges, none beyond `count`."""
+def _numbered(word: str, count: int | None, where: str) -> set[int]:
+    """Numbers in a list of numbers and ranges, none beyond `count`; without it they are looked at alone, whatever the part."""
     numbers: set[int] = set()
-    for item, first, last, ends in _ends(word):
-        for end, number in zip(ends, (first, last), strict=True):
-            if not 1 <= number <= count:
-                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
-        if first > last:
-            raise OptionError(f"{where}: {_brief(item)} runs backwards")
-        numbers.update(range(first, last + 1))
-    return numbers
-
-
-def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
-    """Each number and range of a list, where it begins and ends, as numbers and as written."""
     for item in word.split(","):
         if item.strip() in _KINDS:
             continue
         ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
         # No more digits than can count: neither a huge number nor a huge range is ever built.
-        yield item.strip(), int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS]), (ends[0], ends[-1])
+        first, last = int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS])
+        for end, number in ((ends[0], first), (ends[-1], last)):
+            if count is not None and not 1 <= number <= count:
+                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
+        if first > last:
+            raise OptionError(f"{where}: {_brief(item.strip())} runs backwards")
+        if count is not None:
+            numbers.update(range(first, last + 1))
+        elif not first:
+            raise OptionError(f"{where}: there is no face F0; they are numbered from 1")
+    return numbers
 
 
 def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
@@ -287,15 +267,7 @@ def _brief(text: str) -> str:
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
 
 
-def _words(part: "Part", value: Any, option: str) -> list[str]:
-    """Each of several choices as text."""
-    if isinstance(value, list | tuple) and all(isinstance(each, str) for each in value):
-        return list(value)
-    return [] if value is None else [_word(part, value, option)]
-
-
 def _word(part: "Part", value: Any, option: str) -> str:
-    """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
     from cad_io.read.objects import face_numbers
     from cad_io.read.step_text import typed

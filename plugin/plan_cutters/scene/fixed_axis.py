@@ -4,7 +4,7 @@ A machine that holds its rotary axes while it cuts (3+2) needs just that. Each a
 postures that it finds: what is served is proved to the same tolerance (`docs/operations_proof.md`, lemmas O10 and W3).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.domain.control_words import ControlWords, control_words
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
 from plan_cutters.scene.work import Progress, in_chunks
@@ -29,17 +32,15 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def leaning(
-    rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context, *, held: bool = False
-) -> NDArray[np.bool_]:
-    """At which of some samples (m,) a cutter stands free with one axis (3,) and the contact at the sample itself.
+def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
+    """At which of some samples (m,) a cutter stands free with one axis (3,) that the machine holds, touching the sample itself.
 
-    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance. `held`: the machine holds the axis.
+    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance.
     """
     from plan_cutters.kernels.search.fixed_axis import LEANING
 
-    known = np.zeros(1, np.int64) if held else None
-    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=known)[0][0] == LEANING)
+    way, _, _ = _tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=np.zeros(1, np.int64))
+    return np.asarray(way[0] == LEANING)
 
 
 def served_by(
@@ -81,7 +82,6 @@ def _tested(
     about = max(FLAT, conditions.accuracy), conditions.tolerance if every else -1.0, every
 
     def tested(piece: NDArray[np.int64]) -> int:
-        """Test a piece of a table of axes by blocks of rows."""
         which, block = np.divmod(piece, blocks)
         boxes = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
@@ -213,3 +213,18 @@ def at_fixed_axis(samples: SurfaceSamples, held: Verdicts, tolerance: float) -> 
         point=np.where(walls, samples.point + tolerance * across, samples.point),
         normal=np.where(upright, held.axis, np.where(walls, across, samples.normal)),
     )
+
+
+def tilted_plane(
+    conditions: Conditions, place: Placement | None, moved: Kinematics, axis: Floats, angle: Floats,
+    own: Mapping[str, float] | None, other: Mapping[str, float] | None,
+) -> tuple[Floats, Floats, ControlWords]:  # fmt: skip
+    """The plane that a control turns to for a tool axis (3,): its origin (3,), mm, its x (3,), and its words.
+
+    `moved`: the machine with what turns at `angle` (k,), rad. `own`, `other`: the angles by name, deg, and those of the other
+    solution, if there is one.
+    """
+    origin = np.zeros(3) if place is None or place.origin is None else np.array(place.origin, float)
+    x = frame_of(axis, moved.carried(conditions.frame[0], angle[None])[0])[0]
+    words = control_words(conditions.frame, np.array([x, np.cross(axis, x), axis]), own, other)
+    return origin, x, words

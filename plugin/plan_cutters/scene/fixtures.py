@@ -103,17 +103,12 @@ def joined(
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
-    Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has nothing
-    to grip.
-
-    `surroundings`: of the part alone.
-    `chord`: chord error to ask for, mm.
-    `cache`: fixtures that are known, by their sources: they are not read again.
-    `setup`: unit setup axis, across which tables lie.
-    `own`, `own_setup`: more fixtures, whose tables lie across another unit setup axis.
-    `hold`: places a vise or chuck for a unit setup axis. None: there is none to be placed.
-    `sign` (faces,) float: side of each face of the part that is out of the material. None: nobody asks which bodies a vise or
-        chuck holds.
+    `surroundings`: of the part alone. `chord`: chord error to ask for, mm. `cache`: fixtures that are known, by their sources:
+    they are not read again. `setup`: unit setup axis, across which tables lie. `own`, `own_setup`: more fixtures, whose tables
+    lie across another one. `hold`: places a vise or chuck for a unit setup axis. None: there is none to be placed. `sign`
+    (faces,) float: side of each face of the part that is out of the material. None: nobody asks which bodies a vise or chuck
+    holds. Raises ReadError, UnjudgeableError, FixtureError: a fixture cannot be read, or has no triangles; a vise or chuck has
+    nothing to grip.
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
@@ -146,8 +141,7 @@ def joined(
         # Of stock that is gripped all bodies are made.
         parts = () if sign is None or blank is not None else material_bodies(surroundings.bodies, sign)
         if clamping is not None and len(parts) > 1:
-            known = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
-            in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, known.triangles, parts))
+            in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, surroundings.certain.triangles, parts))
         placed_fixtures.append(in_place)
         bodies.append(body)
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
@@ -219,17 +213,19 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
         whole = Obstacles(_triangles(source.vertex, fixture.chord_error), shells.weight)
         return _Body(whole, whole, (), tuple(notes))
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
-    if key not in cache and source is not None:
-        cache[key] = _of_part(source, fixture, chord)
-    elif key not in cache and fixture.kind == "box":
-        cache[key] = _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
-    elif key not in cache and (clamping := fixture.clamping) is not None:
-        cache[key] = _solid(*triangles_of(clamping, chord))
-    elif key not in cache:
-        radius, height = fixture.sizes
-        sides = sides_of(radius, chord)
-        # The chord of a side is this far from the arc.
-        cache[key] = _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
+    if key not in cache:
+        if source is not None:
+            made = _of_part(source, fixture, chord)
+        elif fixture.kind == "box":
+            made = _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
+        elif (clamping := fixture.clamping) is not None:
+            made = _solid(*triangles_of(clamping, chord))
+        else:
+            radius, height = fixture.sizes
+            sides = sides_of(radius, chord)
+            # The chord of a side is this far from the arc.
+            made = _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
+        cache[key] = made
     body: _Body = cache[key]
     return body
 
@@ -264,11 +260,10 @@ def stock_body(
     """The stock about a part in the frame of a setup. Raises ReadError, OptionError: a file's is none, or does not enclose it."""
     stock, frame = fixture.stock, frame_of(np.asarray(setup, float))
     assert stock is not None, "only stock is made of its word"
-    part = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
-    blank = None
+    corners, blank = surroundings.certain.triangles.vertex.reshape(-1, 3), None
     if stock.file:
         blank = _body(Fixture(stock.file), chord, cache).possible.triangles.vertex.reshape(-1, 3) @ frame.T
-    return StockBody.about(stock, part.triangles.vertex.reshape(-1, 3) @ frame.T, blank)
+    return StockBody.about(stock, corners @ frame.T, blank)
 
 
 def _foot(blank: StockBody, setup: Sequence[float], chord: float) -> _Body:
@@ -331,13 +326,10 @@ _PRECISION, _FEW = 0.002, 400
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Overlap(Record):
-    """Where a fixture and the part are deepest in each other, of the points looked at.
+    """Where a fixture and the part are deepest in each other, of the points looked at."""
 
-    `depth`, mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface. `point` (3,) float.
-    """
-
-    depth: float
-    point: Floats
+    depth: float  #: mm; a ball of this radius about `point` is all in the one, and `point` is of the other's surface.
+    point: Floats  #: (3,) float.
 
 
 def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:

@@ -65,18 +65,18 @@ def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: Verd
     rows = rows[verdicts.reason[rows] != INSIDE]
     low, high = conditions.postures.tilt
     for tilt in (0.0, math.pi):
-        flat = context.outer_tool.offset_at(tilt)
-        if flat > 0.0 and low - _WHOLE <= tilt <= high + _WHOLE and len(rows):
-            _on_flat(contacts, rows, math.cos(tilt), flat, context, verdicts)
+        if context.outer_tool.touching_at(tilt)[0] > 0.0 and low - _WHOLE <= tilt <= high + _WHOLE and len(rows):
+            _on_flat(contacts, rows, tilt, context, verdicts)
             rows = rows[verdicts.not_reached[rows]]
 
 
-def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context: Context, verdicts: VerdictBuffer) -> None:
-    """The same of the flat below, its axis `along` the normal (1), or above (-1)."""
+def _on_flat(contacts: Contacts, rows: Rows, at: float, context: Context, verdicts: VerdictBuffer) -> None:
+    """The same of the flat below, at tilt 0, or above, at pi."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
     from plan_cutters.kernels.search.flats_and_flanks import FORBIDDEN, PLACED, upright
 
     conditions, n = context.conditions, len(contacts.normal)
+    along, (flat, rise) = math.cos(at), context.outer_tool.touching_at(at)
     axis = np.full((n, 3), np.nan)
     axis[rows] = along * contacts.normal[rows]
     off = np.flatnonzero(~conditions.allows(axis[rows]))
@@ -100,7 +100,6 @@ def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context:
     verdicts.tilt[free[square]] = 0.0
     # Elsewhere the tilt direction is that of the axis: it is put down at the contact from which it stands in the place.
     tilt, other = verdicts.tilt[free, None], ~square[:, None]
-    rise = context.outer_tool.rise_at(0.0 if along > 0.0 else math.pi)
     across = np.cos(tilt) * f - np.sin(tilt) * normal
     shift = rise * (along * a - normal) + flat * (across - way[free])
     verdicts.shift[free] = np.where(other, shift, 0.0)
@@ -154,7 +153,6 @@ def _on_flank(
     away = np.array([0.0, _AWAY * conditions.obstacles.triangles.chord_error, conditions.tolerance])[: 3 if whole else 2]
 
     def tried(tool: Tool, solids: Any, within: float, some: Rows, hint: NDArray[np.int64]) -> NDArray[np.int8]:
-        """How each of some of the rows stands."""
         state = np.full(len(rows), NONE, np.int8)
 
         def piece(which: Rows) -> int:
@@ -197,7 +195,6 @@ def _on_flank(
 
 
 def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Context, verdicts: VerdictBuffer) -> None:
-    """Write postures with axes and tilt directions (m, 3)."""
     normal = contacts.normal[rows]
     verdicts.verdict[rows], verdicts.reason[rows] = ACCESSIBLE, NO_REASON
     verdicts.axis[rows], verdicts.tilt_direction[rows], verdicts.tilt[rows] = axis, f, _between(axis, normal)

@@ -18,14 +18,17 @@ def with_holes(ready: Prepared) -> Prepared:
     if not below:
         return ready
     scene, surroundings = ready.scene, ready.conditions.surroundings
-    own = surroundings.alone or surroundings
-    near = own.certain if len(own.certain.triangles) else own.possible
+    near = (surroundings.alone or surroundings).certain
     key = scene.part.key, scene.orientation.sign, scene.ignored, near.triangles.vertex
     every = ready.cache.cached("holes", key, lambda: holes(scene.part, scene.orientation, near.triangles, scene.ignored))
     # What the planner's own steps name is milled by them.
     named = () if ready.options.process is None else ready.options.process.faces_named
     drills, least = made_of(ready.options.libraries), min((2.0 * each.radius for each in ready.cutters), default=np.inf)
-    narrow = [for_drills(hole, below, drills, least) for hole in every if hole.diameter < below and not _shallow(hole)]
+    narrow = [
+        for_drills(hole, below, drills, least)
+        for hole in every
+        if hole.diameter < below and (hole.bottom not in ("flat", "round") or hole.depth > _POINT * hole.diameter)
+    ]
     mine = tuple(hole for hole in narrow if targets.intersection(hole.faces) and not {*named}.intersection(hole.faces))
     samples = ready.samples
     within = np.isin(samples.face, [n for hole in mine for n in hole.faces]) & (samples.unjudged < 0) & ~ready.inside_bodies
@@ -39,10 +42,6 @@ def made_of(libraries: Collection[Library]) -> list[Drill]:
 
 #: Height of the point of a drill of 118 deg, of its diameter: over a floor it makes no wall of a hole that is less deep.
 _POINT = 0.5 / np.tan(np.deg2rad(59.0))
-
-
-def _shallow(hole: Hole) -> bool:
-    return hole.bottom in ("flat", "round") and hole.depth <= _POINT * hole.diameter
 
 
 def for_drills(hole: Hole, below: float, drills: Collection[Drill] = (), least: float = np.inf) -> Hole:
@@ -73,25 +72,22 @@ def groups(each: Collection[Hole]) -> list[int]:
     return result
 
 
-#: Lengths (mm) and angles (rad) of holes that differ by less are equal.
+#: Lengths, mm, of holes that differ by less are equal; and angles, rad.
 _LENGTH, _ANGLE = 0.01, np.deg2rad(0.1)
 
 
 def alike(one: Hole, other: Hole) -> bool:
     """Whether two holes are equal but for their place."""
+    sizes = [((each.diameter, each.depth), (each.cone,), each.countersink or (), each.counterbore or ()) for each in (one, other)]
+    within = (_LENGTH, _LENGTH), (_ANGLE,), (_LENGTH, _ANGLE), (_LENGTH, _LENGTH)
     return (
         one.bottom == other.bottom
         and one.through == other.through
-        and _equal((one.diameter, one.depth), (other.diameter, other.depth), (_LENGTH, _LENGTH))
-        and _equal((one.cone,), (other.cone,), (_ANGLE,))
-        and _equal(one.countersink, other.countersink, (_LENGTH, _ANGLE))
-        and _equal(one.counterbore, other.counterbore, (_LENGTH, _LENGTH))
+        and all(len(a) == len(b) and all(map(_near, a, b, most)) for a, b, most in zip(*sizes, within, strict=True))
         and bool(one.axis @ other.axis >= np.cos(_ANGLE))
         and all(of(one.sizes, one.diameter) == of(other.sizes, other.diameter) for of in (thread_in, tolerance_in))
     )
 
 
-def _equal(one: object, other: object, within: tuple[float, ...]) -> bool:
-    if not isinstance(one, tuple) or not isinstance(other, tuple):
-        return one is other
-    return all(a is b if a is None or b is None else abs(a - b) <= most for a, b, most in zip(one, other, within, strict=True))
+def _near(one: float | None, other: float | None, most: float) -> bool:
+    return one is other if one is None or other is None else abs(one - other) <= most

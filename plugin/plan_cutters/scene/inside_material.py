@@ -8,27 +8,27 @@ of that ball which are deeper in it than r / sqrt(2). So one test a contact sett
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.kernels.codes import AWAY, BALL
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.work import in_chunks
 
+#: A way out misses triangles that are farther from it, mm.
+_NEAR = 1e-9
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cover(Record):
-    """A contact inside material lies under this face.
+    """A contact inside material lies under this face."""
 
-    `face`: number of the face at which the way out along the normal leaves the body. `point` (3,) float: where that is, mm.
-    """
-
-    face: int
-    point: Floats
+    face: int  #: Number of the face at which the way out along the normal leaves the body.
+    point: Floats  #: (3,) float: where that is, mm.
 
 
 def inside_material(
@@ -50,7 +50,6 @@ def inside_material(
     # Every void lies in one more body than there is material.
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     loose = dict(certain.triangles.loose).keys()
-    boxed = SortedPoints.of(point, np.flatnonzero(open_rows))
     of_part = sum(min(body.faces) > 0 for body in bodies)
     # What lies in a void is known of all bodies together.
     again = of_part if known is not None and not hollow.any() else 0
@@ -61,7 +60,8 @@ def inside_material(
         vertex = certain.triangles.vertex[certain.rows_of(body.faces)] if sure else np.zeros((0, 3, 3))
         if not len(vertex):
             continue
-        rows = boxed.within(vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1)))
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        rows = np.flatnonzero(open_rows & ((point >= low) & (point <= high)).all(axis=1))
         # A contact on the outer side of a skin is not within that.
         outer = [n for n, side in zip(body.faces, body.sign, strict=True) if n > 0 and orientation.sign[n - 1] == side]
         rows = rows[~np.isin(samples.face[rows], outer)]
@@ -79,28 +79,6 @@ def inside_material(
     empty = (result >= 0) & (layers <= 0) & (void >= 0)
     result[empty] = void[empty]
     return result
-
-
-class SortedPoints(NamedTuple):
-    """Points along the axis on which they spread most, so that each of many boxes looks at few of them."""
-
-    point: Floats
-    axis: int
-    row: NDArray[np.int64]
-    at: Floats
-
-    @classmethod
-    def of(cls, point: Floats, rows: NDArray[np.int64]) -> "SortedPoints":
-        """Some rows (k,) of finite points (n, 3)."""
-        axis = int(np.ptp(point[rows], axis=0).argmax()) if len(rows) else 0
-        row = rows[np.argsort(point[rows, axis], kind="stable")]
-        return cls(point, axis, row, point[row, axis])
-
-    def within(self, low: Floats, high: Floats) -> NDArray[np.int64]:
-        """Rows, ascending, of the points in a box with its border."""
-        first, last = self.at.searchsorted(low[self.axis], "left"), self.at.searchsorted(high[self.axis], "right")
-        rows = self.row[first:last]
-        return np.sort(rows[((self.point[rows] >= low) & (self.point[rows] <= high)).all(axis=1)])
 
 
 def balls_inside(points: Floats, radius: float, obstacles: Obstacles, jobs: int) -> NDArray[np.bool_]:
@@ -144,18 +122,17 @@ def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None =
 
     Without a body, that of all that encloses something.
     """
-    rows = _met(point, normal, certain)
-    face = certain.faces[rows]
+    # In the order of the tree, which decides between faces that a ray leaves through their common edge.
+    rows = np.arange(len(certain.faces)) if body is None else np.flatnonzero(np.isin(certain.faces, body.faces))
+    vertex = certain.triangles.vertex[certain.order[rows]] - point
+    seen = vertex @ frame_of(normal)[:2].T
+    on_way = ((seen.min(axis=1) <= _NEAR) & (seen.max(axis=1) >= -_NEAR)).all(axis=1)
+    rows, (a, b, c) = rows[on_way], np.moveaxis(vertex[on_way], 1, 0)
     weight = certain.weight[certain.order[rows]]
-    if body is not None:
-        mine = np.isin(face, body.faces)
-        rows, face, weight = rows[mine], face[mine], weight[mine]
-        if min(body.faces) > 0:
-            # A fixture is one body whatever it consists of, and its triangles know what they count.
-            sign = dict(zip(body.faces, body.sign, strict=True))
-            weight = np.array([sign[n] for n in face.tolist()], np.int8)
-    vertex = certain.triangles.vertex[certain.order[rows]]
-    a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
+    if body is not None and min(body.faces) > 0:
+        # A fixture is one body whatever it consists of, and its triangles know what they count.
+        sign = dict(zip(body.faces, body.sign, strict=True))
+        weight = np.array([sign[n] for n in certain.faces[rows].tolist()], np.int8)
     # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.
     sides = np.stack([np.cross(q, r) @ normal for q, r in ((a, b), (b, c), (c, a))])
     area = np.cross(b - a, c - a)
@@ -166,37 +143,4 @@ def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None =
     if not leaving.any():
         return None
     first = int(np.where(leaving, along, np.inf).argmin())
-    return Cover(int(face[first]), point + along[first] * normal)
-
-
-def _met(point: Floats, normal: Floats, certain: Obstacles) -> NDArray[np.int64]:
-    """Triangles, in tree order, in whose leaves' boxes a ray comes."""
-    tree, met = certain.tree, [np.zeros(0, np.int64)]
-    for first, count, boxes, depth in (
-        (0, len(tree.vertex), tree.box, tree.depth),
-        (len(tree.vertex), len(tree.more_vertex), tree.more_box, tree.more_depth),
-    ):
-        if count:
-            leaf = _leaves_met(point, normal, boxes, depth)
-            met += [first + np.arange((count * i) >> depth, (count * (i + 1)) >> depth) for i in leaf.tolist()]
-    return np.concatenate(met)
-
-
-def _leaves_met(point: Floats, normal: Floats, boxes: Floats, depth: int) -> NDArray[np.int64]:
-    """Leaves of a tree, ascending, in whose boxes a ray comes."""
-    node = np.zeros(1, np.int64)
-    for level in range(depth + 1):
-        box = boxes[node]
-        axes, half = box[:, 3:12].reshape(-1, 3, 3), box[:, 12:15]
-        start, step = np.einsum("nki,ni->nk", axes, point - box[:, :3]), axes @ normal
-        with np.errstate(all="ignore"):
-            ends = np.stack([(-half - start) / step, (half - start) / step])
-        # Along a side of the box, the ray is between its ends all the way, or never.
-        adjacent = step == 0.0
-        low = np.where(adjacent, -np.inf, ends.min(axis=0)).max(axis=1)
-        high = np.where(adjacent, np.inf, ends.max(axis=0)).min(axis=1)
-        hit = ~(adjacent & (np.abs(start) > half)).any(axis=1) & (high >= np.maximum(low, 0.0) - 1e-9)
-        node = node[hit]
-        if level < depth:
-            node = np.concatenate([2 * node + 1, 2 * node + 2])
-    return np.sort(node) - ((1 << depth) - 1)
+    return Cover(int(certain.faces[rows[first]]), point + along[first] * normal)

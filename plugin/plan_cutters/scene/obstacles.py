@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,22 +42,19 @@ class Obstacles(Record):
     """Triangles with their bounding tree.
 
     Raises UnjudgeableError: there are no triangles, or one has a corner that is no point: nothing could be called safe.
-
-    `triangles`: as tessellated.
-    `weight` (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
-    `open_boxes` (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
-    `gap`: widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
-    `near` (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
-    `first`: so many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds
-        all.
     """
 
-    triangles: Triangles
+    triangles: Triangles  #: As tessellated.
+    #: (n,) int8: how often each counts as part of a skin that encloses something; default: nothing is enclosed.
     weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
+    #: (k, 2, 3) float: boxes of skins that are not quite closed: nothing in them is surely outside.
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
-    gap: float = 0.0
+    gap: float = 0.0  #: Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+    #: (2, 3) float: box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
     near: Floats | None = None
+    #: So many triangles, the first ones, are in a tree of their own, and all others in a second one. None: one tree holds all.
     first: int | None = None
+    _own: ClassVar["Obstacles | None"] = None  #: Those that share the tree of their triangles.
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
@@ -80,14 +77,8 @@ class Obstacles(Record):
         """The same, which take the tree of their first triangles from others: those alone, or with more of their own."""
         own = own._own or own
         if own.first is None and self.first == len(own.triangles):
-            self.__dict__["_shared"] = own
+            self.__dict__["_own"] = own
         return self
-
-    @property
-    def _own(self) -> "Obstacles | None":
-        """Those that share the tree of their triangles."""
-        shared: Obstacles | None = self.__dict__.get("_shared")
-        return shared
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
@@ -324,7 +315,6 @@ class Obstacles(Record):
 
     @cached_property
     def _rows(self) -> dict[int, NDArray[np.int64]]:
-        """Rows of `triangles` of each face."""
         return rows_by_face(self.triangles.face)
 
     def rows_of(self, faces: Iterable[int]) -> NDArray[np.int64]:

@@ -33,27 +33,20 @@ Rows = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Copies(Record):
-    """Samples that are images of others under motions of the whole part.
+    """Samples that are images of others under motions of the whole part."""
 
-    `master` (n,) int64: the sample whose image each one is; itself where it is none.
-    `motion` (n,) int32: which motion carries the master onto it, -1 for none.
-    `unchanged`: of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is
-        ignored.
-    `frames` (n,) bool: copies whose postures that are searched are the images of those searched at the master.
-    `verified` (n,) bool: those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion
-        carries onto another.
-    `group` (n,) int64: the same for copies of one motion on one face, -1 for none.
-    `setup`: counted from 0, in which the part is looked at.
-    """
-
-    master: Rows
-    motion: Ints
+    master: Rows  #: (n,) int64: the sample whose image each one is; itself where it is none.
+    motion: Ints  #: (n,) int32: which motion carries the master onto it, -1 for none.
     motions: tuple[Motion, ...]
+    #: Of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is ignored.
     unchanged: tuple[tuple[bool, ...], ...]
+    #: (n,) bool: copies whose postures that are searched are the images of those searched at the master.
     frames: NDArray[np.bool_]
+    #: (n,) bool: those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion carries
+    #: onto another.
     verified: NDArray[np.bool_]
-    group: Rows
-    setup: int = 0
+    group: Rows  #: (n,) int64: the same for copies of one motion on one face, -1 for none.
+    setup: int = 0  #: Counted from 0, in which the part is looked at.
 
     @property
     def copy(self) -> NDArray[np.bool_]:
@@ -120,13 +113,9 @@ class Sampled(NamedTuple):
 
 
 def sampled(
-    part: Part,
-    orientation: Orientation,
-    options: Options,
-    faces: Sequence[int],
-    cutters: Sequence[Cutter],
+    part: Part, orientation: Orientation, options: Options, faces: Sequence[int], cutters: Sequence[Cutter],
     at: Callable[[int], None] = lambda face: None,
-) -> Sampled:
+) -> Sampled:  # fmt: skip
     """Sample faces as the options ask; `at` as in `sample`."""
     spacing: Spacing = options.spacing
     coarser = 1.0
@@ -165,60 +154,42 @@ Axis = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class OtherSetup(Record):
-    """Another setup than the first has its own conditions, and its own samples that no cutter gets to.
+    """Another setup than the first has its own conditions, and its own samples that no cutter gets to."""
 
-    `conditions`: with the obstacles of that setup. `inside` (n,) int32: the body that each sample lies within there, -1 for none.
-    `clamped` (n,) bool: samples of faces that are held there.
-    """
-
-    conditions: Conditions
-    inside: Ints
-    clamped: NDArray[np.bool_]
+    conditions: Conditions  #: With the obstacles of that setup.
+    inside: Ints  #: (n,) int32: the body that each sample lies within there, -1 for none.
+    clamped: NDArray[np.bool_]  #: (n,) bool: samples of faces that are held there.
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Prepared(Record):
-    """Everything that is needed to judge a cutter.
-
-    `chosen`: target and ignored faces.
-    `spacing`: of the samples: one, by face number, or none where they were taken on a grid.
-    `surface_class` (n,) uint8.
-    `region` (n,) int32: connected samples of one class.
-    `inside` (n,) int32: the body that each sample lies within in the first setup, -1 for none.
-    `inside_bodies` (n,) bool: samples that lie inside another body of the part (`inside_material.inside_bodies`).
-    `cutters`: from the most wanted down.
-    `coarser`: how many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
-    `held` (n,) bool: samples of faces that are clamped in the first setup; None: none of them is.
-    `others`: the setups beside the first.
-    `exempt` (n,) bool: samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are
-        required.
-    `holes`: those that are for drills, each with its faces that are.
-    `drilled` (n,) bool: samples in them, which no mill is asked for; None: there are none.
-    `patterns`: equal faces of the part, and motions that carry it onto itself.
-    `copies`: samples that these motions carry onto others; None where there are few, or patterns are not to be used.
-    `cache`: what stages make of this part is kept there.
-    """
+    """Everything that is needed to judge a cutter."""
 
     scene: Scene
     options: Options
-    chosen: Chosen
-    spacing: Spacing
+    chosen: Chosen  #: Target and ignored faces.
+    spacing: Spacing  #: Of the samples: one, by face number, or none where they were taken on a grid.
     samples: SurfaceSamples
-    surface_class: NDArray[np.uint8]
-    region: Ints
-    inside: Ints
+    surface_class: NDArray[np.uint8]  #: (n,) uint8.
+    region: Ints  #: (n,) int32: connected samples of one class.
+    inside: Ints  #: (n,) int32: the body that each sample lies within in the first setup, -1 for none.
+    #: (n,) bool: samples that lie inside another body of the part (`inside_material.inside_bodies`).
     inside_bodies: NDArray[np.bool_]
     conditions: Conditions
-    cutters: tuple[Cutter, ...]
+    cutters: tuple[Cutter, ...]  #: From the most wanted down.
+    #: How many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
     coarser: float = 1.0
+    #: (n,) bool: samples of faces that are clamped in the first setup; None: none of them is.
     held: NDArray[np.bool_] | None = None
-    others: tuple[OtherSetup, ...] = ()
+    others: tuple[OtherSetup, ...] = ()  #: The setups beside the first.
+    #: (n,) bool: samples at sharp inside edges that no cutter has to reach (`judging.reasons.exempt`); None: all are required.
     exempt: NDArray[np.bool_] | None = None
-    holes: tuple[Hole, ...] = ()
-    drilled: NDArray[np.bool_] | None = None
-    patterns: tuple[Pattern, ...] = ()
+    holes: tuple[Hole, ...] = ()  #: Those that are for drills, each with its faces that are.
+    drilled: NDArray[np.bool_] | None = None  #: (n,) bool: samples in them, which no mill is asked for; None: there are none.
+    patterns: tuple[Pattern, ...] = ()  #: Equal faces of the part, and motions that carry it onto itself.
+    #: Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
     copies: Copies | None = None
-    cache: Cache = field(default=NO_CACHE, compare=False)
+    cache: Cache = field(default=NO_CACHE, compare=False)  #: What stages make of this part is kept there.
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:

@@ -157,16 +157,8 @@ class Scene(Record):
     def doubles(self) -> tuple[int, ...]:
         """Ignored faces, ascending, in whose place other faces stand: without them the part is the same."""
         out = set(self.ignored)
-        return tuple(
-            sorted(
-                n
-                for each in repeats(self.part)
-                if any(out.isdisjoint(faces) for faces in each.faces)
-                for faces in each.faces
-                for n in faces
-                if n in out
-            )
-        )
+        doubled = (each.faces for each in repeats(self.part) if any(out.isdisjoint(faces) for faces in each.faces))
+        return tuple(sorted(out.intersection(n for each in doubled for faces in each for n in faces)))
 
     def turned_faces(self) -> tuple[str, ...]:
         """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""
@@ -222,12 +214,7 @@ class Scene(Record):
         """Gather the possible and the certain obstacles, unless that was done before.
 
         While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time. `cache`
-        keeps the triangles of the part.
-
-        Raises
-        ------
-        FixtureError
-            A fixture stands in the part.
+        keeps the triangles of the part. Raises FixtureError: a fixture stands in the part.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.around is None:
@@ -247,17 +234,8 @@ class Scene(Record):
     def surround_in(self, setup: tuple[float, float, float], shared: Sequence[Fixture], own: Sequence[Fixture]) -> Surroundings:
         """Gather the obstacles of another setup, with the same triangles of the part; `surround` must have been called.
 
-        Parameters
-        ----------
-        setup : (float, float, float)
-            Unit setup axis, across which the tables of `own` lie; those of `shared` stay where they are in this setup.
-        shared, own : sequence of Fixture
-            Those that stand in all setups, and those of that setup alone.
-
-        Raises
-        ------
-        FixtureError
-            A fixture stands in the part.
+        `setup`: unit setup axis, across which the tables of `own` lie, fixtures of that setup alone; those of `shared`, which
+        stand in all setups, stay where they are in this one. Raises FixtureError: a fixture stands in the part.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         mine = tuple(Fixture.each_of([*shared, *own]))
@@ -276,12 +254,8 @@ class Scene(Record):
         """Gather the obstacles where the part stands on a table across a setup axis, or in a vise or chuck, and nothing else
         holds it; or where its stock does so.
 
-        The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused.
-
-        Raises
-        ------
-        FixtureError
-            The vise or chuck has nothing to grip.
+        The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused. Raises
+        FixtureError: the vise or chuck has nothing to grip.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
@@ -290,20 +264,13 @@ class Scene(Record):
         return self._joined(memory.alone, Fixture.each_of([*blank, held]), chord, setup)
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
-        """Place a vise or chuck for a unit setup axis; `surround` must have been called.
-
-        Raises
-        ------
-        FixtureError
-            It has nothing to grip.
-        """
+        """Place a vise or chuck for a unit setup axis; `surround` must have been called. Raises FixtureError: nothing to grip."""
         memory = self._memory
         key = (fixture, tuple(setup), self.targets)
         if key not in memory.holds:
             alone = memory.alone
             assert alone is not None, "a part is tessellated before it is clamped"
-            obstacles = alone.certain if len(alone.certain.triangles) else alone.possible
-            triangles, tolerance = obstacles.triangles, alone.tolerance(self.asked)
+            triangles, tolerance = alone.certain.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
             of_part = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
             piece = Workpiece.of(
@@ -314,7 +281,7 @@ class Scene(Record):
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
                 # What the full search would find as well, for most places where the part is in the way, at once.
-                return entered(obstacles, placed, clamping, tolerance + triangles.chord_error)
+                return entered(alone.certain, placed, clamping, tolerance + triangles.chord_error)
 
             def searched(placed: Fixture, clamping: Clamping) -> bool:
                 return overlaps(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance)

@@ -12,14 +12,14 @@ from cad_io.part.bodies import Body, bodies
 from cad_io.part.part import CROSSES, face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
+from cad_io.tessellate.proxies import StandIn, StandIns, boxed, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
-from plan_cutters.scene.triangles import boxed, thickened
+from plan_cutters.scene.triangles import thickened
 from plan_cutters.setups.clamping import Hold
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
@@ -29,32 +29,20 @@ _LOOKED_AT = 50
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PlacedFixture(Record):
-    """A fixture where it stands.
+    """A fixture where it stands."""
 
-    `number`: face number of all its triangles, negative.
-    `source`: what was read of it; None for words.
-    `obstacles`: its own, in part coordinates.
-    `body`: that it surely encloses something.
-    `missing` (tuple of (str, str, str)): faces of it that stand in the way only as a guess, with the reason and what stands in
-        for each.
-    `notes`: what the plan must say of it.
-    `shown` (n, 3, 3) float: triangles to draw of it, mm.
-    `requested`: what was requested where it was placed for the setup; None: `fixture` itself.
-    `hold`: what it grips, where it was placed for the setup.
-    `unheld`: of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
-    """
-
-    number: int
+    number: int  #: Face number of all its triangles, negative.
     fixture: Fixture
-    source: Part | Mesh | None
-    obstacles: Obstacles
-    body: Body | None
+    source: Part | Mesh | None  #: What was read of it; None for words.
+    obstacles: Obstacles  #: Its own, in part coordinates.
+    body: Body | None  #: That it surely encloses something.
+    #: Faces of it that stand in the way only as a guess, with the reason and what stands in for each.
     missing: tuple[tuple[str, str, StandIn], ...]
-    notes: tuple[str, ...]
-    shown: Floats
-    requested: Fixture | None = None
-    hold: Hold | None = None
-    unheld: tuple[int, ...] = ()
+    notes: tuple[str, ...]  #: What the plan must say of it.
+    shown: Floats  #: (n, 3, 3) float: triangles to draw of it, mm.
+    requested: Fixture | None = None  #: What was requested where it was placed for the setup; None: `fixture` itself.
+    hold: Hold | None = None  #: What it grips, where it was placed for the setup.
+    unheld: tuple[int, ...] = ()  #: Of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
 
     @property
     def name(self) -> str:
@@ -64,28 +52,21 @@ class PlacedFixture(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Surroundings(Record):
-    """The surroundings hold the possible and the certain obstacles of a part in one setup.
+    """The surroundings hold the possible and the certain obstacles of a part in one setup."""
 
-    `possible`: everything that may be in the way: a posture that misses it is safe.
-    `certain`: everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is
-        uncertain.
-    `bodies`: bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
-    `missing` (tuple of (int, str, str)): faces that stand in the way only as a guess, with the reason and the proxy geometry of
-        each: its own `triangles`, a `box`, or `none` where its place is not known.
-    `on_bodies`: faces of no body that lie on the faces of one, as construction geometry does.
-    `lost`: faces of the file that the part does not have; those it has in another form are in `missing`.
-    `fixtures`: fixtures that stand among the obstacles; nothing else here is about them.
-    `alone`: the part's own, without the fixtures; None where there are none.
-    """
-
-    possible: Obstacles
+    possible: Obstacles  #: Everything that may be in the way: a posture that misses it is safe.
+    #: Everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is uncertain.
     certain: Obstacles
+    #: Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
     bodies: tuple[Body, ...]
+    #: Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a `box`,
+    #: or `none` where its place is not known.
     missing: tuple[tuple[int, str, StandIn], ...]
-    on_bodies: tuple[int, ...] = ()
+    on_bodies: tuple[int, ...] = ()  #: Faces of no body that lie on the faces of one, as construction geometry does.
+    #: Faces of the file that the part does not have; those it has in another form are in `missing`.
     lost: tuple[LostFace, ...] = ()
-    fixtures: tuple[PlacedFixture, ...] = ()
-    alone: "Surroundings | None" = None
+    fixtures: tuple[PlacedFixture, ...] = ()  #: Fixtures that stand among the obstacles; nothing else here is about them.
+    alone: "Surroundings | None" = None  #: The part's own, without the fixtures; None where there are none.
 
     @property
     def doubtful(self) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cad_io.arrays import Floats, Ints, Triangles
+from cad_io.tessellate.proxies import boxed
 
 
 class AddedTriangles(Triangles):
@@ -76,10 +77,6 @@ def halved(vertex: Floats, side: Floats) -> Floats:
 _CAPS = [(0, k + 1, k) for k in range(1, 5)] + [(6, k + 6, k + 7) for k in range(1, 5)]
 _SIDES = [each for k in range(6) for each in ((k, (k + 1) % 6, k + 6), ((k + 1) % 6, (k + 1) % 6 + 6, k + 6))]
 _PRISM = np.array(_CAPS + _SIDES)
-#: Corners of a box, and its triangles, outward.
-_CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-_BOX = np.array([(1, 3, 0), (4, 1, 0), (0, 3, 2), (2, 4, 0), (1, 7, 3), (5, 1, 4),
-                 (5, 7, 1), (3, 7, 2), (6, 4, 2), (2, 7, 6), (6, 5, 4), (7, 5, 6)])  # fmt: skip
 #: A triangle whose height is a smaller share of its longest side has no normal that is known well enough.
 _THIN = 1e-6
 
@@ -103,11 +100,6 @@ def thickened(vertex: Floats, error: float) -> Floats:
     needles = vertex[~flat]
     boxes = [boxed(low - error, high + error) for low, high in zip(needles.min(axis=1), needles.max(axis=1), strict=True)]
     return np.concatenate([_prisms(vertex[flat], error), *boxes])
-
-
-def boxed(low: Floats, high: Floats) -> Floats:
-    """The box between two corners (3,), as `thickened` gives it."""
-    return np.asarray((low + _CORNERS * (high - low))[_BOX])
 
 
 def _prisms(vertex: Floats, error: float) -> Floats:

@@ -11,40 +11,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+#: Whoever counts may do so beside others.
+_LOCK = threading.Lock()
+
 
 @dataclass(slots=True)
 class Work:
-    """Count the work that kernels have done.
+    """Count the work that kernels have done."""
 
-    `looked`: boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
-    """
-
-    looked: int = 0
+    looked: int = 0  #: Boxes of the tree, and what else takes as long: nodes of a grid, triangles, and a share of each rotation.
 
     def add(self, looked: int) -> None:
         """Count what a kernel has looked at."""
-        self.looked += looked
+        with _LOCK:
+            self.looked += looked
 
 
-class Meter:
-    """Counts the boxes that all kernels of this process have looked at, whoever called them: stages are told apart by it."""
-
-    def __init__(self) -> None:
-        self._lock, self._boxes = threading.Lock(), 0
-
-    def add(self, looked: int) -> None:
-        """Count what a kernel has looked at."""
-        with self._lock:
-            self._boxes += looked
-
-    @property
-    def boxes(self) -> int:
-        """So many so far."""
-        return self._boxes
-
-
-#: That of this process.
-METER = Meter()
+#: That of all kernels of this process, whoever called them: stages are told apart by it.
+METER = Work()
 
 
 class Budget:
@@ -54,12 +38,12 @@ class Budget:
     """
 
     def __init__(self, most: float) -> None:
-        self._most, self._begun = most, METER.boxes
+        self._most, self._begun = most, METER.looked
 
     @property
     def left(self) -> float:
         """Boxes that may still be looked at, 0 where it is spent."""
-        return max(0.0, self._most - (METER.boxes - self._begun))
+        return max(0.0, self._most - (METER.looked - self._begun))
 
 
 #: Rows a call; fixed, so that results do not depend on the number of threads.
@@ -119,7 +103,6 @@ def in_chunks(
 
 
 def _total(results: Iterable[int | None], count: int, progress: Progress | None) -> int:
-    """Add up what pieces return, as they come."""
     total = 0
     for done, result in enumerate(results, 1):
         total += result or 0

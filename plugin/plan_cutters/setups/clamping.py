@@ -30,22 +30,14 @@ class NothingToGripError(FixtureError):
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """A vise or chuck that was placed for a setup.
+    """A vise or chuck that was placed for a setup."""
 
-    `fixture`: in its place, with all its numbers.
-    `grips`: numbers of the faces that its jaws touch.
-    `rests_on`: numbers of the planar faces with which the part rests in it.
-    `hidden`: area of the faces to machine that its jaws touch, mm2.
-    `words`: what it is and what it grips, for people.
-    `soft`: why it needs soft jaws or a nest; empty where plain jaws hold the part.
-    """
-
-    fixture: Fixture
-    grips: tuple[int, ...]
-    rests_on: tuple[int, ...]
-    hidden: float
-    words: str
-    soft: str = ""
+    fixture: Fixture  #: In its place, with all its numbers.
+    grips: tuple[int, ...]  #: Numbers of the faces that its jaws touch.
+    rests_on: tuple[int, ...]  #: Numbers of the planar faces with which the part rests in it.
+    hidden: float  #: Area of the faces to machine that its jaws touch, mm2.
+    words: str  #: What it is and what it grips, for people.
+    soft: str = ""  #: Why it needs soft jaws or a nest; empty where plain jaws hold the part.
 
     @property
     def faces(self) -> tuple[int, ...]:
@@ -179,7 +171,9 @@ def _angles(axes: Floats) -> Floats:
 
 
 def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
-    clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], _rests_on(part, place)
+    clamping, names, level = place.clamping, [f"F{n}" for n in place.grips], part.level(place.above)
+    # Planar faces with which the part rests on the ledges of the jaws.
+    rests = tuple(sorted(on_ledges(clamping, place.own(part.vertex[level]), part.face[level], part.flat)))
     size = "" if requested.sizes is not None else ", the smallest usual size that takes the part"
     above = f", from {mm(place.above)} above its lowest point" if place.above > 0.0 else ""
     on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
@@ -191,12 +185,6 @@ def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place)
     words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
     soft = f"; it needs soft jaws or a nest: {place.soft}" if place.soft else ""
     return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}{soft}; {left}", place.soft)
-
-
-def _rests_on(part: Workpiece, place: Place) -> tuple[int, ...]:
-    """Numbers of the planar faces with which a part rests on the ledges of the jaws at a place."""
-    level = part.level(place.above)
-    return tuple(sorted(on_ledges(place.clamping, place.own(part.vertex[level]), part.face[level], part.flat)))
 
 
 def _called(clamping: Clamping) -> tuple[str, str]:

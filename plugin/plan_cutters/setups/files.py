@@ -1,11 +1,10 @@
 """Setup files: where a part stands in a machine, as TOML that people write."""
 
 import os
-import tomllib
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from cad_io.units import UNITS
@@ -13,17 +12,10 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along
-from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.files import content
+from plan_cutters.errors import OptionError
+from plan_cutters.files.content import Content
 from plan_cutters.machines.chain import scaled
-from plan_cutters.machines.toml import Vector, explained
-
-
-class Content(content.Content):
-    """A file that may be a setup file."""
-
-    noun: ClassVar[str] = "setup file"
-    error: ClassVar[type[PlanError]] = OptionError
+from plan_cutters.machines.toml import Table, Vector, explained
 
 
 def _direction(value: Any) -> Any:
@@ -39,18 +31,16 @@ def _direction(value: Any) -> Any:
 _Direction = Annotated[Vector, BeforeValidator(_direction)]
 
 
-class SetupTable(BaseModel):
+class SetupTable(Table):
     """A setup; `axis` is another name of `z`, `origin` is in `unit`, the other words are those of the command line."""
-
-    model_config = ConfigDict(extra="forbid")
 
     unit: str
     axis: _Direction | None = None
     z: _Direction | None = None
     x: _Direction | None = None
     origin: Vector | None = None
-    clamped: str | list[str] = []
-    fixtures: list[str] = []
+    clamped: str | list[str] = Field(default=[])
+    fixtures: list[str] = Field(default=[])
 
 
 def read_setup(path: str | os.PathLike[str]) -> Placement:
@@ -62,32 +52,21 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
         machine's Z and X, three numbers or a word as `+z`; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those
         of `--fixture`: files are looked for in the setup file's folder.
 
-    Examples
-    --------
     >>> read_setup("none.toml")
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: none.toml: cannot be read: No such file or directory
     """
-    read = Content.of(Path(path))
+    read = Content.of(path, "setup file", OptionError)
     try:
-        return _placement(_table(read), read)
+        if read.head.startswith("<"):
+            raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
+        return _placement(SetupTable.model_validate(read.toml()), read)
+    except ValidationError as error:
+        raise OptionError(explained(error), file=read.name) from None
     except OptionError as error:
         if error.file == read.name:
             raise
         raise type(error)(error.cause, file=read.name) from None
-
-
-def _table(read: Content) -> SetupTable:
-    if read.head.startswith("<"):
-        raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
-    try:
-        return SetupTable.model_validate(tomllib.loads(read.text))
-    except ValidationError as error:
-        raise OptionError(explained(error)) from None
-    except RecursionError:
-        raise OptionError("is no TOML: it is nested too deeply") from None
-    except ValueError as error:
-        raise OptionError(f"is no TOML: {' '.join(str(error).split())}") from None
 
 
 def _placement(table: SetupTable, read: Content) -> Placement:

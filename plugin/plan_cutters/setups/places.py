@@ -11,9 +11,9 @@ import numpy as np
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, rows_by_face
 from plan_cutters.domain.clamping import CHUCK, GRIP, VISES, Chuck, Requested, Vise, chuck_about, largest_gripped, vises_for
 from plan_cutters.domain.figures import listed, mm
-from plan_cutters.setups.bearing import TALL
 from plan_cutters.setups.workpiece import (
     PARALLEL,
+    TALL,
     TOGETHER,
     Place,
     Refused,
@@ -220,10 +220,11 @@ def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], lis
             x = one.normal - other.normal
             x = x / np.linalg.norm(x)
             if float((one.vertex @ x).max() - (other.vertex @ x).min()) > 0.0:
-                result, why = _between(part, requested, one, other, x)
-                places += result
-                if not result:
-                    low, size = max(one.low, other.low), min(area_of(one.vertex), area_of(other.vertex))
+                low = max(one.low, other.low)
+                each = [_at(part, requested, (one, other), x, above, reach) for above, reach in stands(low, requested.grip)]
+                places += [place for result, _ in each for place in result]
+                if not any(result for result, _ in each):
+                    size, why = min(area_of(one.vertex), area_of(other.vertex)), next((why for _, why in each if why), "")
                     refused.append(Refused((low > 0.5 * requested.grip, -size), why))
     places += _lying(part, requested)
     if not places and not refused:
@@ -314,19 +315,13 @@ def _one_plane(one: Wall, other: Wall) -> bool:
     return abs(float((one.vertex @ one.normal).max() - (other.vertex @ one.normal).max())) <= TOGETHER
 
 
-def _between(part: Workpiece, requested: Requested, one: Wall, other: Wall, x: Floats) -> tuple[list[Place], str]:
-    """Places of a vise on two walls: in the middle of what its jaws can touch, and at both ends of that; or why there is none."""
-    places, why = list[Place](), ""
-    for above, reach in stands(max(one.low, other.low), requested.grip):
-        result, refused = _at(part, requested, (one, other), x, above, reach)
-        places, why = places + result, why or refused
-    return places, why
-
-
 def _at(
     part: Workpiece, requested: Requested, walls: tuple[Wall, Wall], x: Floats, above: float, reach: float
 ) -> tuple[list[Place], str]:
-    """The same where the part rests at a height over its lowest point, and the jaws reach so far above that."""
+    """Places of a vise on two walls, in the middle of what its jaws can touch, and at both ends of that; or why there is none.
+
+    The part rests at a height over its lowest point, and the jaws reach so far above that.
+    """
     one, other = walls
     grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
     names = " and ".join(listed([f"F{n}" for n in wall.faces], 2) for wall in walls)

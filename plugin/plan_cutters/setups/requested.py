@@ -1,5 +1,6 @@
 """Setups as a caller gives them: as axes, with what more is known of each as placements, and the fixtures of the first."""
 
+import math
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,16 +20,13 @@ from plan_cutters.errors import OptionError
 AUTO = "auto"
 #: Setups that are proposed together, at most.
 MOST_PROPOSED = 3
+#: A setup axis, and what more is known of the setup.
+_Stand = tuple[Direction, Placement | None]
 
 
 def is_auto(value: Any) -> bool:
     """Whether a setup is the word that asks for a proposal."""
     return isinstance(value, str) and value.strip().lower() == AUTO
-
-
-def same_fixture(one: Fixture, other: Fixture) -> bool:
-    """Whether two fixtures are one, whatever they are called."""
-    return replace(one, name="fixture") == replace(other, name="fixture")
 
 
 def joined_fixtures(fixtures: Sequence[Fixture], more: Sequence[Fixture]) -> tuple[Fixture, ...]:
@@ -37,8 +35,9 @@ def joined_fixtures(fixtures: Sequence[Fixture], more: Sequence[Fixture]) -> tup
 
 
 def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fixture, ...]:
-    """Those fixtures that are none of the others."""
-    return tuple(each for each in fixtures if not any(same_fixture(each, other) for other in others))
+    """Those fixtures that are none of the others, whatever they are called."""
+    known = [replace(each, name="fixture") for each in others]
+    return tuple(each for each in fixtures if replace(each, name="fixture") not in known)
 
 
 def setups_requested(
@@ -80,25 +79,25 @@ def setups_requested(
             "fixtures, or name the setup"
         )
     shared = without(common, () if placed is None else placed.fixtures)
+    stands = [_setup(each, place) for each, place in zip(listed, places, strict=True)]
     if listed and gripping:
         # What grips the part is placed for each setup: it is that one's own.
         shared = without(shared, gripping)
         placed = _holding((axis, placed), gripping)
-        places = [_holding(_setup(each, place), gripping) for each, place in zip(listed, places, strict=True)]
-        listed = [each.z for each in places]
+        stands = [(each.z, each) for each in (_holding(stand, gripping) for stand in stands)]
     if chuck_axis is not None and not propose:
         common, placed = _on_rotary(common, chuck_axis, axis, placed)
-        places = [_on_rotary((), chuck_axis, *_setup(each, place))[1] for each, place in zip(listed, places, strict=True)]
-    setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
+        stands = [(z, _on_rotary((), chuck_axis, z, place)[1]) for z, place in stands]
+    setups = [_own(stand, shared) for stand in stands]
     known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
             "other_setups": tuple(each for each, _ in setups),
             "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
 
 
-def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:
+def _holding(stand: _Stand, gripping: Sequence[Fixture]) -> Placement:
     """A setup that is held by some fixtures of its own, too."""
-    axis, place = setup
+    axis, place = stand
     if place is None:
         return Placement(axis, fixtures=gripping)
     return replace(place, fixtures=joined_fixtures(place.fixtures, _to_place(gripping, place)))
@@ -123,19 +122,17 @@ def _to_place(gripping: Sequence[Fixture], place: Placement | None) -> Sequence[
     return [each for each in gripping if each.kind not in there]
 
 
-def _own(
-    placed: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
-) -> tuple[tuple[float, float, float], Placement | None]:
+def _own(stand: _Stand, shared: Sequence[Fixture]) -> _Stand:
     """A setup without those fixtures that stand in all setups; a table that lies across its own axis is another one."""
-    axis, place = placed
+    axis, place = stand
     if place is None:
-        return placed
+        return stand
     own = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
     return axis, replace(place, fixtures=own)
 
 
-def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
-    """A setup axis, and what more is known of the setup.
+def _setup(value: Any, placed: Placement | None) -> _Stand:
+    """A setup as a caller gives it.
 
     A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
     """
@@ -156,6 +153,6 @@ def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, fl
         return (x, y, z), None
     if not isinstance(placed, Placement):
         raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
-    if not placed.stands_as((x, y, z)):
+    if math.dist((x, y, z), placed.z) > 1e-12:
         raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
     return placed.z, placed

@@ -42,9 +42,8 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above
 def insides(clamping: Clamping, deep: float) -> Iterator[tuple[Floats, Floats, float]]:
     """Yield what surely lies deeper in a vise or chuck than a length, mm, in its own frame.
 
-    That is the corners (3,) of boxes, and for each the radius of a cylinder about z, infinite for a box.
-
-    Boxes and discs are yielded, not the jaws of a chuck: what lies in none of them may lie in the vise or chuck all the same.
+    That is the corners (3,) of boxes, and for each the radius of a cylinder about z, infinite for a box. The jaws of a chuck are
+    not yielded: what lies in no box or cylinder may lie in the vise or chuck all the same.
     """
     for solid in clamping.solids(deep):
         if isinstance(solid, Disc):

@@ -4,8 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
-from plan_cutters.domain.drill import CONES, Why
-from plan_cutters.domain.drill_sizes import inch_name
+from plan_cutters.domain.drill import CONES, Why, inch_name
 from plan_cutters.domain.figures import count, duration, in_inches, joined, listed, percent, reported, reporting
 from plan_cutters.plan_file.holes import DrillingStep, HoleEntry, MissingEntry, ToleranceEntry
 from plan_cutters.plan_file.model import Plan
