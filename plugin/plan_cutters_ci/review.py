@@ -18,7 +18,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.text import Chip
-from plan_cutters_ci.matching import match_cutters, match_faces
+from plan_cutters_ci.matching import match_cutters, match_faces, with_others
 from plan_cutters_ci.model import PlanDifference
 from plan_cutters_ci.plans import face_state, taken
 from plan_cutters_ci.wording import change, choice, cutter_rows, face_rows, headline, known, mark
@@ -111,12 +111,10 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
 
 def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:
     then, now = short_names(old), short_names(new)
-    pairs = match_cutters(old, new)
-    yield from ({"name": now[b.id], "old": a.id, "new": b.id} for a, b, _ in pairs)
-    gone = [c.id for c in old.cutters if c.id not in {a.id for a, _, _ in pairs}]
-    added = [c.id for c in new.cutters if c.id not in {b.id for _, b, _ in pairs}]
-    yield from ({"name": f"{then[each]} (old plan alone)", "old": each, "new": None} for each in gone)
-    yield from ({"name": f"{now[each]} (new plan alone)", "old": None, "new": each} for each in added)
+    for a, b, _ in with_others(old.cutters, new.cutters, match_cutters(old, new)):
+        name = now[b.id] if b else then[a.id] if a else ""
+        alone = "" if a and b else f" ({'old' if a else 'new'} plan alone)"
+        yield {"name": f"{name}{alone}", "old": a and a.id, "new": b and b.id}
 
 
 def picture_of(path: Path, plan: Plan) -> Picture:
