@@ -403,8 +403,13 @@ def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
             )
 
 
-def without_posture(reckoned: Reckoned) -> Iterator[Finding]:
-    """Verdicts that say that a sample is reached with no tool axis, or that it is not with one."""
+def unsound(reckoned: Reckoned) -> Iterator[Finding]:
+    """What no plan has: words that cannot be made, a verdict that a sample is reached with no tool axis or is not with one, a
+    chord error that nothing has.
+    """
+    document = reckoned.question.document
+    if reckoned.question.odd:
+        yield Finding(False, f"plan.json: {reckoned.question.odd}.")
     for name, verdict in reckoned.verdict.items():
         axis, reached = reckoned.question.samples[f"axis_{name}"], np.isin(verdict, REACHED)
         with np.errstate(invalid="ignore"):
@@ -413,3 +418,6 @@ def without_posture(reckoned: Reckoned) -> Iterator[Finding]:
         if wrong:
             words = f"samples.npz: {wrong} verdicts of {name} have no tool axis with which they are reached, or no meaning."
             yield Finding(False, words)
+    errors = [each["chord_error_mm"] or 0.0 for each in (*document["faces"], *document["fixtures"])]
+    if document["effective"]["chord_error_mm"] > max(errors) + 1e-12:
+        yield Finding(False, "effective.chord_error_mm is larger than that of each face and fixture.")
