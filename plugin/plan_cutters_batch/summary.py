@@ -199,13 +199,10 @@ def _shop(rows: Sequence[PartRow]) -> ShopTools:
     )  # fmt: skip
 
 
-def schema() -> dict[str, Any]:
-    """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Summary.model_json_schema(mode="serialization")}
-
-
 def schema_text() -> str:
-    return json.dumps(schema(), indent=2) + "\n"
+    """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
+    made = Summary.model_json_schema(mode="serialization")
+    return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **made}, indent=2) + "\n"
 
 
 PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"

@@ -24,7 +24,6 @@ from plan_cutters.command.validation import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import require_temporary
 from plan_cutters.files.pictures import with_pictures
-from plan_cutters_base.whole import whole
 
 if TYPE_CHECKING:
     from plan_cutters.cases.files import Case
@@ -310,7 +309,7 @@ def _data(text: str) -> str:
 
 
 if TYPE_CHECKING:
-    from plan_cutters_batch.job import Content, Handed, Settings
+    from plan_cutters_batch.job import Content, Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -326,34 +325,22 @@ class PartRequest:
     """How the parts are planned: the options after `--`, read once, so that all parts have the same tools."""
 
     settings: "Settings"
-    handed: "Handed"
-    #: Of the command line, for what is no option of the plan.
+    #: More words of the command line, for what is no option of the plan.
     words: tuple[str, ...]
 
     @classmethod
     def of(cls, words: Sequence[str]) -> "PartRequest":
         """Read the options, and every file that they name; an error where an option has no meaning or a file cannot be used."""
         from plan_cutters.command.cli import command as plan
-        from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
-        from plan_cutters_base.user_files import noted
-        from plan_cutters_batch.job import Settings
+        from plan_cutters_batch.job import settings_of
 
         with plan.make_context(_SELF, ["part", *words]) as context:
             requested = PlanRequest(**context.params)
         if len(requested.parts) > 1:
             raise OptionError(f"{requested.parts[1]} cannot stand after --: only options can")
-        refuse_unplanned_operations(requested)
-        with noted() as files:
-            options = options_of(requested)
-        look_at(options)
-        formats = with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}"))
-        settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
-        handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
-        handed_on += [] if requested.cache else ["--no-cache"]
-        for name in ("step_schema", "read_timeout", "timeout", "memory"):
-            if (value := getattr(requested, name)) is not None:
-                handed_on += [f"--{name.replace('_', '-')}", str(value)]
-        return cls(settings, settings.handed, tuple(handed_on))
+        settings = settings_of(requested, lambda: with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}")))
+        limits = [f"--{name}={value}" for name in ("timeout", "memory") if (value := getattr(requested, name)) is not None]
+        return cls(settings, (*settings.words, *limits, *(["--debug"] if requested.debug else [])))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -451,7 +438,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
     from plan_cutters_ci.plans import compare, unreachable
-    from plan_cutters_ci.review import PAGE, Side, page, picture_of
+    from plan_cutters_ci.review import PAGE, write_page
 
     pages: dict[str, Path] = {}
     why: dict[str, str] = {}
@@ -474,11 +461,9 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     side_page = Path("compare", part.name, PAGE)
     shutil.rmtree((out / side_page).parent, ignore_errors=True)
     if difference and not difference.same:
-        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
         (out / side_page).parent.mkdir(parents=True)
-        with whole(out / side_page, PlanError) as temporary:
-            sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
-            temporary.write_bytes(page(difference, *sides))
+        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
+        write_page(out / side_page, difference, [(names[side], pages[side] / PLAN) for side in names])
     return Row(
         part, pages.get("before"), pages.get("after"), difference, side_page if (out / side_page).is_file() else None,
         tuple(unreachable(plans["after"])) if "after" in plans else (), why.get("after", ""), why.get("before", ""),
@@ -502,7 +487,7 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    task = work.Task(name, path, None, request.handed, request.words, key)
+    task = work.Task(name, path, None, request.settings.handed, request.words, key)
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
         code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")

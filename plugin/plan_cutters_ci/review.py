@@ -5,7 +5,7 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,11 +13,14 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from plan_cutters.domain import figures as numbers
+from plan_cutters.errors import PlanError
 from plan_cutters.files.markup import embedded, policy, template, with_three
+from plan_cutters.plan_file.load import load_plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.text import Chip
+from plan_cutters_base.whole import whole
 from plan_cutters_ci.matching import match_cutters, match_faces, with_others
 from plan_cutters_ci.model import PlanDifference
 from plan_cutters_ci.plans import face_state, taken
@@ -107,6 +110,13 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         facts=[(title, value_of(old.plan), value_of(new.plan)) for title, value_of in _FACTS],
         w=numbers,
     ).encode()
+
+
+def write_page(path: Path, difference: PlanDifference, files: Iterable[tuple[str, Path]]) -> None:
+    """Write the page of two plans, named and by their plan.json; a PlanError where it cannot be written, or one not be read."""
+    with whole(path, PlanError) as temporary:
+        shown = [Side(word, plan := load_plan(file), picture_of(file, plan)) for word, file in files]
+        temporary.write_bytes(page(difference, *shown))
 
 
 def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:

@@ -47,14 +47,10 @@ def headline(difference: PlanDifference) -> str:
         f"{count(number, what)} {word}"
         for word in ("lost", "less", "won")
         for what, entries in (("face", difference.faces), ("cutter", difference.cutters))
-        if (number := sum(_counts(each, word) for each in entries))
+        if (number := sum(each.won if word == "won" else each.lost and fall(each) == word for each in entries))
     ]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
     return f"{difference.name}: {text}."
-
-
-def _counts(each: FaceDifference | CutterDifference, word: str) -> bool:
-    return each.won if word == "won" else each.lost and fall(each) == word
 
 
 def mark_of(difference: PlanDifference) -> str:
