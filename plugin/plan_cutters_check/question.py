@@ -227,6 +227,19 @@ def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
     return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]], float).reshape(1, -1)
 
 
+def standing(question: Question, number: int, degrees: Floats) -> tuple[Floats, Floats, Floats]:
+    """The tool axis and the X across it (3,) at angles (1, k), deg, in the part's coordinates, X nan where it is not known; and the
+    tilted plane's X, Y and Z (3, 3) in the machine's frame, as rows.
+    """
+    machine, setup = question.machine, question.setups[number]
+    axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)
+    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
+    x = x - (x @ axis) * axis
+    size = float(np.linalg.norm(x))
+    x = x / size if size > 1e-6 else np.full(3, np.nan)
+    return axis, x, np.array([x, np.cross(axis, x), axis]) @ frame.T
+
+
 def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
     """Which angles (n, k), deg, are within the machine's limits."""
     return _within(machine, degrees) & _tilted(machine, setup, axes_of(machine, setup, degrees))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plan_cutters_check import drilling
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
-from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
+from plan_cutters_check.question import FREE, axes_of, degrees_of, frame_of, other_angles, standing
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
@@ -265,29 +265,21 @@ def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:
 
 def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
     question, assumed = reckoned.question, reckoned.question.document["operations"]["assumed"]
-    setup, machine = question.setups[each["setup"]], question.machine
-    degrees, frame = degrees_of(question, each), frame_of(setup)
-    axis = axes_of(machine, setup, degrees)[0]
-    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
-    x = x - (x @ axis) * axis
+    setup, machine, degrees = question.setups[each["setup"]], question.machine, degrees_of(question, each)
+    axis, x, plane = standing(question, each["setup"], degrees)
     others, stated = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
     other = None
     if others:
         # Of those that are as large any may be written.
         near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]))
         other = Exactly({name: Between(a - _ROUNDED, a + _ROUNDED) for name, a in zip(machine.names, near, strict=True)})
-    known = np.linalg.norm(x) > 1e-6
-    x = x / np.linalg.norm(x) if known else np.full(3, np.nan)
+    across = x.tolist() if np.isfinite(x).all() else [Loose(-1.0, 1.0)] * 3
     return {
         "axis": axis.tolist(),
         "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
         "other_angles_deg": other,
-        "frame": {
-            "origin": list(setup.origin or (0.0, 0.0, 0.0)),
-            "z": axis.tolist(),
-            "x": x.tolist() if known else [Loose(-1.0, 1.0)] * 3,
-        },
-        **words_of(machine, each, np.array([x, np.cross(axis, x), axis]) @ frame.T, each["other_angles_deg"]),
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(), "x": across},
+        **words_of(machine, each, plane, each["other_angles_deg"]),
         "index_from": assumed["index_from"],
         "index_s": _ANY if assumed["index_from"] == "rates" else assumed["index_s"],
     }

@@ -194,16 +194,8 @@ def laid(
     """
     trim = part.trim(grid.face)
     assert trim is not None, "a face without a border has no samples"
-    (u, node_u), (v, node_v) = (
-        _tiles(line, closed, span, box)
-        for line, closed, span, box in zip(
-            (grid.u, grid.v),
-            (grid.closed_u, grid.closed_v),
-            (grid.span[:2], grid.span[2:]),
-            (trim.box[:2], trim.box[2:]),
-            strict=True,
-        )
-    )
+    u, node_u = _tiles(grid.u, grid.closed_u, grid.span[:2], trim.box[:2])
+    v, node_v = _tiles(grid.v, grid.closed_v, grid.span[2:], trim.box[2:])
     start = int(grid.index[grid.index >= 0].min())
     rows = np.arange(start, start + int((grid.index >= 0).sum()))
     tensor = tensors(samples.normal[rows], samples.direction_max[rows], samples.curvature[rows])

@@ -59,9 +59,5 @@ def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, 
     placement = options.placement
     if placement is None or unjudged(options.machine, placement) is not None:
         return {}
-    return {
-        cutter.id: travel(
-            options.machine, placement, tips(cutter, samples.point, samples.normal, reach), reach.axis, cutter.length
-        )
-        for cutter, reach in reaches.items()
-    }
+    tip = {cutter: tips(cutter, samples.point, samples.normal, reach) for cutter, reach in reaches.items()}
+    return {c.id: travel(options.machine, placement, tip[c], reach.axis, c.length) for c, reach in reaches.items()}

@@ -143,13 +143,8 @@ class Reasons:
         served = np.zeros(len(rows), bool)
         for k, conditions in enumerate(self.conditions):
             open_ = self.machinable[k][rows] & ~served
-            verdicts = self._search(
-                f"setup {k}" if limited else f"unlimited {k}",
-                cutter,
-                rows[open_],
-                conditions if limited else conditions.without_machine(),
-            )
-            served |= open_ & verdicts.reached[rows]
+            under, there = (f"setup {k}", conditions) if limited else (f"unlimited {k}", conditions.without_machine())
+            served |= open_ & self._search(under, cutter, rows[open_], there).reached[rows]
         return served
 
     def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Verdicts:
