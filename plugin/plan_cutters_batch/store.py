@@ -80,9 +80,7 @@ class Store(Folder):
             raise PlanError(cause(error, "written"), file=f"{self.url}/{name}") from None
 
     def row(self, folder: str) -> PartRow | None:
-        """The row of a part that is done: None where it is not, where one of its files is no longer there as it was, or where
-        another user of this machine or share wrote it.
-        """
+        """The row of a part that is done; None where it is not, a file of it has changed, or another user wrote it."""
         content = self._content(f"{folder}/{MARKER}", mine=True)
         if content is None:
             return None

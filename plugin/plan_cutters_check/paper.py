@@ -210,9 +210,7 @@ class Paper:
             yield Finding(False, f"{plan}: {words} are reached.")
 
     def _times(self, plan: Planned) -> Iterator[Finding]:
-        """Seconds of each sample are its path over the feed, or more where rotary axes with rates move meanwhile; on floors a
-        path is its area over the width.
-        """
+        """Seconds are the path over the feed, or more where rotary axes with rates move; on floors a path is area over width."""
         label, assumed = plan.label, self.reckoned.question.document["operations"]["assumed"]
         strip, length, seconds = (plan[name] for name in ("strip_mm", "path_mm", "seconds"))
         wanted, widest, feeds = np.full(len(label), np.nan), np.zeros(len(label)), assumed["feed_mm_min"]
@@ -404,9 +402,7 @@ def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
 
 
 def unsound(reckoned: Reckoned) -> Iterator[Finding]:
-    """What no plan has: words that cannot be made, a verdict that a sample is reached with no tool axis or is not with one, a
-    chord error that nothing has.
-    """
+    """What no plan has: words that cannot be made, verdicts that contradict their axes, a chord error that nothing has."""
     document = reckoned.question.document
     if reckoned.question.odd:
         yield Finding(False, f"plan.json: {reckoned.question.odd}.")

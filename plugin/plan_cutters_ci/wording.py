@@ -61,9 +61,7 @@ def mark_of(difference: PlanDifference) -> str:
 
 
 def remarks(difference: PlanDifference) -> list[str]:
-    """Lines before the tables: which cutter is to be taken, how faces were known again, and what
-    else changed. Of plans that are not comparable nothing but the reasons is told.
-    """
+    """Lines before the tables; none of plans that are not comparable, of which nothing but the reasons is told."""
     if not difference.comparable:
         return []
     lines = [choice(difference), known(difference)]

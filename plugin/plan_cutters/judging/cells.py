@@ -188,10 +188,7 @@ class Field:
 def laid(
     part: Part, orientation: Orientation, samples: SurfaceSamples, grid: FaceGrid, reach: Verdicts, conditions: Conditions
 ) -> tuple[Field, CellContacts, CellContacts]:
-    """The cells of a face.
-
-    Returns the field, the contacts at the samples, and those of tiles whose node lies outside the trim.
-    """
+    """The field of a face, the contacts at its samples, and those of tiles whose node lies outside the trim."""
     trim = part.trim(grid.face)
     assert trim is not None, "a face without a border has no samples"
     u, node_u = _tiles(grid.u, grid.closed_u, grid.span[:2], trim.box[:2])

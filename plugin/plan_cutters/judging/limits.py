@@ -1,6 +1,4 @@
-"""Limits of a machine: samples within those of the rotary axes of one setup or another, where alone any cutter can reach them;
-and where the linear axes stand at the postures found.
-"""
+"""Limits of a machine: samples that any cutter can reach within those of its rotary axes; where its linear axes stand."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

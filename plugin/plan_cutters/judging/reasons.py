@@ -204,10 +204,7 @@ def may_be_at_edge(verdicts: Verdicts, cutter: Cutter) -> bool:
 
 
 def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: Sequence[InsideEdge]) -> Ints:
-    """Find the sharp inside edge that loses each sample.
-
-    Returns (n,) int32: place in `edges`, -1 where it is none of them.
-    """
+    """Find the sharp inside edge that loses each sample: (n,) int32, place in `edges`, -1 where it is none of them."""
     result = np.full(len(samples), -1, np.int32)
     radius, losses, reached = least_radius(cutter), _losses(verdicts), np.flatnonzero(verdicts.reached)
     if radius is None or not losses.any() or not len(reached):
@@ -325,9 +322,7 @@ def _corner(
 def _served(
     samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float
 ) -> NDArray[np.bool_]:
-    """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
-    ball touches both faces.
-    """
+    """Points (k,) of an edge about which the cutter reaches the surface where the ball touches both faces."""
     served, sharp = np.zeros(len(wide), bool), np.flatnonzero(edge.sharp)
     rise = 0.5 * edge.curvature[side, sharp] * wide[sharp] ** 2
     place = edge.point[sharp] + wide[sharp, None] * edge.inward[side, sharp] + rise[:, None] * edge.normal[side, sharp]

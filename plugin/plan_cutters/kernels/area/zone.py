@@ -342,9 +342,7 @@ def halvings(most, h, pose, flat, nose, depth, chord, near):
 
 @kernel
 def too_steep(pose, turn, flat, nose):
-    """Whether the normal turns too much within a patch for the tilt: the cutter must be tilted, and touch with the same mode, all
-    over it.
-    """
+    """Whether the normal turns too much within a patch for the cutter to be tilted, and touch in the same mode, all over it."""
     if flat:
         return False
     sine, cosine = pose

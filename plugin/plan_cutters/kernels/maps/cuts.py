@@ -199,9 +199,7 @@ def _first_in_the_way(met, a, b, sign, narrowest, workspace):
 
 @kernel
 def _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace):
-    """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
-    passed.
-    """
+    """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last failure and the first pass."""
     ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
     width, passed, failed, step = interval[g, LAST] - interval[g, FIRST], np.inf, 0.0, narrowest
     _fill(workspace.seen, corner)

@@ -340,9 +340,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
 
 @kernel
 def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results):
-    """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
-    of both sides ended.
-    """
+    """The largest tool that finds a posture, -1 for none, the verdict on the next, and where the searches of both sides ended."""
     count, turns = len(outer.tools.reach), len(ranges.rotation_cos)
     # Reached, not reached; not known to be inaccessible, known to be so.
     low, high, free, beyond = -1, count, -1, count

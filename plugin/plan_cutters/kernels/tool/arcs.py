@@ -145,9 +145,7 @@ def _put(out, count, first, last):
 
 @kernel
 def _half(out, count, zero, low, high, d, floor, ceiling, up):
-    """Enter the tilts of cosines of alpha between two bounds and heights between two, on one half turn; `zero` the tilt of alpha
-    0.
-    """
+    """Enter tilts, on one half turn, of cosines of alpha and heights between two each; `zero`: the tilt of alpha 0."""
     least, most = (floor / d, ceiling / d) if up > 0.0 else (-ceiling / d, -floor / d)
     least, most = max(least, 0.0), min(most, 1.0)
     if least >= most:
