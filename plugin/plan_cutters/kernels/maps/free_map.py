@@ -58,7 +58,7 @@ def _rising(view, below, block, lanes, low):
 
 @kernel
 def _leaf(leaf, which, vertex, frame, turn, interval, count, turning, mask, narrowest, margin, workspace):
-    """Take what triangles of a leaf forbid to pieces of a mask out of the intervals; (their count, the last lane to cut or -1)."""
+    """Take what triangles of a leaf forbid to pieces of a mask out of the intervals; (their count, the last lane that cut)."""
     cosine, sine = turn
     last = -1
     for k in range(len(turning.piece)):
