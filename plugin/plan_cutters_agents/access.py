@@ -48,9 +48,8 @@ class Roots:
     def of(cls, folders: Iterable[str | os.PathLike[str]]) -> "Roots":
         """Resolve folders; a CallError where one is no folder."""
         paths = {each: _folder(each) for each in folders}
-        for each, path in paths.items():
-            if path is None:
-                raise CallError("is no folder; give one with --root", file=str(each))
+        for each in (each for each, path in paths.items() if path is None):
+            raise CallError("is no folder; give one with --root", file=str(each))
         return cls(tuple(dict.fromkeys(filter(None, paths.values()))))
 
     @classmethod

@@ -14,7 +14,6 @@ from plan_cutters_check.bench import Contacts
 from plan_cutters_check.findings import Finding, leaves
 from plan_cutters_check.question import Question, ToolSizes, allowed, axes_of, degrees_of, held
 from plan_cutters_check.reckoned import DRILLED, FLOOR, REACHED, WALL, WORDS, Planned, Reckoned, Rows, suffix
-from plan_cutters_check.surface import inside
 from plan_cutters_check.tool import tool_of
 
 _Arrays = dict[str, tuple[tuple[int, ...], str]]
@@ -116,7 +115,7 @@ class Paper:
             known = size > 1e-9 * size.max(initial=0.0)
             off = np.abs(normal[known] - samples["normal"][mine][known]).max(axis=1) > _SAME
             trim = part.trim(number)
-            beyond = np.zeros(len(mine), bool) if trim is None else ~inside(trim, *samples["uv"][mine].T)
+            beyond = np.zeros(len(mine), bool) if trim is None else ~trim.inside(*samples["uv"][mine].T)
             odd += int(off.sum() + beyond.sum())
             stands, whole = float(self.reckoned.area[mine].sum()), part.faces[number - 1].area
             judged = (samples["face"] == number).sum() == len(mine)

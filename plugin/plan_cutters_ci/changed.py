@@ -161,11 +161,8 @@ class Row:
     unread: str = ""
 
     def breaks(self, rule: str) -> bool:
-        """Whether the part fails by a rule."""
-        at = RULES.index(rule)
-        worse = self.difference is not None and self.difference.lost
-        doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
-        return (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
+        """Whether the part fails by a rule: one of its test cases does."""
+        return any(case.outcome in ("failure", "error") for case in row_cases(self, rule))
 
 
 def row_cases(row: Row, rule: str) -> Iterator["Case"]:

@@ -6,7 +6,6 @@ import json
 import re
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -47,6 +46,8 @@ _OMITTED = re.compile(
     r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
 )
 _FORMAT = 1
+#: A script element of a page with its id and its text: what the page draws stands in two of them.
+_ELEMENT = re.compile(r'<script [^>]*\bid="([\w-]+)">(.*?)</script>', re.DOTALL)
 _AGAIN = "plan the part again with --formats json,html"
 
 
@@ -154,7 +155,7 @@ def picture_of(path: Path, plan: Plan) -> Picture:
 
 def _picture(text: str) -> Picture | None:
     """The picture that a page holds; None where its data have another form."""
-    elements = _Elements(text).texts
+    elements = dict(_ELEMENT.findall(text))
     meta, stream = json.loads(elements["meta"]), elements["data"]
     if meta["format"] != _FORMAT:
         return None
@@ -175,27 +176,6 @@ def _picture(text: str) -> Picture | None:
         raise LookupError("a cutter has no verdicts")
     reduced = {**meta, "cutters": cutters, "spots": [], "scalars": [], "operations": None, "maps": None, "arrays": entries}
     return Picture(reduced, data, "")
-
-
-class _Elements(HTMLParser):
-    """Texts of the script elements of a page, by their ids: what the page draws stands in two of them."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.texts: dict[str, str] = {}
-        self._open: str | None = None
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self._open = dict(attrs).get("id") if tag == "script" else None
-
-    def handle_data(self, data: str) -> None:
-        if self._open:
-            self.texts[self._open] = self.texts.get(self._open, "") + data
-
-    def handle_endtag(self, tag: str) -> None:
-        self._open = None
 
 
 #: Rows on what was compared: a title, and the cell of a plan.
