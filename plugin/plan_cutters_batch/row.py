@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict
 
@@ -108,7 +108,7 @@ def essential(faces: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
 
 
 #: A condition: columns with their factors, and what they sum up to at least.
-_Condition = tuple[dict[int, float], float]
+_Condition = tuple[frozenset[tuple[int, float]], float]
 
 
 def fewest(parts: Sequence[PartTools]) -> tuple[str, ...]:
@@ -150,23 +150,18 @@ def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Co
 
     After the tools come columns for the sets of a part that are used whole.
     """
-    rows, columns = dict[Any, _Condition](), len(place)
-
-    def add(factors: dict[int, float], least: float) -> None:
-        rows[frozenset(factors.items()), least] = factors, least
-
+    rows, columns = dict[_Condition, None](), len(place)
     for part in parts:
         mine: set[int] = set()
         for names in part.together:
             if not set(names) & set(part.alone):
-                for name in names:
-                    add({place[name]: 1.0, columns: -1.0}, 0.0)
+                rows |= dict.fromkeys((frozenset({(place[name], 1.0), (columns, -1.0)}), 0.0) for name in names)
                 mine.add(columns)
                 columns += 1
         mine |= {place[name] for name in part.alone}
         for whole in {*part.faces} or {()}:
-            add(dict.fromkeys(mine | {place[name] for name in whole}, 1.0), 1.0)
-    return list(rows.values()), columns
+            rows[frozenset((k, 1.0) for k in mine | {place[name] for name in whole}), 1.0] = None
+    return list(rows), columns
 
 
 def _greedy(parts: Sequence[PartTools]) -> set[str]:
@@ -184,7 +179,7 @@ def _least(cost: Sequence[float], rows: Sequence[_Condition]) -> Sequence[float]
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import coo_array
 
-    entries = [(i, k, factor) for i, (factors, _) in enumerate(rows) for k, factor in factors.items()]
+    entries = [(i, k, factor) for i, (factors, _) in enumerate(rows) for k, factor in factors]
     i, k, values_there = zip(*entries, strict=True)
     table = coo_array((values_there, (i, k)), shape=(len(rows), len(cost))).tocsr()
     values: Sequence[float] | None = milp(
