@@ -14,7 +14,6 @@ from plan_cutters_check import drilling, fixtures
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.findings import Answer, Compared, Finding
 from plan_cutters_check.paper import Paper, faults, ill_formed, unsound
-from plan_cutters_check.patterns import Patterns
 from plan_cutters_check.question import Question, require_operations
 from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.records import document_of
@@ -47,7 +46,7 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    findings = [*Paper(reckoned, rng).findings(), *Patterns(question).findings(), *ill_formed(reckoned)]
+    findings = [*Paper(reckoned, rng).findings(), *ill_formed(reckoned)]
     findings += (Finding(False, f"{each}.") for each in fixtures.faults(question))
     findings += unsound(reckoned)
     expected = document_of(reckoned)

@@ -375,10 +375,15 @@ def _flutes(sizes: ToolSizes, normal: Floats, axis: Floats) -> tuple[Floats, Flo
 
 
 def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
-    """Axes for motion that no operation has, that are no unit vectors, that are missing, or that the machine does not hold."""
+    """Images of each other that are none; axes for motion of no operation, that are no unit vectors, or that are not held."""
     question = reckoned.question
     for plan in reckoned.plans:
         label, axis, piece = plan.label, plan["moving_axis"], plan["moving_piece"]
+        kinds: dict[int, set[Any]] = {}
+        for each in (each for each in plan.operations if each.get("orbit") is not None):
+            kinds.setdefault(each["orbit"], set()).add((each["cutter"], each["setup"], each["mode"]))
+        for orbit in (orbit for orbit, some in kinds.items() if len(some) > 1):
+            yield Finding(False, f"{plan}: the operations of orbit {orbit} are no images of each other.")
         turning = [i for i, each in enumerate(plan.operations) if each["turning"] is not None]
         if any(plan.operations[i]["mode"] == "fixed" for i in turning):
             yield Finding(False, f"{plan}: the axis of a fixed operation turns.")
