@@ -146,11 +146,11 @@ _MOST, _FINDINGS = 10, 5
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A part that changed: its folders of plans before and after, the difference, or why there is none."""
+    """A part that changed: what its best cutter reached before and reaches now, the difference, or why there is none."""
 
     part: Changed
-    before: Path | None = None
-    after: Path | None = None
+    before: float | None = None
+    after: float | None = None
     difference: "PlanDifference | None" = None
     #: The page of both plans, below the output folder, where they differ.
     beside: Path | None = None
@@ -234,15 +234,12 @@ def summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], began: str, 
     return "\n".join(lines) + "\n"
 
 
-def _bar(folder: Path | None) -> str:
+def _bar(share: float | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
     from plan_cutters.domain.figures import percent
-    from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_ci.plans import reached
 
-    if folder is None:
+    if share is None:
         return "-"
-    share = max((reached(cutter) for cutter in load_plan(folder / PLAN).cutters), default=0.0)
     # Full only where all is reached.
     full = 10 if share == 1.0 else min(9, int(10 * share))
     return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"
@@ -434,7 +431,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     from plan_cutters.plan_file.load import PLAN, load_plan
     from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
-    from plan_cutters_ci.plans import compare, unreachable
+    from plan_cutters_ci.plans import compare, reached, unreachable
     from plan_cutters_ci.review import PAGE, write_page
 
     pages: dict[str, Path] = {}
@@ -461,8 +458,9 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
         (out / side_page).parent.mkdir(parents=True)
         names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
         write_page(out / side_page, difference, [(names[side], pages[side] / PLAN) for side in names])
+    shares = {side: max(map(reached, plan.cutters), default=0.0) for side, plan in plans.items()}
     return Row(
-        part, pages.get("before"), pages.get("after"), difference, side_page if (out / side_page).is_file() else None,
+        part, shares.get("before"), shares.get("after"), difference, side_page if (out / side_page).is_file() else None,
         tuple(unreachable(plans["after"])) if "after" in plans else (), why.get("after", ""), why.get("before", ""),
     )  # fmt: skip
 

@@ -70,11 +70,11 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
     all_faces = (_face(old, a, new, b, how, slack, radii) for a, b, how in with_others(old.faces, new.faces, pairs))
     all_cutters = (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in with_others(old.cutters, new.cutters, tools))
     faces, cutters = sorted(filter(None, all_faces), key=_worst_face), sorted(filter(None, all_cutters), key=_worst_cutter)
+    rows: list[FaceDifference | CutterDifference] = [*faces, *cutters]
     return PlanDifference(
         name=name, comparable=not why_not, why_not=why_not, changes=changes, selected=(taken(old), taken(new)),
         matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())), faces=faces, cutters=cutters,
-        unreachable=unreachable(new), lost=any(each.lost for each in (*faces, *cutters)),
-        won=any(each.won for each in (*faces, *cutters)),
+        unreachable=unreachable(new), lost=any(each.lost for each in rows), won=any(each.won for each in rows),
     )  # fmt: skip
 
 

@@ -125,7 +125,7 @@ def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:
     for a, b, _ in with_others(old.cutters, new.cutters, match_cutters(old, new)):
         name = now[b.id] if b else then[a.id] if a else ""
         alone = "" if a and b else f" ({'old' if a else 'new'} plan alone)"
-        yield {"name": f"{name}{alone}", "old": a and a.id, "new": b and b.id}
+        yield {"name": f"{name}{alone}", "old": a.id if a else None, "new": b.id if b else None}
 
 
 def picture_of(path: Path, plan: Plan) -> Picture:
