@@ -41,10 +41,7 @@ class Content:
         return fingerprint(checksum(self.data), checksums(self.references))
 
     def within(self) -> Iterator[tuple[str, bytes]]:
-        """The files in or below its folder that it refers to, and that are there.
-
-        What lies elsewhere does not travel: it is missing there, or read where it lies if its whole path is given.
-        """
+        """The files in or below its folder that it refers to, and that are there: what lies elsewhere does not travel."""
         return ((name, data) for name, data in self.references if data is not None and _is_within(name))
 
     def outside(self) -> tuple[tuple[str, str | None], ...]:
@@ -64,10 +61,7 @@ def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
 
 
 def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
-    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read.
-
-    One whose whole path is given lies on this machine.
-    """
+    """The bytes of a file (path or URL) and of all that it refers to, which may be missing; a PlanError if it cannot be read."""
     folder, slash, _ = file.rpartition("/")
 
     def other(name: str) -> bytes | None:

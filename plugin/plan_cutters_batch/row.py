@@ -146,10 +146,7 @@ def fewest(parts: Sequence[PartTools]) -> tuple[str, ...]:
 
 
 def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Condition], int]:
-    """The conditions under which tools finish all parts as their plans state it, and the number of columns.
-
-    After the tools come columns for the sets of a part that are used whole.
-    """
+    """The conditions under which tools finish all parts, and how many columns: tools, then sets of a part that are used whole."""
     rows, columns = dict[_Condition, None](), len(place)
     for part in parts:
         mine: set[int] = set()

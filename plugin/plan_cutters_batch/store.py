@@ -96,10 +96,7 @@ class Store(Folder):
         return None
 
     def publish(self, folder: str, files: Mapping[str, Path | bytes], row: PartRow) -> None:
-        """Put the files of a part into its folder, in place of all that is there, and mark it as done.
-
-        A PlanError where they cannot be written: the part is not done.
-        """
+        """Put the files of a part in place of all in its folder, and mark it as done; a PlanError if that cannot be written."""
         try:
             options = {"row": row.model_dump(mode="json"), "sha256": {name: checksum_of(what) for name, what in files.items()}}
             marker = json.dumps(options | {"seal": _seal(options)}, indent=1).encode()

@@ -54,10 +54,7 @@ class Changed:
 
 
 def git(*words: str, stdin: bytes | None = None, codes: Collection[int] = (0,)) -> bytes:
-    """Standard output of git in the working directory; a PlanError where there is no git, or it refuses.
-
-    `codes`: exit codes that are no refusal.
-    """
+    """Standard output of git in the working directory; a PlanError where there is none, or its exit code is none of `codes`."""
     try:
         done = subprocess.run(["git", *words], input=stdin, capture_output=True, check=False)
     except OSError as error:
@@ -276,10 +273,7 @@ def requested(kind: str | None) -> bool:
 
 
 def annotations(parts: Iterable[tuple[str, Sequence["Case"]]]) -> Iterator[str]:
-    """The lines, without line ends, of parts by their paths in the repository: one at the file of each that fails.
-
-    Of more parts than GitHub shows the last line says how many there are.
-    """
+    """Lines, one at the file of each part that fails; of more parts than GitHub shows the last line says how many there are."""
     failing = [(part, [case for case in cases if case.outcome in ("failure", "error")]) for part, cases in parts]
     failing = [(part, cases) for part, cases in failing if cases]
     for part, cases in failing[: _MOST if len(failing) <= _MOST else _MOST - 1]:

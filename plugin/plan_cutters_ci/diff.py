@@ -129,10 +129,7 @@ def command(request: DiffRequest) -> int:
 
 
 def plans_in(folder: Path) -> dict[str, Path]:
-    """Plan files by name: of a file or plan folder one without a name, of a folder of many theirs by their folders below it.
-
-    A PlanError where there is none.
-    """
+    """Plan files by folders below a folder of many, or the one of a file or plan folder, without a name; else a PlanError."""
     from plan_cutters.plan_file.load import PLAN
 
     if folder.is_file():

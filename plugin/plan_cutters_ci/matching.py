@@ -269,10 +269,7 @@ def _placed_form(face: FaceEntry) -> str | None:
 
 
 def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float, *, radius: bool) -> Iterator[Pair]:
-    """Pairs of faces of one form on the same carrier; with `radius`, its radii agree, too.
-
-    A cone has an angle, which agrees in any case.
-    """
+    """Pairs of faces of one form on the same carrier, of one angle; with `radius`, their radii agree, too."""
     within = _SAME_CARRIER * size
 
     def row(face: FaceEntry, sign: float = 1.0) -> tuple[float, ...]:
@@ -298,10 +295,7 @@ def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: fl
 
 
 def _opposed(a: FaceEntry, b: FaceEntry) -> bool:
-    """Whether the material lies on other sides of two faces of one form, or they point in other directions.
-
-    What one of them does not state opposes nothing.
-    """
+    """Whether two faces of one form have their material on other sides, or other directions, as far as they state it."""
     if a.carrier is None or b.carrier is None:
         return False
     way, other = a.carrier.direction, b.carrier.direction

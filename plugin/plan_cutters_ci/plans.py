@@ -166,10 +166,7 @@ def _face(
 
 
 def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[Ids, Radii]:
-    """Radii of faces that only one plan has, and that took the place of another one, by their ids.
-
-    They are of one shape, and most of the faces around them are the same.
-    """
+    """Radii, by their ids, of faces of one shape of which each plan has one alone, among mostly the same faces."""
     again = {a.id: b.id for a, b, _ in pairs}
     theirs = {*again.values()}
     came = [(face, radius) for face in new.faces if face.id not in theirs and (radius := _radius(face))]

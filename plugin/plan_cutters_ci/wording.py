@@ -186,10 +186,7 @@ def _why(reason: str | None) -> str:
 
 
 def markdown(comparison: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others.
-
-    `pages` are paths of the pages of both plans by the name of their pair; the only one has none.
-    """
+    """The comparison in Markdown: a section for each pair that differs; `pages`: paths by names of pairs, of one pair by none."""
     same = [each for each in comparison.plans if each.same]
     lines = [f"**{verdict(comparison)}**", ""]
     for each in comparison.plans:

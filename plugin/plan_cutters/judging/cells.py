@@ -254,10 +254,7 @@ def laid(
 
 
 def quartered(contacts: CellContacts, field: Field, level: int, conditions: Conditions) -> CellContacts:
-    """Up to four contacts for each, one in each quarter of its cell that lies in the trim, that start from its posture.
-
-    `level` counts the halvings that led to `contacts`.
-    """
+    """Up to four contacts for each, in the quarters of its cell that lie in the trim; `level`: how often these were cut."""
     while len(field.lines) < level + 2:
         field.lines.append((_halved(field.lines[-1][0]), _halved(field.lines[-1][1])))
     lines = field.lines[level + 1]

@@ -87,10 +87,7 @@ class Reasons:
     _known: dict[str, dict[Cutter, Verdicts]] = field(default_factory=dict)
 
     def of(self, cutter: Cutter, verdicts: Verdicts, progress: Progress | None = None) -> Explained:
-        """Find the reasons of what a cutter loses.
-
-        `verdicts`: what it reaches over all setups, with the reasons that its search found.
-        """
+        """Find the reasons of what a cutter loses; `verdicts`: over all setups, with the reasons that its search found."""
         tell = progress or (lambda done, total: None)
         first, n = self.conditions[0], len(verdicts.verdict)
         before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
