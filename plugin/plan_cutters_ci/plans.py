@@ -214,18 +214,10 @@ def _cutter(
             return None
     else:
         loses, wins = was is not None and bool(was.finishes), now is not None and bool(now.finishes)
-    either = b or a
-    assert either is not None
+    one = b or a
+    assert one is not None
     return CutterDifference(
-        name=called(either),
-        matched_by=how,
-        was=was,
-        now=now,
-        changes=changes,
-        faces_lost=gone,
-        faces_won=won,
-        lost=loses,
-        won=wins,
+        name=called(one), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone, faces_won=won, lost=loses, won=wins
     )
 
 
