@@ -61,7 +61,7 @@ def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
 
 
 def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
-    """The bytes of a file (path or URL) and of all that it refers to, which may be missing; a PlanError if it cannot be read."""
+    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read."""
     folder, slash, _ = file.rpartition("/")
 
     def other(name: str) -> bytes | None:

@@ -352,7 +352,7 @@ def foreseen(parts: Iterable[Job | PartRow], out: Store, terms: Terms) -> Iterat
 
 @dataclass(frozen=True)
 class Planned:
-    """What came of one of many parts: its `row` of the table, and its `files` by name, where no output was named."""
+    """A result holds what came of one of many parts: its `row` of the table, and its `files`, where no output was named."""
 
     row: PartRow
     files: dict[str, bytes] = field(default_factory=dict, repr=False)

@@ -15,7 +15,7 @@ from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Finding, Loose
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, standing
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, tool_frame
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
@@ -103,7 +103,7 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     degrees = degrees_of(question, step)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis, x, plane = standing(question, step["setup"], degrees)
+    axis, x, plane = tool_frame(question, step["setup"], degrees)
     others = other_angles(question, step["setup"], degrees[0])
     other = dict(zip(machine.names, others[0], strict=True)) if others else None
     words = words_of(machine, step, plane, other)

@@ -406,7 +406,7 @@ def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
 
 
 def unsound(reckoned: Reckoned) -> Iterator[Finding]:
-    """What no plan has: words that cannot be made, verdicts that contradict their axes, a chord error that nothing has."""
+    """List what no plan has: words that cannot be made, verdicts that contradict their axes, a chord error that nothing has."""
     document = reckoned.question.document
     if reckoned.question.odd:
         yield Finding(False, f"plan.json: {reckoned.question.odd}.")

@@ -224,7 +224,7 @@ def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
     return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]], float).reshape(1, -1)
 
 
-def standing(question: Question, number: int, degrees: Floats) -> tuple[Floats, Floats, Floats]:
+def tool_frame(question: Question, number: int, degrees: Floats) -> tuple[Floats, Floats, Floats]:
     """Tool axis and X across it, nan where not known, (3,), of the part, at angles (1, k), deg; X, Y, Z (3, 3) of the machine."""
     machine, setup = question.machine, question.setups[number]
     axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)

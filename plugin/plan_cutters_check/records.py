@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plan_cutters_check import drilling
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
-from plan_cutters_check.question import FREE, axes_of, degrees_of, frame_of, other_angles, standing
+from plan_cutters_check.question import FREE, axes_of, degrees_of, frame_of, other_angles, tool_frame
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
@@ -245,7 +245,7 @@ def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:
 def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
     question, assumed = reckoned.question, reckoned.question.document["operations"]["assumed"]
     setup, machine, degrees = question.setups[each["setup"]], question.machine, degrees_of(question, each)
-    axis, x, plane = standing(question, each["setup"], degrees)
+    axis, x, plane = tool_frame(question, each["setup"], degrees)
     others, stated = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
     other = None
     if others:
