@@ -265,10 +265,7 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
 
 @kernel
 def _ends_in_the_way(met, interval, g, workspace):
-    """Whether a triangle is in the way at the first tilt of an interval, and at the last.
-
-    What was undecided at an end no longer is where this triangle is in the way.
-    """
+    """Whether a triangle is in the way at either end of an interval: what was undecided there no longer is."""
     a, b, unsure_first, unsure_last = interval[g, FIRST], interval[g, LAST], interval[g, UF], interval[g, UL]
     at_first, at_last = _in_the_way(met, a, workspace), _in_the_way(met, b, workspace)
     if at_first and unsure_first > 0.0 and _in_the_way(met, a - unsure_first, workspace):

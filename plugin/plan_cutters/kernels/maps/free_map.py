@@ -247,10 +247,7 @@ def _ball(turning):
 
 @kernel
 def _reachable(view, lanes, turning):
-    """The mask of the pieces that boxes of the first block may reach into at any posture.
-
-    They rise as high, and stand neither nearer nor farther than the piece.
-    """
+    """The mask of the pieces that boxes of the first block may reach into at any posture, by their heights and distances."""
     mask, known = 0, turning.known
     for k in range(len(turning.piece)):
         for lane in range(lanes):

@@ -132,10 +132,7 @@ def put(body, frame, tilt, tool, mode):
 
 @kernel
 def turned(frame, tilt, tool, mode, tree, body, scratch):
-    """Return how far a posture that touches nothing can be tilted either way and still touch nothing, rad.
-
-    Lemma S5 of `docs/at_a_sample.md`.
-    """
+    """Return how far a posture that touches nothing can be tilted either way and touch nothing, rad (lemma S5)."""
     half = _TURN
     while half > 0.5 * NARROWEST:
         put(body, frame, tilt, tool, mode)

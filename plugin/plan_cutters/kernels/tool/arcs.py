@@ -180,10 +180,7 @@ def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
 
 @kernel
 def _own_arc(out, count, zero, d, y, radius, ring_radius, floor, ceiling):
-    """Write the tilts that a revolved arc forbids, whose circle of centres goes through the centre of tilting; the new count.
-
-    `radius` may have any sign.
-    """
+    """Write the tilts that a revolved arc forbids whose centres go through that of tilting, of any radius; the new count."""
     for up in (1.0, -1.0):
         if radius == 0.0:
             if d * d + y * y < ring_radius * ring_radius:
