@@ -41,6 +41,7 @@ DEFLECTION = 1e-5
 ON_LEAST, ON_MOST = 1e-7, 1e-3
 _CHORDS = 4  # that each span of a parameter curve starts with
 _HALVINGS = 12
+_AT_ONCE = 128  # points that are looked at in one grid
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -98,11 +99,13 @@ class Trim(Record):
 
     def inside(self, u: Floats, v: Floats) -> Bools:
         """Which of the points (n,), (n,) lie in the face."""
-        # The diagonal of a grid is wasteful, but points come here a few at a time.
-        order_u, order_v = np.argsort(u), np.argsort(v)
-        result = np.empty((len(u), len(v)), bool)
-        result[np.ix_(order_u, order_v)] = self.inside_grid(u[order_u], v[order_v])
-        return result.diagonal().copy()
+        # The diagonal of a grid is wasteful: a few points at a time.
+        result = np.empty(len(u), bool)
+        for some in (slice(start, start + _AT_ONCE) for start in range(0, len(u), _AT_ONCE)):
+            order_u, order_v = np.argsort(u[some]), np.argsort(v[some])
+            grid = self.inside_grid(u[some][order_u], v[some][order_v])
+            result[some] = grid[np.argsort(order_u), np.argsort(order_v)]
+        return result
 
     def _asked(self, u: Floats, v: Floats) -> Bools:
         classifier = BRepTopAdaptor_FClass2d(self.face, float(self.tolerance / self.scale.max()))

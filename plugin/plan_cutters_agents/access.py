@@ -48,9 +48,8 @@ class Roots:
     def of(cls, folders: Iterable[str | os.PathLike[str]]) -> "Roots":
         """Resolve folders; a CallError where one is no folder."""
         paths = {each: _folder(each) for each in folders}
-        for each, path in paths.items():
-            if path is None:
-                raise CallError("is no folder; give one with --root", file=str(each))
+        for each in (each for each, path in paths.items() if path is None):
+            raise CallError("is no folder; give one with --root", file=str(each))
         return cls(tuple(dict.fromkeys(filter(None, paths.values()))))
 
     @classmethod
@@ -63,10 +62,7 @@ class Roots:
         return Roots(tuple(dict.fromkeys((*self.folders, *other.folders))))
 
     def confined(self, text: str) -> Path:
-        """Where a path ends; one that is not absolute begins at the first root in which it exists.
-
-        A CallError where it ends outside all roots, or is no name of a file.
-        """
+        """Where a path ends, from the first root in which it exists; a CallError outside all roots, or for no name of a file."""
         if not self.folders:
             raise CallError("there is no root: start the server with --root DIR, and files in DIR can be named", file=text)
         try:

@@ -148,16 +148,10 @@ def planned(plan: Plan, code: int, files: Mapping[str, str]) -> PlanAnswer:
     process = plan.process
     more = {**_fields(process, "asked_mm2", "finished_share", "seconds"), "steps": [_step(each) for each in process.steps],
             "left": [_remaining(each) for each in process.left],
-            "drilling": [_drilling(k, each) for k, each in enumerate(process.drilling, len(process.steps) + 1)]}  # fmt: skip
+            "drilling": [_drilling(k, each) for k, each in enumerate(process.drilling, len(process.steps) + 1)],
+            "missing_tools": missing_tools(plan)}  # fmt: skip
     notes = [{"code": code, "text": as_fields(text)} for code, text in every]
-    return PlanAnswer(
-        **_of_plan(plan, code),
-        **more,
-        missing_tools=missing_tools(plan),
-        notes=notes,
-        files=dict(files),
-        not_written=plan.not_written,
-    )
+    return PlanAnswer(**_of_plan(plan, code), **more, notes=notes, files=dict(files), not_written=plan.not_written)
 
 
 def _step(step: ProcessStep) -> Entry:

@@ -40,10 +40,7 @@ _ROOTS = "roots"
 
 
 class Service:
-    """Answers calls within the roots and limits that the server was started with.
-
-    `client_roots`: folders that the client offers are roots as well.
-    """
+    """Answers calls within roots and limits; `client_roots`: folders that the client offers are roots as well."""
 
     def __init__(self, roots: Roots, limits: Limits, *, client_roots: bool) -> None:
         self.roots, self.limits, self.client_roots = roots, limits, client_roots

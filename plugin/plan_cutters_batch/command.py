@@ -281,16 +281,8 @@ def _formats() -> tuple[str, ...]:
 
 
 def _settings(request: BatchRequest) -> "Settings":
-    """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
-    from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
     from plan_cutters.report.folder import read_formats
-    from plan_cutters_base.user_files import noted
-    from plan_cutters_batch.job import Settings
+    from plan_cutters_batch.job import settings_of
 
-    refuse_unplanned_operations(request)
-    with noted() as files:
-        requested = options_of(replace(request, jobs=request.jobs or 1))
-    look_at(requested)
-    formats = _formats() if request.formats is None else read_formats(request.formats)
-    read = tuple(filter(None, files.values()))
-    return Settings(requested, formats, request.step_schema, request.read_timeout, read, request.cache)
+    request = replace(request, jobs=request.jobs or 1)
+    return settings_of(request, lambda: _formats() if request.formats is None else read_formats(request.formats))

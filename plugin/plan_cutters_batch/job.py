@@ -6,10 +6,10 @@ import functools
 import os
 import pickle
 import platform
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path, PurePath, PureWindowsPath
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import plan_cutters
 from cad_io.read.step_text import followed
@@ -22,6 +22,9 @@ from plan_cutters_base import user_files
 from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
 from plan_cutters_base.user_files import checksum, checksums, fingerprint
 from plan_cutters_base.values import digest, sources
+
+if TYPE_CHECKING:
+    from plan_cutters.command.request import PlanningRequest
 
 
 @dataclass(frozen=True)
@@ -38,10 +41,7 @@ class Content:
         return fingerprint(checksum(self.data), checksums(self.references))
 
     def within(self) -> Iterator[tuple[str, bytes]]:
-        """The files in or below its folder that it refers to, and that are there.
-
-        What lies elsewhere does not travel: it is missing there, or read where it lies if its whole path is given.
-        """
+        """The files in or below its folder that it refers to, and that are there: what lies elsewhere does not travel."""
         return ((name, data) for name, data in self.references if data is not None and _is_within(name))
 
     def outside(self) -> tuple[tuple[str, str | None], ...]:
@@ -61,10 +61,7 @@ def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
 
 
 def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
-    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read.
-
-    One whose whole path is given lies on this machine.
-    """
+    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read."""
     folder, slash, _ = file.rpartition("/")
 
     def other(name: str) -> bytes | None:
@@ -183,6 +180,18 @@ class Settings:
                     continue
             changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
         return replace(self, options=_with(self.options, **changed)) if changed else self
+
+
+def settings_of(request: "PlanningRequest", formats: Callable[[], Sequence[str]]) -> Settings:
+    """The settings of parts, from the words of a command line: what is wrong with them is said before anything is begun."""
+    from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
+
+    refuse_unplanned_operations(request)
+    with user_files.noted() as files:
+        options = options_of(request)
+    look_at(options)
+    read = tuple(filter(None, files.values()))
+    return Settings(options, tuple(formats()), request.step_schema, request.read_timeout, read, request.cache)
 
 
 def _read(file: str) -> bytes:

@@ -3,7 +3,6 @@
 import contextlib
 import textwrap
 import time
-from typing import Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -52,12 +51,6 @@ class Board:
                 self._bar.start()
             self._bar.add_task("", total=total)
             self._update()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def row(self, row: PartRow) -> None:
         """Show what came of a part."""

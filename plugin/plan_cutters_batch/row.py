@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict
 
@@ -107,11 +107,8 @@ def essential(faces: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
     return tuple(stays)
 
 
-class _Row(NamedTuple):
-    """A condition: the columns, each times its factor, sum up to `least` or more."""
-
-    factors: dict[int, float]
-    least: float
+#: A condition: columns with their factors, and what they sum up to at least.
+_Condition = tuple[frozenset[tuple[int, float]], float]
 
 
 def fewest(parts: Sequence[PartTools]) -> tuple[str, ...]:
@@ -148,28 +145,20 @@ def fewest(parts: Sequence[PartTools]) -> tuple[str, ...]:
     return tuple(sorted(chosen, key=place.__getitem__))
 
 
-def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Row], int]:
-    """The conditions under which tools finish all parts as their plans state it, and the number of columns.
-
-    After the tools come columns for the sets of a part that are used whole.
-    """
-    rows, columns = dict[tuple[frozenset[tuple[int, float]], float], _Row](), len(place)
-
-    def add(row: _Row) -> None:
-        rows[frozenset(row.factors.items()), row.least] = row
-
+def _stated(parts: Sequence[PartTools], place: dict[str, int]) -> tuple[list[_Condition], int]:
+    """The conditions under which tools finish all parts, and how many columns: tools, then sets of a part that are used whole."""
+    rows, columns = dict[_Condition, None](), len(place)
     for part in parts:
         mine: set[int] = set()
         for names in part.together:
             if not set(names) & set(part.alone):
-                for name in names:
-                    add(_Row({place[name]: 1.0, columns: -1.0}, 0.0))
+                rows |= dict.fromkeys((frozenset({(place[name], 1.0), (columns, -1.0)}), 0.0) for name in names)
                 mine.add(columns)
                 columns += 1
         mine |= {place[name] for name in part.alone}
         for whole in {*part.faces} or {()}:
-            add(_Row(dict.fromkeys(mine | {place[name] for name in whole}, 1.0), 1.0))
-    return list(rows.values()), columns
+            rows[frozenset((k, 1.0) for k in mine | {place[name] for name in whole}), 1.0] = None
+    return list(rows), columns
 
 
 def _greedy(parts: Sequence[PartTools]) -> set[str]:
@@ -182,20 +171,20 @@ def _greedy(parts: Sequence[PartTools]) -> set[str]:
     return chosen
 
 
-def _least(cost: Sequence[float], rows: Sequence[_Row]) -> Sequence[float] | None:
+def _least(cost: Sequence[float], rows: Sequence[_Condition]) -> Sequence[float] | None:
     """The values 0 or 1 of least cost under conditions; None where none were found in time."""
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import coo_array
 
-    entries = [(i, k, factor) for i, row in enumerate(rows) for k, factor in row.factors.items()]
-    i, k, factors = zip(*entries, strict=True)
-    table = coo_array((factors, (i, k)), shape=(len(rows), len(cost))).tocsr()
+    entries = [(i, k, factor) for i, (factors, _) in enumerate(rows) for k, factor in factors]
+    i, k, values_there = zip(*entries, strict=True)
+    table = coo_array((values_there, (i, k)), shape=(len(rows), len(cost))).tocsr()
     values: Sequence[float] | None = milp(
         list(cost),
         integrality=[1] * len(cost),
         bounds=Bounds(0, 1),
         options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
-        constraints=LinearConstraint(table, [row.least for row in rows], math.inf),
+        constraints=LinearConstraint(table, [least for _, least in rows], math.inf),
     ).x
     return values
 
@@ -258,9 +247,8 @@ class PartRow(BaseModel):
 
 
 def row_of(
-    plan: Plan, *, name: str, file: str, code: int, key: str = "", status: Status = "planned", folder: str | None = None,
-    seconds: float | None = None,
-) -> PartRow:  # fmt: skip
+    plan: Plan, *, name: str, file: str, code: int, key: str = "", folder: str | None = None, seconds: float | None = None
+) -> PartRow:
     """Sum up a plan, as written, in a line; its cutter is the one that the headline names, its code what the plan asks for.
 
     `folder` has the part's files, below the output and with `/`; without it the row names no page and no picture. `seconds` by
@@ -286,7 +274,7 @@ def row_of(
     coarser = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return PartRow(
-        name=name, file=file, key=key, status=status, code=code,
+        name=name, file=file, key=key, status="planned", code=code,
         verdict=headline(plan, names).title,
         cutter=names[cutter.id],
         share=plan.process.finished_share,

@@ -35,10 +35,7 @@ _ANSWER, _JOIN = 5, 30
 
 
 def workers_of(count: int | None, memory: float | None, threads: int) -> tuple[int, int]:
-    """How many workers this machine has room for, and the bytes of memory of each.
-
-    `count` as asked for, default by cores and memory; `memory` in bytes and `threads` are those of a part.
-    """
+    """How many workers this machine has room for, `count` if wanted, and the bytes of each; memory and threads are of a part."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
         whole = int(_SHARE * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
@@ -195,10 +192,7 @@ def outcomes(
     parts: Iterable[Job | PartRow], client: Any, terms: Terms, *, out: Store | None = None,
     board: "Board | None" = None,
 ) -> Iterator[Outcome]:  # fmt: skip
-    """Plan parts on a cluster; outcomes as they come, those of parts that cannot be planned among them.
-
-    Without `out`, the files come with them.
-    """
+    """Plan parts on a cluster; outcomes as they come, those of faulty parts too; without `out`, the files come with them."""
     here = versions()
     store, token = (None, "") if out is None else (out.root_url, out.begin())
     more = () if terms.memory is None else ("--memory", repr(terms.memory / 1e9))
@@ -358,10 +352,7 @@ def foreseen(parts: Iterable[Job | PartRow], out: Store, terms: Terms) -> Iterat
 
 @dataclass(frozen=True)
 class Planned:
-    """A result holds what came of one of many parts.
-
-    `row`: its line of the table (`name`, `code`, `cutter`, `share`, `error` ...); `files`: by name, where no output was named.
-    """
+    """A result holds what came of one of many parts: its `row` of the table, and its `files`, where no output was named."""
 
     row: PartRow
     files: dict[str, bytes] = field(default_factory=dict, repr=False)

@@ -80,9 +80,7 @@ class Store(Folder):
             raise PlanError(cause(error, "written"), file=f"{self.url}/{name}") from None
 
     def row(self, folder: str) -> PartRow | None:
-        """The row of a part that is done: None where it is not, where one of its files is no longer there as it was, or where
-        another user of this machine or share wrote it.
-        """
+        """The row of a part that is done; None where it is not, a file of it has changed, or another user wrote it."""
         content = self._content(f"{folder}/{MARKER}", mine=True)
         if content is None:
             return None
@@ -98,10 +96,7 @@ class Store(Folder):
         return None
 
     def publish(self, folder: str, files: Mapping[str, Path | bytes], row: PartRow) -> None:
-        """Put the files of a part into its folder, in place of all that is there, and mark it as done.
-
-        A PlanError where they cannot be written: the part is not done.
-        """
+        """Put the files of a part in place of all in its folder, and mark it as done; a PlanError if that cannot be written."""
         try:
             options = {"row": row.model_dump(mode="json"), "sha256": {name: checksum_of(what) for name, what in files.items()}}
             marker = json.dumps(options | {"seal": _seal(options)}, indent=1).encode()

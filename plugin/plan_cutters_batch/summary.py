@@ -199,13 +199,10 @@ def _shop(rows: Sequence[PartRow]) -> ShopTools:
     )  # fmt: skip
 
 
-def schema() -> dict[str, Any]:
-    """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Summary.model_json_schema(mode="serialization")}
-
-
 def schema_text() -> str:
-    return json.dumps(schema(), indent=2) + "\n"
+    """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
+    made = Summary.model_json_schema(mode="serialization")
+    return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **made}, indent=2) + "\n"
 
 
 PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"
@@ -297,16 +294,8 @@ def _clean(row: PartRow) -> PartRow:
     return PartRow.model_validate(json.loads(embedded(row.model_dump())) | same)
 
 
-def columns() -> list[str]:
-    """The columns in their order: the outcome first, as it sums up status and code; then the fields of a row."""
-    return list(dict.fromkeys(("name", "file", "outcome", *(name for name in PartRow.model_fields if name != "tools"))))
-
-
-def values(row: PartRow) -> dict[str, Any]:
-    """The cells of a row; None for what is not known. A part that failed always says why."""
-    result = outcome(row)
-    cells = row.model_dump() | {"outcome": result, "error": cause(row) if result == "failed" else row.error}
-    return {name: finite(cells[name]) for name in columns()}
+#: Columns in their order: the outcome first, as it sums up status and code; then the fields of a row.
+COLUMNS = [*dict.fromkeys(("name", "file", "outcome", *(name for name in PartRow.model_fields if name != "tools")))]
 
 
 def csv_of(rows: Sequence[PartRow]) -> bytes:
@@ -317,10 +306,12 @@ def csv_of(rows: Sequence[PartRow]) -> bytes:
     """
     text = io.StringIO(newline="")
     table = csv.writer(text, lineterminator="\r\n")
-    table.writerow(columns())
+    table.writerow(COLUMNS)
     for row in rows:
-        cells = values(row).values()
-        table.writerow([f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell for cell in cells])
+        result = outcome(row)
+        cells = finite(row.model_dump() | {"outcome": result, "error": cause(row) if result == "failed" else row.error})
+        texts = (cells[name] for name in COLUMNS)
+        table.writerow([f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell for cell in texts])
     # Paths keep bytes that are no UTF-8.
     return text.getvalue().encode(errors="backslashreplace")
 

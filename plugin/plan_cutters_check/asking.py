@@ -48,10 +48,7 @@ _BORE = 1e-3
 def question_of(
     part: Part, options: Options, document: Mapping[str, Any], arrays: Mapping[str, Mapping[str, NDArray[Any]]]
 ) -> Question:
-    """Put the part, the options and the files of a plan into the form that the checker takes.
-
-    Raises OptionError: the plan is of another part or of other options, or has no operations.
-    """
+    """The form that the checker takes; an OptionError for a plan of another part, of other options, or without operations."""
     require_operations(document)
     cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
@@ -142,10 +139,7 @@ def _where(fixture: Fixture, setup: int, document: Mapping[str, Any]) -> tuple[F
 
 
 def _grip(wanted: Fixture, placed: Fixture, faces: tuple[str, ...], setup: int) -> Grip:
-    """A vise or chuck that was to be placed, for the checker to see whether it holds the part.
-
-    Raises OptionError: it is another one than the user asked for.
-    """
+    """A vise or chuck as it was placed, to see whether it holds the part; an OptionError where another one was requested."""
     clamping, sizes = placed.clamping, wanted.grips
     same = placed.kind == wanted.kind and clamping is not None and not placed.to_place
     if not same or clamping is None or (sizes and sizes.sizes and clamping.numbers[: len(sizes.sizes)] != sizes.sizes):

@@ -10,11 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters_check import drilling, fixtures, spoken
+from plan_cutters_check import drilling, fixtures
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.findings import Answer, Compared, Finding
-from plan_cutters_check.paper import Paper, faults, ill_formed
-from plan_cutters_check.patterns import Patterns
+from plan_cutters_check.paper import Paper, faults, ill_formed, unsound
 from plan_cutters_check.question import Question, require_operations
 from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.records import document_of
@@ -47,9 +46,9 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    findings = [*Paper(reckoned, rng).findings(), *Patterns(question).findings(), *ill_formed(reckoned)]
+    findings = [*Paper(reckoned, rng).findings(), *ill_formed(reckoned)]
     findings += (Finding(False, f"{each}.") for each in fixtures.faults(question))
-    findings += spoken.findings(reckoned)
+    findings += unsound(reckoned)
     expected = document_of(reckoned)
     first = _compared(question, findings, Compared().compare(expected, question.document))
     if not first.holds:
@@ -65,7 +64,7 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
 def on_paper(question: Question) -> Answer:
     """The part of a check that is about what plan.json says: no array is looked at by itself, and no tool is put down."""
     reckoned = Reckoned(question)
-    return _compared(question, [*spoken.findings(reckoned)], Compared().compare(document_of(reckoned), question.document))
+    return _compared(question, [*unsound(reckoned)], Compared().compare(document_of(reckoned), question.document))
 
 
 def _compared(question: Question, findings: list[Finding], entries: Compared) -> Answer:

@@ -25,20 +25,13 @@ def words_of(machine: MachineAxes, each: Mapping[str, Any], plane: Floats, other
     `plane` (3, 3): X, Y and Z of the tilted plane in the machine's frame, as rows; nan where X is not known. `other`: the other
     angles as they are written.
     """
-    expected = {
-        "g68_2": "words that turn the plane to the tool axis", "g53_1": "words that take these angles",
-        "rotary_words": "words with these angles",
-    }  # fmt: skip
-    free, good = machine.names == FREE, {
-        "g68_2": _turned(str(each.get("g68_2")), plane), "g53_1": _taken(machine, each, other),
-        "rotary_words": _positions(machine, each),
-    }  # fmt: skip
-    empty = {"rotary_words": free or not {*machine.names} <= {"A", "B", "C"}}
-    if not machine.names:
-        empty = {"g68_2": True, "g53_1": True}
-    return {
-        name: None if empty.get(name) else each.get(name) if good[name] else text for name, text in expected.items()
-    }  # fmt: skip
+    still, other_names = not machine.names, machine.names == FREE or not {*machine.names} <= {"A", "B", "C"}
+    words = {
+        "g68_2": (still, _turned(str(each.get("g68_2")), plane), "words that turn the plane to the tool axis"),
+        "g53_1": (still, _taken(machine, each, other), "words that take these angles"),
+        "rotary_words": (other_names, _positions(machine, each), "words with these angles"),
+    }
+    return {name: None if none else each.get(name) if good else text for name, (none, good, text) in words.items()}
 
 
 def _turned(words: str, plane: Floats) -> bool:

@@ -15,7 +15,7 @@ from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Finding, Loose
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, axes_of, carried, frame_of, held, other_angles
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, tool_frame
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
@@ -100,16 +100,16 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     if step["angles_deg"] is None:
         able = bool(held(machine, setup, np.array([step["axis"]], float))[0])
         return {"angles_deg": None, "axis": step["axis"] if able and machine.names == FREE else "an axis that the machine holds"}
-    degrees = np.array([[float(step["angles_deg"][name]) for name in machine.names]], float).reshape(1, -1)
+    degrees = degrees_of(question, step)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)
-    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
-    x = (x - (x @ axis) * axis) / max(float(np.linalg.norm(x - (x @ axis) * axis)), 1e-300)
+    axis, x, plane = tool_frame(question, step["setup"], degrees)
     others = other_angles(question, step["setup"], degrees[0])
     other = dict(zip(machine.names, others[0], strict=True)) if others else None
-    words = words_of(machine, step, np.array([x, np.cross(axis, x), axis]) @ frame.T, other)
-    near = {name: [Between(a - _AXIS, a + _AXIS) for a in row.tolist()] for name, row in (("x", x), ("z", axis))}
+    words = words_of(machine, step, plane, other)
+    near = {"x": [Loose(-1.0, 1.0)] * 3, "z": [Between(a - _AXIS, a + _AXIS) for a in axis.tolist()]}
+    if np.isfinite(x).all():
+        near["x"] = [Between(a - _AXIS, a + _AXIS) for a in x.tolist()]
     return {
         "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"],
         "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},

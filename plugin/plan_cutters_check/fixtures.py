@@ -40,10 +40,7 @@ def rotation_of(body: Body) -> Floats:
 
 
 class PlacedFixture:
-    """A fixture where it stands in a setup, about a part from `low` to `high` (3,): its surfaces are `sources`.
-
-    `known`: whether `holds` knows what lies within.
-    """
+    """A fixture where it stands, about a part from `low` to `high`: its `sources`; `known`: whether `holds` knows its inside."""
 
     def __init__(self, body: Body, setup: Setup, low: Floats, high: Floats) -> None:
         self.name = f"fixture:{body.name}"

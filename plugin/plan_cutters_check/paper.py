@@ -14,7 +14,6 @@ from plan_cutters_check.bench import Contacts
 from plan_cutters_check.findings import Finding, leaves
 from plan_cutters_check.question import Question, ToolSizes, allowed, axes_of, degrees_of, held
 from plan_cutters_check.reckoned import DRILLED, FLOOR, REACHED, WALL, WORDS, Planned, Reckoned, Rows, suffix
-from plan_cutters_check.surface import inside
 from plan_cutters_check.tool import tool_of
 
 _Arrays = dict[str, tuple[tuple[int, ...], str]]
@@ -116,7 +115,7 @@ class Paper:
             known = size > 1e-9 * size.max(initial=0.0)
             off = np.abs(normal[known] - samples["normal"][mine][known]).max(axis=1) > _SAME
             trim = part.trim(number)
-            beyond = np.zeros(len(mine), bool) if trim is None else ~inside(trim, *samples["uv"][mine].T)
+            beyond = np.zeros(len(mine), bool) if trim is None else ~trim.inside(*samples["uv"][mine].T)
             odd += int(off.sum() + beyond.sum())
             stands, whole = float(self.reckoned.area[mine].sum()), part.faces[number - 1].area
             judged = (samples["face"] == number).sum() == len(mine)
@@ -210,9 +209,7 @@ class Paper:
             yield Finding(False, f"{plan}: {words} are reached.")
 
     def _times(self, plan: Planned) -> Iterator[Finding]:
-        """Seconds of each sample are its path over the feed, or more where rotary axes with rates move meanwhile; on floors a
-        path is its area over the width.
-        """
+        """Seconds are the path over the feed, or more where rotary axes with rates move; on floors a path is area over width."""
         label, assumed = plan.label, self.reckoned.question.document["operations"]["assumed"]
         strip, length, seconds = (plan[name] for name in ("strip_mm", "path_mm", "seconds"))
         wanted, widest, feeds = np.full(len(label), np.nan), np.zeros(len(label)), assumed["feed_mm_min"]
@@ -378,10 +375,15 @@ def _flutes(sizes: ToolSizes, normal: Floats, axis: Floats) -> tuple[Floats, Flo
 
 
 def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
-    """Axes for motion that no operation has, that are no unit vectors, that are missing, or that the machine does not hold."""
+    """Images of each other that are none; axes for motion of no operation, that are no unit vectors, or that are not held."""
     question = reckoned.question
     for plan in reckoned.plans:
         label, axis, piece = plan.label, plan["moving_axis"], plan["moving_piece"]
+        kinds: dict[int, set[Any]] = {}
+        for each in (each for each in plan.operations if each.get("orbit") is not None):
+            kinds.setdefault(each["orbit"], set()).add((each["cutter"], each["setup"], each["mode"]))
+        for orbit in (orbit for orbit, some in kinds.items() if len(some) > 1):
+            yield Finding(False, f"{plan}: the operations of orbit {orbit} are no images of each other.")
         turning = [i for i, each in enumerate(plan.operations) if each["turning"] is not None]
         if any(plan.operations[i]["mode"] == "fixed" for i in turning):
             yield Finding(False, f"{plan}: the axis of a fixed operation turns.")
@@ -403,8 +405,11 @@ def ill_formed(reckoned: Reckoned) -> Iterator[Finding]:
             )
 
 
-def without_posture(reckoned: Reckoned) -> Iterator[Finding]:
-    """Verdicts that say that a sample is reached with no tool axis, or that it is not with one."""
+def unsound(reckoned: Reckoned) -> Iterator[Finding]:
+    """List what no plan has: words that cannot be made, verdicts that contradict their axes, a chord error that nothing has."""
+    document = reckoned.question.document
+    if reckoned.question.odd:
+        yield Finding(False, f"plan.json: {reckoned.question.odd}.")
     for name, verdict in reckoned.verdict.items():
         axis, reached = reckoned.question.samples[f"axis_{name}"], np.isin(verdict, REACHED)
         with np.errstate(invalid="ignore"):
@@ -413,3 +418,6 @@ def without_posture(reckoned: Reckoned) -> Iterator[Finding]:
         if wrong:
             words = f"samples.npz: {wrong} verdicts of {name} have no tool axis with which they are reached, or no meaning."
             yield Finding(False, words)
+    errors = [each["chord_error_mm"] or 0.0 for each in (*document["faces"], *document["fixtures"])]
+    if document["effective"]["chord_error_mm"] > max(errors) + 1e-12:
+        yield Finding(False, "effective.chord_error_mm is larger than that of each face and fixture.")

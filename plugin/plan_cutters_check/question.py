@@ -209,10 +209,7 @@ def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats)
 
 
 def require_operations(document: Mapping[str, Any], file: str | None = None) -> None:
-    """See to it that a plan.json has operations to check.
-
-    Raises OptionError: it has none.
-    """
+    """See to it that a plan.json has operations to check; an OptionError where it has none."""
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations", file=file)
 
@@ -225,6 +222,17 @@ def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:
 def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
     """The angles of a fixed operation, (1, k), deg."""
     return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]], float).reshape(1, -1)
+
+
+def tool_frame(question: Question, number: int, degrees: Floats) -> tuple[Floats, Floats, Floats]:
+    """Tool axis and X across it, nan where not known, (3,), of the part, at angles (1, k), deg; X, Y, Z (3, 3) of the machine."""
+    machine, setup = question.machine, question.setups[number]
+    axis, frame = axes_of(machine, setup, degrees)[0], frame_of(setup)
+    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
+    x = x - (x @ axis) * axis
+    size = float(np.linalg.norm(x))
+    x = x / size if size > 1e-6 else np.full(3, np.nan)
+    return axis, x, np.array([x, np.cross(axis, x), axis]) @ frame.T
 
 
 def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
@@ -293,9 +301,7 @@ def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
 
 
 def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[float, ...]]:
-    """The other angles, deg, with the same axis within the machine's limits, as a control shows them: none where there are none,
-    and several where they are as large, as half a turn is either way.
-    """
+    """The other angles, deg, as a control shows them, with the same axis within limits: several that are as large, or none."""
     machine, others = question.machine, list[tuple[float, ...]]()
     if len(machine.direction) < 2:
         return others

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plan_cutters_check import drilling
 from plan_cutters_check.control import words_of
 from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
-from plan_cutters_check.question import FREE, axes_of, carried, degrees_of, frame_of, other_angles
+from plan_cutters_check.question import FREE, axes_of, degrees_of, frame_of, other_angles, tool_frame
 from plan_cutters_check.reckoned import (
     NO_REASON,
     NOT_REACHED,
@@ -107,12 +107,13 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
     # By library: each of the cutters has a feed, or none has.
     feeds = feed if feed is not None else None if known is None else _ANY
     timed = "fastest" in names and any(plan.get("seconds") is not None for plan in plans)
+    seconds = next((plan["seconds"] for plan in written["plans"] if plan["name"] == "fastest"), None)
     return {
         "asked": effective["operations"],
         "rotary": list(question.machine.names),
         "plans": plans,
         "fewest": None if reckoned.without_fewest else _fewest(reckoned, written["fewest"]),
-        "fastest": _fastest(reckoned, written) if "fastest" in names else None,
+        "fastest": {"seconds": seconds} if "fastest" in names else None,
         "cutters": _uses(reckoned, written) if len(reckoned.considered) > 1 and timed else [],
         "assumed": {
             "feed_mm_min": None if feeds is None else Exactly.fromkeys(reckoned.considered, feeds),
@@ -134,7 +135,7 @@ def _fewest(reckoned: Reckoned, few: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "found": count, "proof": "not closed" if few["at_least"] < few["found"] else proof, "bound": total / 1e6,
         "weights": [list(pair) for pair in pairs] if good else "whole numbers on reached samples, one for each",
-        "lp": Loose(total / 1e6 - 1e-6, count), "samples": int(reached.sum()),
+        "samples": int(reached.sum()),
         "candidates": len(reckoned.question.operations["candidate_cutter"]),
         # A choice that serves all bounds it from above.
         "at_least": proved if exact else Loose(proved, count),
@@ -152,23 +153,9 @@ def _uses(reckoned: Reckoned, written: Mapping[str, Any]) -> list[dict[str, Any]
             mine = (i for i, each in enumerate(plan.operations) if each["cutter"] == name)
             takes[plan.entry["name"]] = sum(float(area[plan.label == i].sum()) for i in mine)
         others = np.logical_or.reduce([each for other, each in reckoned.reached_by.items() if other != name])
-        entry = {"id": name, "takes_mm2": takes, "only_mm2": float(area[reckoned.reached_by[name] & ~others].sum()),
-                 "change_seconds": Loose(0.0, written["assumed"]["change_s"])}  # fmt: skip
-        entries.append(entry if use["saves_seconds"] is None else entry | {"saves_seconds": _ANY})
+        only = float(area[reckoned.reached_by[name] & ~others].sum())
+        entries.append({"id": name, "takes_mm2": takes, "only_mm2": only})
     return entries
-
-
-def _fastest(reckoned: Reckoned, written: Mapping[str, Any]) -> dict[str, Any]:
-    seconds = next((plan["seconds"] for plan in written["plans"] if plan["name"] == "fastest"), None)
-    timed = written["fastest"] or {}
-    best, bound = timed.get("at_best_seconds"), timed.get("bound_seconds")
-    # Where it has more candidates than the fewest are chosen from, these are not written.
-    fastest = {"seconds": seconds, "bound_seconds": _ANY, "at_best_seconds": _ANY, "candidates": _ANY, "gap": None,
-               "samples": Loose(0, len(reckoned.area))}  # fmt: skip
-    if seconds is None or not isinstance(bound, float | int):
-        return fastest
-    fastest["bound_seconds"] = Loose(best if isinstance(best, float | int) else 0.0, seconds * (1 + 1e-9))
-    return fastest | {"gap": max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0}
 
 
 def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
@@ -206,12 +193,6 @@ def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
         "proved_share": Loose(share, share, 1e-6) if looked_at and size > 0.0 else None,
         "approaches_proved": Loose(approaches, approaches) if looked_at else None,
     }
-    if plan.entry["ratio_at_most"] is not None:
-        timed, ratio = document["operations"]["fastest"], None
-        if timed is not None and timed["at_best_seconds"] > 0.0 and all(each["seconds"] is not None for each in fixed):
-            least = max(1.0, sum(each["seconds"] + each["link_seconds"] for each in fixed) / timed["at_best_seconds"])
-            ratio = Loose(least, least, 1e-6 * least)
-        entry["ratio_at_most"] = ratio
     return entry
 
 
@@ -241,8 +222,6 @@ def _operation(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any
         "faces": reckoned.judged.by_face(rows, each["faces"]),
         "regions": _regions(reckoned, plan, i, each, rows),
     }
-    if each["proved_share"] is not None:
-        entry |= {"proved_share": Loose(0.0, 1.0), "approaches_proved": _ANY}
     if each["axis"] is None:
         return entry | dict.fromkeys(
             ("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from", "g68_2", "g53_1", "rotary_words")
@@ -265,29 +244,21 @@ def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:
 
 def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
     question, assumed = reckoned.question, reckoned.question.document["operations"]["assumed"]
-    setup, machine = question.setups[each["setup"]], question.machine
-    degrees, frame = degrees_of(question, each), frame_of(setup)
-    axis = axes_of(machine, setup, degrees)[0]
-    x = carried(machine, setup, frame[0] @ frame.T, degrees)[0]
-    x = x - (x @ axis) * axis
+    setup, machine, degrees = question.setups[each["setup"]], question.machine, degrees_of(question, each)
+    axis, x, plane = tool_frame(question, each["setup"], degrees)
     others, stated = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
     other = None
     if others:
         # Of those that are as large any may be written.
         near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]))
         other = Exactly({name: Between(a - _ROUNDED, a + _ROUNDED) for name, a in zip(machine.names, near, strict=True)})
-    known = np.linalg.norm(x) > 1e-6
-    x = x / np.linalg.norm(x) if known else np.full(3, np.nan)
+    across = x.tolist() if np.isfinite(x).all() else [Loose(-1.0, 1.0)] * 3
     return {
         "axis": axis.tolist(),
         "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
         "other_angles_deg": other,
-        "frame": {
-            "origin": list(setup.origin or (0.0, 0.0, 0.0)),
-            "z": axis.tolist(),
-            "x": x.tolist() if known else [Loose(-1.0, 1.0)] * 3,
-        },
-        **words_of(machine, each, np.array([x, np.cross(axis, x), axis]) @ frame.T, each["other_angles_deg"]),
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(), "x": across},
+        **words_of(machine, each, plane, each["other_angles_deg"]),
         "index_from": assumed["index_from"],
         "index_s": _ANY if assumed["index_from"] == "rates" else assumed["index_s"],
     }

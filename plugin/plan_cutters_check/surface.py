@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats
-from cad_io.face.trim import Trim
 from cad_io.kernel import first_derivatives, values
 from plan_cutters_check.tool import Solid, Tool, bounds
 
@@ -26,8 +25,6 @@ FREE, MET, OPEN = 0, 1, 2
 OUTSIDE, INSIDE, ACROSS = 0, 1, 2
 #: Points along each side at which the slack of a cell is measured: of the first cells, and of later ones.
 _MANY, _FEW = 7, 3
-#: Points that are asked at once whether they lie in a face.
-_AT_ONCE = 128
 _CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 #: Steps in parameters to all sides.
 SIDES = [np.array(side) for side in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))]
@@ -35,12 +32,6 @@ SIDES = [np.array(side) for side in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (
 _TOOLS, _MOST = 256, 100_000
 #: Depths that rounding makes, mm.
 _ROUNDING = 1e-7
-
-
-def inside(trim: Trim, u: Floats, v: Floats) -> NDArray[np.bool_]:
-    """Which parameters (n,) lie in a face, by few at a time: the trim looks at a grid of them."""
-    parts = [trim.inside(u[start : start + _AT_ONCE], v[start : start + _AT_ONCE]) for start in range(0, len(u), _AT_ONCE)]
-    return np.concatenate([*parts, np.zeros(0, bool)])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,7 +106,7 @@ class Face:
         state = self._state(form)
         proper = state == INSIDE
         across = np.flatnonzero(state == ACROSS)
-        proper[across] = inside(self._trim, u[across], v[across])
+        proper[across] = self._trim.inside(u[across], v[across])
         unusable = ~np.isfinite(point).all(axis=1) | ~np.isfinite(slack)
         # Where the kernel has no value there is nothing to look at.
         point[unusable], offset[unusable], slack[unusable], proper[unusable], state[unusable] = (0.0, 0.0, 0.0, False, OUTSIDE)
@@ -133,7 +124,7 @@ class Face:
         near, _ = self._border.query(shapely.box(*low.T, *high.T), predicate="intersects")
         state = np.full(len(form), ACROSS, np.int8)
         clear = np.setdiff1d(np.arange(len(form)), near)
-        within = inside(trim, form[clear, 0, :2].mean(axis=1), form[clear, 1, :2].mean(axis=1))
+        within = trim.inside(form[clear, 0, :2].mean(axis=1), form[clear, 1, :2].mean(axis=1))
         state[clear] = np.where(within, INSIDE, OUTSIDE)
         return state
 

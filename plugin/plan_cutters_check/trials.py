@@ -29,11 +29,7 @@ _SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """The checks with tools.
-
-    `rng` draws the order in which pairs are looked at; `clock` gives the clock of a check by its name; `tell` is called with what
-    is being done.
-    """
+    """The checks with tools: `rng` draws the order of pairs, `clock` gives that of a check, `tell` is told what is being done."""
 
     reckoned: Reckoned
     bench: Bench

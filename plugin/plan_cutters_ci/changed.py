@@ -24,7 +24,6 @@ from plan_cutters.command.validation import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import require_temporary
 from plan_cutters.files.pictures import with_pictures
-from plan_cutters_base.whole import whole
 
 if TYPE_CHECKING:
     from plan_cutters.cases.files import Case
@@ -55,10 +54,7 @@ class Changed:
 
 
 def git(*words: str, stdin: bytes | None = None, codes: Collection[int] = (0,)) -> bytes:
-    """Standard output of git in the working directory; a PlanError where there is no git, or it refuses.
-
-    `codes`: exit codes that are no refusal.
-    """
+    """Standard output of git in the working directory; a PlanError where there is none, or its exit code is none of `codes`."""
     try:
         done = subprocess.run(["git", *words], input=stdin, capture_output=True, check=False)
     except OSError as error:
@@ -147,11 +143,11 @@ _MOST, _FINDINGS = 10, 5
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A part that changed: its folders of plans before and after, the difference, or why there is none."""
+    """A part that changed: what its best cutter reached before and reaches now, the difference, or why there is none."""
 
     part: Changed
-    before: Path | None = None
-    after: Path | None = None
+    before: float | None = None
+    after: float | None = None
     difference: "PlanDifference | None" = None
     #: The page of both plans, below the output folder, where they differ.
     beside: Path | None = None
@@ -162,11 +158,8 @@ class Row:
     unread: str = ""
 
     def breaks(self, rule: str) -> bool:
-        """Whether the part fails by a rule."""
-        at = RULES.index(rule)
-        worse = self.difference is not None and self.difference.lost
-        doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
-        return (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
+        """Whether the part fails by a rule: one of its test cases does."""
+        return any(case.outcome in ("failure", "error") for case in row_cases(self, rule))
 
 
 def row_cases(row: Row, rule: str) -> Iterator["Case"]:
@@ -238,15 +231,12 @@ def summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], began: str, 
     return "\n".join(lines) + "\n"
 
 
-def _bar(folder: Path | None) -> str:
+def _bar(share: float | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
     from plan_cutters.domain.figures import percent
-    from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_ci.plans import reached
 
-    if folder is None:
+    if share is None:
         return "-"
-    share = max((reached(cutter) for cutter in load_plan(folder / PLAN).cutters), default=0.0)
     # Full only where all is reached.
     full = 10 if share == 1.0 else min(9, int(10 * share))
     return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"
@@ -283,10 +273,7 @@ def requested(kind: str | None) -> bool:
 
 
 def annotations(parts: Iterable[tuple[str, Sequence["Case"]]]) -> Iterator[str]:
-    """The lines, without line ends, of parts by their paths in the repository: one at the file of each that fails.
-
-    Of more parts than GitHub shows the last line says how many there are.
-    """
+    """Lines, one at the file of each part that fails; of more parts than GitHub shows the last line says how many there are."""
     failing = [(part, [case for case in cases if case.outcome in ("failure", "error")]) for part, cases in parts]
     failing = [(part, cases) for part, cases in failing if cases]
     for part, cases in failing[: _MOST if len(failing) <= _MOST else _MOST - 1]:
@@ -310,7 +297,7 @@ def _data(text: str) -> str:
 
 
 if TYPE_CHECKING:
-    from plan_cutters_batch.job import Content, Handed, Settings
+    from plan_cutters_batch.job import Content, Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -326,34 +313,22 @@ class PartRequest:
     """How the parts are planned: the options after `--`, read once, so that all parts have the same tools."""
 
     settings: "Settings"
-    handed: "Handed"
-    #: Of the command line, for what is no option of the plan.
+    #: More words of the command line, for what is no option of the plan.
     words: tuple[str, ...]
 
     @classmethod
     def of(cls, words: Sequence[str]) -> "PartRequest":
         """Read the options, and every file that they name; an error where an option has no meaning or a file cannot be used."""
         from plan_cutters.command.cli import command as plan
-        from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
-        from plan_cutters_base.user_files import noted
-        from plan_cutters_batch.job import Settings
+        from plan_cutters_batch.job import settings_of
 
         with plan.make_context(_SELF, ["part", *words]) as context:
             requested = PlanRequest(**context.params)
         if len(requested.parts) > 1:
             raise OptionError(f"{requested.parts[1]} cannot stand after --: only options can")
-        refuse_unplanned_operations(requested)
-        with noted() as files:
-            options = options_of(requested)
-        look_at(options)
-        formats = with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}"))
-        settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
-        handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
-        handed_on += [] if requested.cache else ["--no-cache"]
-        for name in ("step_schema", "read_timeout", "timeout", "memory"):
-            if (value := getattr(requested, name)) is not None:
-                handed_on += [f"--{name.replace('_', '-')}", str(value)]
-        return cls(settings, settings.handed, tuple(handed_on))
+        settings = settings_of(requested, lambda: with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}")))
+        limits = [f"--{name}={value}" for name in ("timeout", "memory") if (value := getattr(requested, name)) is not None]
+        return cls(settings, (*settings.words, *limits, *(["--debug"] if requested.debug else [])))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -450,8 +425,8 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     from plan_cutters.plan_file.load import PLAN, load_plan
     from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
-    from plan_cutters_ci.plans import compare, unreachable
-    from plan_cutters_ci.review import PAGE, Side, page, picture_of
+    from plan_cutters_ci.plans import compare, reached, unreachable
+    from plan_cutters_ci.review import PAGE, write_page
 
     pages: dict[str, Path] = {}
     why: dict[str, str] = {}
@@ -474,13 +449,12 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     side_page = Path("compare", part.name, PAGE)
     shutil.rmtree((out / side_page).parent, ignore_errors=True)
     if difference and not difference.same:
-        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
         (out / side_page).parent.mkdir(parents=True)
-        with whole(out / side_page, PlanError) as temporary:
-            sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
-            temporary.write_bytes(page(difference, *sides))
+        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
+        write_page(out / side_page, difference, [(names[side], pages[side] / PLAN) for side in names])
+    shares = {side: max(map(reached, plan.cutters), default=0.0) for side, plan in plans.items()}
     return Row(
-        part, pages.get("before"), pages.get("after"), difference, side_page if (out / side_page).is_file() else None,
+        part, shares.get("before"), shares.get("after"), difference, side_page if (out / side_page).is_file() else None,
         tuple(unreachable(plans["after"])) if "after" in plans else (), why.get("after", ""), why.get("before", ""),
     )  # fmt: skip
 
@@ -502,7 +476,7 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    task = work.Task(name, path, None, request.handed, request.words, key)
+    task = work.Task(name, path, None, request.settings.handed, request.words, key)
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
         code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")

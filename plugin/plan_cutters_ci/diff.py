@@ -1,6 +1,5 @@
 """Show which faces and cutters were lost or won from one plan to another."""
 
-import os
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,14 +86,9 @@ def command(request: DiffRequest) -> int:
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
     A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
+    from plan_cutters.cases.files import Case, CaseFiles
     from plan_cutters.errors import OptionError
     from plan_cutters_base.whole import refusal
-
-    if request.junit is None:  # where there is one, it says so too
-        for path in (request.old, request.new):
-            if not os.path.exists(path):
-                raise PlanError("no such file or folder", file=path)
-    from plan_cutters.cases.files import Case, CaseFiles
     from plan_cutters_ci.wording import COMPARABLE, apart, comparison_cases, markdown, verdict
 
     if request.as_json and request.as_markdown:
@@ -135,10 +129,7 @@ def command(request: DiffRequest) -> int:
 
 
 def plans_in(folder: Path) -> dict[str, Path]:
-    """Plan files by name: of a file or plan folder one without a name, of a folder of many theirs by their folders below it.
-
-    A PlanError where there is none.
-    """
+    """Plan files by folders below a folder of many, or the one of a file or plan folder, without a name; else a PlanError."""
     from plan_cutters.plan_file.load import PLAN
 
     if folder.is_file():
@@ -192,9 +183,8 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
 
     A PlanError where a page would take the place of a plan's own or cannot be written, or a plan cannot be read any more.
     """
-    from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_base.whole import whole
-    from plan_cutters_ci.review import PAGE, Side, page, picture_of
+    from plan_cutters.plan_file.load import PLAN
+    from plan_cutters_ci.review import PAGE, write_page
 
     made = {}
     # A plan may be compared with itself.
@@ -212,10 +202,7 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-        plans = [(str(folder / name) if name else str(folder), files[name]) for folder, files in sides]
-        with whole(path, PlanError) as temporary:
-            shown = [Side(word, plan := load_plan(file), picture_of(file, plan)) for word, file in plans]
-            temporary.write_bytes(page(each, *shown))
+        write_page(path, each, [(str(folder / name) if name else str(folder), files[name]) for folder, files in sides])
         made[name] = path
     return made
 

@@ -8,7 +8,7 @@ import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import product
-from typing import TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ _SHARED = 0.5
 #: A face whose middle is no farther from a plane, as a share of the part's diagonal, is on no side of it.
 _OFF = 1e-4
 
-Item = TypeVar("Item")
+Item = TypeVar("Item", FaceEntry, CutterEntry)
 Pair = tuple[FaceEntry, FaceEntry]
 Matched = list[tuple[FaceEntry, FaceEntry, FaceMatch]]
 
@@ -88,42 +88,61 @@ def _height(face: FaceEntry, plane: FaceEntry) -> float:
 def match_faces(old: Plan, new: Plan) -> Matched:
     """Pairs of faces, in the order of the old numbers, and how each was known again.
 
-    In turn: both plans are of the same bytes in the same unit, so that numbers agree; form, area and place agree; a plan of an
-    older version says no place, then number, form and area agree; carriers agree; a name stands once on each side and the form
-    agrees; of free-form faces place and area agree nearly.
+    In turn: both plans are of the same bytes in the same unit, so that numbers agree; form, area and place agree; carriers
+    agree; a name stands once on each side and the form agrees; of free-form faces place and area agree nearly.
     """
     bytes_of = [(plan.part.sha256, plan.part.references, plan.effective.unit) for plan in (old, new)]
     if old.part.sha256 and bytes_of[0] == bytes_of[1]:
         there = {face.id: face for face in new.faces}
         return [(face, there[face.id], "same file") for face in old.faces if face.id in there]
-    size = _size(old, new)
-    pairs: Matched = []
-    open_faces = list(old.faces), list(new.faces)
-
-    def take(matched: Iterable[Pair], how: FaceMatch) -> bool:
-        nonlocal open_faces
-        more = list(matched)
-        pairs.extend((a, b, how) for a, b in more)
-        mine, theirs = {a.id for a, _ in more}, {b.id for _, b in more}
-        open_faces = [f for f in open_faces[0] if f.id not in mine], [f for f in open_faces[1] if f.id not in theirs]
-        return bool(more)
+    size, faces = _size(old, new), _Matching(old.faces, new.faces)
 
     def spread() -> None:
         """Go on from what is paired: same radii first, and again as soon as one is paired."""
         again = True
-        while again and all(open_faces):
-            by = _Surroundings(((a, b) for a, b, _ in pairs), size)
-            again = any(take(_on_carriers(*open_faces, size, by, radius=radius), "carrier") for radius in (True, False))
+        while again and all(faces.open):
+            by = _Surroundings(((a, b) for a, b, _ in faces.pairs), size)
+            again = any(faces.take(_on_carriers(*faces.open, size, by, radius=radius), "carrier") for radius in (True, False))
 
-    take(_in_place(*open_faces, size), "place")
-    if any(all(face.centre_mm is None for face in faces) for faces in (old.faces, new.faces)):
-        take(_alone(*open_faces, lambda face: (face.id, face.shape, f"{face.area_mm2:.5g}")), "number")
+    faces.take(_in_place(*faces.open, size), "place")
     spread()
-    named = _alone(*open_faces, lambda face: (face.name, face.shape) if face.name else None)
-    take((pair for pair in named if not _opposed(*pair)), "name")
-    take(_in_one_pair(_trimmed(*open_faces)), "trim")
+    named = _alone(*faces.open, lambda face: (face.name, face.shape) if face.name else None)
+    faces.take((pair for pair in named if not _opposed(*pair)), "name")
+    faces.take(_in_one_pair(_trimmed(*faces.open)), "trim")
     spread()
-    return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
+    return sorted(faces.pairs, key=lambda pair: int(pair[0].id[1:]))
+
+
+class _Matching(Generic[Item]):
+    """What is paired of two sides, and how; and what is open still of either."""
+
+    def __init__(self, old: Iterable[Item], new: Iterable[Item]) -> None:
+        self.pairs: list[tuple[Item, Item, Any]] = []
+        self.open = [*old], [*new]
+
+    def take(self, matched: Iterable[tuple[Item, Item]], how: str) -> bool:
+        """Pair some; whether there are any."""
+        more = [(a, b, how) for a, b in matched]
+        self.pairs += more
+        mine, theirs = {a.id for a, _, _ in more}, {b.id for _, b, _ in more}
+        self.open = (
+            [each for each in self.open[0] if each.id not in mine],
+            [each for each in self.open[1] if each.id not in theirs],
+        )
+        return bool(more)
+
+
+def with_others(
+    old: Iterable[Item], new: Iterable[Item], pairs: Iterable[tuple[Item, Item, Any]]
+) -> Iterator[tuple[Item | None, Item | None, Any]]:
+    """The pairs of two sides, then what the old one has alone, then what the new one has."""
+    mine, theirs = set[str](), set[str]()
+    for a, b, how in pairs:
+        mine.add(a.id)
+        theirs.add(b.id)
+        yield a, b, how
+    yield from ((each, None, None) for each in old if each.id not in mine)
+    yield from ((None, each, None) for each in new if each.id not in theirs)
 
 
 def _size(old: Plan, new: Plan) -> float:
@@ -198,19 +217,15 @@ def _nearest(pairs: Sequence[Pair], size: float) -> Iterator[Pair]:
 
 def match_cutters(old: Plan, new: Plan) -> list[tuple[CutterEntry, CutterEntry, CutterMatch]]:
     """Pairs of cutters by id; else by the name, then by the cutting part, where it stands once on each side."""
-    pairs: list[tuple[CutterEntry, CutterEntry, CutterMatch]] = []
-    open_cutters = sorted(old.cutters, key=lambda c: c.id), sorted(new.cutters, key=lambda c: c.id)
+    cutters = _Matching(sorted(old.cutters, key=lambda c: c.id), sorted(new.cutters, key=lambda c: c.id))
     steps: tuple[tuple[CutterMatch, Callable[[CutterEntry], Hashable]], ...] = (
         ("id", lambda c: c.id),
         ("name", lambda c: c.name or None),
         ("cutting part", lambda c: (c.shape, c.radius, c.corner_radius, c.taper_deg)),
     )
     for how, key in steps:
-        matched = list(_alone(*open_cutters, key))
-        pairs += [(a, b, how) for a, b in matched]
-        mine, theirs = {a.id for a, _ in matched}, {b.id for _, b in matched}
-        open_cutters = ([c for c in open_cutters[0] if c.id not in mine], [c for c in open_cutters[1] if c.id not in theirs])
-    return sorted(pairs, key=lambda pair: pair[0].id)
+        cutters.take(_alone(*cutters.open, key), how)
+    return sorted(cutters.pairs, key=lambda pair: pair[0].id)
 
 
 def _alone(old: Iterable[Item], new: Iterable[Item], key: Callable[[Item], Hashable]) -> Iterable[tuple[Item, Item]]:
@@ -254,10 +269,7 @@ def _placed_form(face: FaceEntry) -> str | None:
 
 
 def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float, *, radius: bool) -> Iterator[Pair]:
-    """Pairs of faces of one form on the same carrier; with `radius`, its radii agree, too.
-
-    A cone has an angle, which agrees in any case.
-    """
+    """Pairs of faces of one form on the same carrier, of one angle; with `radius`, their radii agree, too."""
     within = _SAME_CARRIER * size
 
     def row(face: FaceEntry, sign: float = 1.0) -> tuple[float, ...]:
@@ -283,10 +295,7 @@ def _on_one_carrier(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: fl
 
 
 def _opposed(a: FaceEntry, b: FaceEntry) -> bool:
-    """Whether the material lies on other sides of two faces of one form, or they point in other directions.
-
-    What one of them does not state opposes nothing.
-    """
+    """Whether two faces of one form have their material on other sides, or other directions, as far as they state it."""
     if a.carrier is None or b.carrier is None:
         return False
     way, other = a.carrier.direction, b.carrier.direction
@@ -307,7 +316,5 @@ def _in_one_pair(pairs: Iterable[Pair]) -> list[Pair]:
 
 def _near(a: FaceEntry, b: FaceEntry) -> bool:
     """Whether two faces are no farther from each other than the larger one is long, about."""
-    if a.centre_mm is None or b.centre_mm is None:
-        return False
     area = max((face.area_mm2 for face in (a, b) if math.isfinite(face.area_mm2)), default=0.0)
-    return math.dist(a.centre_mm, b.centre_mm) <= math.sqrt(max(area, 0.0))
+    return _away(a, b) <= math.sqrt(max(area, 0.0))

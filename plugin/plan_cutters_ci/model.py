@@ -13,7 +13,7 @@ FORMAT_VERSION = 1
 #: How much of a face is reached by the cutter that reaches most of it.
 Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "not asked", "inside other bodies", "drilled"]
 #: How a face is known again.
-FaceMatch = Literal["same file", "place", "number", "carrier", "name", "trim"]
+FaceMatch = Literal["same file", "place", "carrier", "name", "trim"]
 CutterMatch = Literal["id", "name", "cutting part"]
 #: Changes of what was asked: as long as one is not named by `--despite`, verdicts are answers to two questions.
 REQUESTED = ("unit", "faces", "sampling", "postures", "tolerance", "clearance", "machine", "setup", "fixtures")

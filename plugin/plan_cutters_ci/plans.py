@@ -8,10 +8,10 @@ from typing import Any
 from plan_cutters.domain.figures import count
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
-from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts, reached_share
+from plan_cutters.plan_file.shares import FaceVerdicts, by_share, reached_share
 from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.user_files import fingerprint
-from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces
+from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces, with_others
 from plan_cutters_ci.model import (
     REQUESTED,
     Change,
@@ -23,8 +23,9 @@ from plan_cutters_ci.model import (
     Reach,
 )
 
-#: The old radius of a face and the new one, mm.
+#: The old radius of a face and the new one, mm; its old id and the new one, None where a plan has it not.
 Radii = tuple[float, float]
+Ids = tuple[str | None, str | None]
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
 #: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
@@ -65,32 +66,16 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         )
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
-    known = {a.id for a, _, _ in pairs}, {b.id for _, b, _ in pairs}
-    tool = {a.id for a, _, _ in tools}, {b.id for _, b, _ in tools}
     radii = _other_radii(old, new, pairs)
-    faces = [
-        *(_face(old, a, new, b, how, slack) for a, b, how in pairs),
-        *(_face(old, f, new, None, None, slack, radii.get(f"-{f.id}")) for f in old.faces if f.id not in known[0]),
-        *(_face(old, None, new, f, None, slack, radii.get(f"+{f.id}")) for f in new.faces if f.id not in known[1]),
-    ]
-    cutters = [*(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
-               *(_cutter(old, c, new, None, None, pairs, slack) for c in old.cutters if c.id not in tool[0]),
-               *(_cutter(old, None, new, c, None, pairs, slack) for c in new.cutters if c.id not in tool[1])]  # fmt: skip
-    face_rows, cutter_rows = sorted(filter(None, faces), key=_worst_face), sorted(filter(None, cutters), key=_worst_cutter)
-    differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
+    all_faces = (_face(old, a, new, b, how, slack, radii) for a, b, how in with_others(old.faces, new.faces, pairs))
+    all_cutters = (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in with_others(old.cutters, new.cutters, tools))
+    faces, cutters = sorted(filter(None, all_faces), key=_worst_face), sorted(filter(None, all_cutters), key=_worst_cutter)
+    rows: list[FaceDifference | CutterDifference] = [*faces, *cutters]
     return PlanDifference(
-        name=name,
-        comparable=not why_not,
-        why_not=why_not,
-        changes=changes,
-        selected=(taken(old), taken(new)),
-        matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())),
-        faces=face_rows,
-        cutters=cutter_rows,
-        unreachable=unreachable(new),
-        lost=any(each.lost for each in differences),
-        won=any(each.won for each in differences),
-    )
+        name=name, comparable=not why_not, why_not=why_not, changes=changes, selected=(taken(old), taken(new)),
+        matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())), faces=faces, cutters=cutters,
+        unreachable=unreachable(new), lost=any(each.lost for each in rows), won=any(each.won for each in rows),
+    )  # fmt: skip
 
 
 def _same_area(old: Plan, new: Plan, pairs: Matched) -> float:
@@ -157,13 +142,7 @@ def _text(value: Any) -> str:
 
 
 def _face(
-    old: Plan,
-    a: FaceEntry | None,
-    new: Plan,
-    b: FaceEntry | None,
-    how: Any,
-    slack: float,
-    radius: tuple[float, float] | None = None,
+    old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: Any, slack: float, radii: Mapping[Ids, Radii]
 ) -> FaceDifference | None:
     """A face as the last plan has it that has it; None where both have it and its answer is the same.
 
@@ -177,24 +156,21 @@ def _face(
             return None
     else:
         loses, wins = now is not None and now.reach not in _CLOSED, False
-    face = b or a
+    face, ids = b or a, (a.id if a else None, b.id if b else None)
     assert face is not None
     return FaceDifference(
-        old=a.id if a else None, new=b.id if b else None, matched_by=how, name=face.name, kind=face.kind or face.shape,
+        old=ids[0], new=ids[1], matched_by=how, name=face.name, kind=face.kind or face.shape,
         area_mm2=face.area_mm2 if math.isfinite(face.area_mm2) else None, centre_mm=face.centre_mm, was=was, now=now, lost=loses,
-        won=wins, radius_mm=radius,
+        won=wins, radius_mm=radii.get(ids),
     )  # fmt: skip
 
 
-def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[str, Radii]:
-    """Radii of faces that only one plan has, and that took the place of another one: by `-F3` of the old, `+F4` of the new plan.
-
-    They are of one shape, and most of the faces around them are the same.
-    """
+def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[Ids, Radii]:
+    """Radii, by their ids, of faces of one shape of which each plan has one alone, among mostly the same faces."""
     again = {a.id: b.id for a, b, _ in pairs}
     theirs = {*again.values()}
     came = [(face, radius) for face in new.faces if face.id not in theirs and (radius := _radius(face))]
-    radii: dict[str, Radii] = {}
+    radii: dict[Ids, Radii] = {}
     for face in old.faces:
         if face.id in again or not (radius := _radius(face)):
             continue
@@ -202,7 +178,7 @@ def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[str, Radii]:
         for other, its in came:
             same = neighbours & {*(other.neighbours or ())}
             if other.shape == face.shape and 2 * len(same) > len(neighbours) > 1 and not math.isclose(radius, its, rel_tol=1e-4):
-                radii |= {f"-{face.id}": (radius, its), f"+{other.id}": (radius, its)}
+                radii |= {(face.id, None): (radius, its), (None, other.id): (radius, its)}
     return radii
 
 
@@ -238,18 +214,10 @@ def _cutter(
             return None
     else:
         loses, wins = was is not None and bool(was.finishes), now is not None and bool(now.finishes)
-    either = b or a
-    assert either is not None
+    one = b or a
+    assert one is not None
     return CutterDifference(
-        name=called(either),
-        matched_by=how,
-        was=was,
-        now=now,
-        changes=changes,
-        faces_lost=gone,
-        faces_won=won,
-        lost=loses,
-        won=wins,
+        name=called(one), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone, faces_won=won, lost=loses, won=wins
     )
 
 
@@ -283,7 +251,7 @@ def _worst_cutter(cutter: CutterDifference) -> tuple[int, float, str]:
 def face_state(plan: Plan, face: FaceEntry) -> FaceState:
     """How all cutters together answer for a face: each by itself, for what two reach in turns is in no plan file."""
     by_cutter = {c.id: c.faces[face.id] for c in plan.cutters if face.id in c.faces}
-    if not face.target or not any(map(_finished, by_cutter.values())):
+    if not face.target or not any(each.required for each in by_cutter.values()):
         none: Reach = "not asked" if not face.target else "inside other bodies" if by_cutter else "not judged"
         if face.target and any(each.drilled for each in by_cutter.values()):
             none = "drilled"
@@ -294,7 +262,7 @@ def face_state(plan: Plan, face: FaceEntry) -> FaceState:
     best = by_cutter[max(sorted(by_cutter), key=lambda name: (not by_cutter[name].blocked, reached(by_cutter[name])))]
     share = reached(best)
     reach: Reach = "undecided" if not best.blocked else "partly" if share > 0.0 else "not reached"
-    if _finished(best) == best.unjudged:
+    if best.required == best.unjudged:
         reach = "not judged"
     return FaceState(reach=reach, share=share, cutters=[], reason=worst(best.area_share.lost_by))
 
@@ -308,21 +276,18 @@ def cutter_state(plan: Plan, cutter: CutterEntry) -> CutterState:
 
 
 def reached(verdicts: FaceVerdicts | CutterEntry) -> float:
-    """Share of the area that is reached, 0 to 1; of the samples in plans of older versions, which have no areas."""
-    share = verdicts.area_share
-    if share == AreaShare():
-        return (verdicts.interference_free + verdicts.accessible) / max(1, _finished(verdicts))
-    return reached_share(verdicts, share) or 0.0
+    """Share of the area that is reached, 0 to 1."""
+    return reached_share(verdicts, verdicts.area_share) or 0.0
 
 
 def reached_whole(verdicts: FaceVerdicts | None) -> bool:
     """Whether every sample of the finished part's surface is judged and reached; nothing is reached where there is none."""
-    return verdicts is not None and _finished(verdicts) > 0 and not (verdicts.not_reached or verdicts.unjudged)
+    return verdicts is not None and verdicts.required > 0 and verdicts.required == verdicts.reached
 
 
 def worst(shares: Mapping[str, float]) -> str | None:
     """The reason of the largest share, the first by name of several."""
-    return min(shares, key=lambda reason: (-shares[reason], reason), default=None)
+    return next((reason for reason, _ in by_share(shares)), None)
 
 
 def falls(was: FaceState, now: FaceState, slack: float) -> bool:
@@ -347,8 +312,3 @@ def cutter_falls(was: CutterState, now: CutterState, slack: float, *, leaves_mor
 def unreachable(plan: Plan) -> list[str]:
     """Target faces that no cutter reaches whole, those included that nothing is known of."""
     return [face.id for face in plan.faces if face.target and face_state(plan, face).reach not in _CLOSED]
-
-
-def _finished(verdicts: VerdictCounts) -> int:
-    judged = verdicts.interference_free + verdicts.accessible + verdicts.inaccessible + verdicts.undecided
-    return judged + verdicts.unjudged - verdicts.inside_bodies - verdicts.exempt

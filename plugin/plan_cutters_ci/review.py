@@ -5,20 +5,22 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Callable, Iterator, Mapping
-from html.parser import HTMLParser
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
 from plan_cutters.domain import figures as numbers
+from plan_cutters.errors import PlanError
 from plan_cutters.files.markup import embedded, policy, template, with_three
+from plan_cutters.plan_file.load import load_plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.reasons import PALETTE
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.text import Chip
-from plan_cutters_ci.matching import match_cutters, match_faces
+from plan_cutters_base.whole import whole
+from plan_cutters_ci.matching import match_cutters, match_faces, with_others
 from plan_cutters_ci.model import PlanDifference
 from plan_cutters_ci.plans import face_state, taken
 from plan_cutters_ci.wording import change, choice, cutter_rows, face_rows, headline, known, mark
@@ -44,6 +46,8 @@ _OMITTED = re.compile(
     r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
 )
 _FORMAT = 1
+#: A script element of a page with its id and its text: what the page draws stands in two of them.
+_ELEMENT = re.compile(r'<script [^>]*\bid="([\w-]+)">(.*?)</script>', re.DOTALL)
 _AGAIN = "plan the part again with --formats json,html"
 
 
@@ -109,14 +113,19 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     ).encode()
 
 
+def write_page(path: Path, difference: PlanDifference, files: Iterable[tuple[str, Path]]) -> None:
+    """Write the page of two plans, named and by their plan.json; a PlanError where it cannot be written, or one not be read."""
+    with whole(path, PlanError) as temporary:
+        shown = [Side(word, plan := load_plan(file), picture_of(file, plan)) for word, file in files]
+        temporary.write_bytes(page(difference, *shown))
+
+
 def _cutters(old: Plan, new: Plan) -> Iterator[Mapping[str, str | None]]:
     then, now = short_names(old), short_names(new)
-    pairs = match_cutters(old, new)
-    yield from ({"name": now[b.id], "old": a.id, "new": b.id} for a, b, _ in pairs)
-    gone = [c.id for c in old.cutters if c.id not in {a.id for a, _, _ in pairs}]
-    added = [c.id for c in new.cutters if c.id not in {b.id for _, b, _ in pairs}]
-    yield from ({"name": f"{then[each]} (old plan alone)", "old": each, "new": None} for each in gone)
-    yield from ({"name": f"{now[each]} (new plan alone)", "old": None, "new": each} for each in added)
+    for a, b, _ in with_others(old.cutters, new.cutters, match_cutters(old, new)):
+        name = now[b.id] if b else then[a.id] if a else ""
+        alone = "" if a and b else f" ({'old' if a else 'new'} plan alone)"
+        yield {"name": f"{name}{alone}", "old": a.id if a else None, "new": b.id if b else None}
 
 
 def picture_of(path: Path, plan: Plan) -> Picture:
@@ -146,7 +155,7 @@ def picture_of(path: Path, plan: Plan) -> Picture:
 
 def _picture(text: str) -> Picture | None:
     """The picture that a page holds; None where its data have another form."""
-    elements = _Elements(text).texts
+    elements = dict(_ELEMENT.findall(text))
     meta, stream = json.loads(elements["meta"]), elements["data"]
     if meta["format"] != _FORMAT:
         return None
@@ -167,27 +176,6 @@ def _picture(text: str) -> Picture | None:
         raise LookupError("a cutter has no verdicts")
     reduced = {**meta, "cutters": cutters, "spots": [], "scalars": [], "operations": None, "maps": None, "arrays": entries}
     return Picture(reduced, data, "")
-
-
-class _Elements(HTMLParser):
-    """Texts of the script elements of a page, by their ids: what the page draws stands in two of them."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.texts: dict[str, str] = {}
-        self._open: str | None = None
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self._open = dict(attrs).get("id") if tag == "script" else None
-
-    def handle_data(self, data: str) -> None:
-        if self._open:
-            self.texts[self._open] = self.texts.get(self._open, "") + data
-
-    def handle_endtag(self, tag: str) -> None:
-        self._open = None
 
 
 #: Rows on what was compared: a title, and the cell of a plan.

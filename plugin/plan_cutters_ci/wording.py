@@ -47,14 +47,10 @@ def headline(difference: PlanDifference) -> str:
         f"{count(number, what)} {word}"
         for word in ("lost", "less", "won")
         for what, entries in (("face", difference.faces), ("cutter", difference.cutters))
-        if (number := sum(_counts(each, word) for each in entries))
+        if (number := sum(each.won if word == "won" else each.lost and fall(each) == word for each in entries))
     ]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
     return f"{difference.name}: {text}."
-
-
-def _counts(each: FaceDifference | CutterDifference, word: str) -> bool:
-    return each.won if word == "won" else each.lost and fall(each) == word
 
 
 def mark_of(difference: PlanDifference) -> str:
@@ -65,9 +61,7 @@ def mark_of(difference: PlanDifference) -> str:
 
 
 def remarks(difference: PlanDifference) -> list[str]:
-    """Lines before the tables: which cutter is to be taken, how faces were known again, and what
-    else changed. Of plans that are not comparable nothing but the reasons is told.
-    """
+    """Lines before the tables; none of plans that are not comparable, of which nothing but the reasons is told."""
     if not difference.comparable:
         return []
     lines = [choice(difference), known(difference)]
@@ -192,10 +186,7 @@ def _why(reason: str | None) -> str:
 
 
 def markdown(comparison: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
-    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others.
-
-    `pages` are paths of the pages of both plans by the name of their pair; the only one has none.
-    """
+    """The comparison in Markdown: a section for each pair that differs; `pages`: paths by names of pairs, of one pair by none."""
     same = [each for each in comparison.plans if each.same]
     lines = [f"**{verdict(comparison)}**", ""]
     for each in comparison.plans:

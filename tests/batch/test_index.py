@@ -156,7 +156,7 @@ def test_no_row_is_lost_and_no_failure_is_silent(rows):
     assert [page.count(f'<tr role="row" data-is="{word}"') for word in OUTCOMES] == [getattr(summary.parts, w) for w in OUTCOMES]
     cells = list(csv.reader(io.StringIO(found["index.csv"].decode(), newline=""), strict=True))
     assert len(cells) == 1 + len(rows)
-    assert {len(line) for line in cells} == {len(table.columns())}
+    assert {len(line) for line in cells} == {len(table.COLUMNS)}
 
 
 def test_the_summary_keeps_to_its_schema(files):
@@ -220,7 +220,7 @@ def cells_of(rows):
 
 def test_columns_are_stable():
     first = "name file outcome key status code verdict cutter share reason cutters samples faces seconds folder page picture"
-    assert list(table.columns())[: len(first.split())] == first.split()
+    assert list(table.COLUMNS)[: len(first.split())] == first.split()
     text = table.csv_of([part()])
     assert text.startswith(b"name,file,outcome,")
     assert text.count(b"\r\n") == text.count(b"\n") == 2

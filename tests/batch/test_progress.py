@@ -1,5 +1,6 @@
 """The board of many parts: what it writes on a terminal, and where there is none."""
 
+import contextlib
 import io
 
 import pytest
@@ -27,7 +28,7 @@ def lines(text):
 
 
 def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
-    with (found := board())[0] as one:
+    with contextlib.closing((found := board())[0]) as one:
         one.row(GOOD)
         one.row(BAD)
         one.row(GOOD.model_copy(update={"status": "kept", "error": "not written: review.png"}))

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.plan_file.model import FaceEntry
 from plan_cutters_ci.matching import match_faces
 from plan_cutters_ci.model import REQUESTED, Comparison, schema_text
 from plan_cutters_ci.plans import SLACK, compare
@@ -201,14 +200,6 @@ def test_a_new_face_that_no_cutter_reaches_is_lost_and_a_gone_one_is_told():
     assert [(f.old, f.new, f.lost, f.won) for f in gone.faces] == [("F40", None, False, False)]
     assert [row[0] for row in face_rows(gone)] == ["gone"]
     assert (gone.lost, gone.won) == (False, False)
-
-
-def test_a_plan_without_places_is_known_by_numbers():
-    """Plans of an older version say no centre."""
-    new = made([face(1, area=50.0), face(2, area=60.0)], [cutter("R6L80", {})], sha="b")
-    bare = [FaceEntry.model_validate({**f.model_dump(), "centre_mm": None}) for f in new.faces]
-    old = new.model_copy(update={"faces": bare, "part": new.part.model_copy(update={"sha256": "a"})})
-    assert [(a.id, b.id, how) for a, b, how in match_faces(old, new)] == [("F1", "F1", "number"), ("F2", "F2", "number")]
 
 
 @pytest.mark.parametrize(

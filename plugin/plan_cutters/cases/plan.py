@@ -64,10 +64,9 @@ def _witness(w: WitnessEntry) -> str:
 def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished: str) -> Case:
     """The case with its outcome; `finished`: who finishes the face, empty where nobody does."""
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
-    required = verdicts.reached + verdicts.not_reached + verdicts.unjudged
-    if not required and verdicts.drilled:
+    if not verdicts.required and verdicts.drilled:
         return case._replace(outcome="skipped", message=f"{face.id} is in a hole for a drill, which no mill has to reach")
-    if not required and (verdicts.inside_bodies or verdicts.exempt):
+    if not verdicts.required and (verdicts.inside_bodies or verdicts.exempt):
         where = "lies inside other bodies of the part" if verdicts.inside_bodies else "is at sharp inside edges, and not required"
         return case._replace(outcome="skipped", message=f"all of {face.id} {where}")
     doubt = ""
@@ -78,7 +77,7 @@ def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished
     if _whole(face, verdicts):
         doubtful = case._replace(outcome="error", kind="not_sure", message=f"{face.id} is reached, but {doubt}")
         return doubtful if doubt else case
-    text = _text(face, cutter, verdicts, required)
+    text = _text(face, cutter, verdicts)
     kind = main_reason(verdicts.area_share) or ("unjudged" if not verdicts.not_reached else "undecided")
     case = case._replace(kind=kind, message=text)
     if not verdicts.not_reached:
@@ -95,11 +94,11 @@ def _whole(face: FaceEntry, verdicts: FaceVerdicts | None) -> bool:
     return verdicts.reached > 0 and not verdicts.not_reached and not verdicts.unjudged
 
 
-def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts, required: int) -> str:
+def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts) -> str:
     """One line on a face that a cutter does not reach whole, or not for sure."""
     share = verdicts.area_share
     unjudged = face.unjudged or (f"{count(verdicts.unjudged, 'sample')} could not be judged" if verdicts.unjudged else "")
-    if not required:
+    if not verdicts.required:
         return f"{face.id} could not be judged: {unjudged or 'it has no sample'}"
     if not verdicts.not_reached:
         return f"not all of {face.id} could be judged: {unjudged}"

@@ -112,6 +112,10 @@ class Cells(Record):
     sample: NDArray[np.int64]
     piece: NDArray[np.int64]
 
+    @staticmethod
+    def joined(parts: Sequence["Cells"]) -> "Cells":
+        return Cells(*(np.concatenate([getattr(cells, name) for cells in parts]) for name in Cells.__slots__))
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Between(Record):
@@ -225,20 +229,14 @@ def between(
         for mine, bare, own_chosen in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
     ]
     looked -= sum(len(mine) for mine in nodes)
-    looked += _begun(faces, laid_out, upto)
+    # Those with the largest cells first: there each contact may gain most.
+    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
+    looked += sum(faces[i].begin(laid_out[i], upto) for i in sorted(range(len(faces)), key=lambda i: -gains[i]))
     looked += _refined(faces, budget, LEAST_GAIN * whole, upto, work)
     unlooked += int((~chosen).sum()) + sum(face_cells.left for face_cells in faces)
-    return Between(
-        sum(face_cells.served for face_cells in faces),
-        whole,
-        looked,
-        unlooked,
-        short + sum(face_cells.short for face_cells in faces),
-        sum(face_cells.dropped for face_cells in faces),
-        unknown,
-        _cells(faces),
-        surrounding_area,
-    )
+    short += sum(face_cells.short for face_cells in faces)
+    served, dropped = sum(face_cells.served for face_cells in faces), sum(face_cells.dropped for face_cells in faces)
+    return Between(served, whole, looked, unlooked, short, dropped, unknown, _cells(faces), surrounding_area)
 
 
 def _areas(samples: SurfaceSamples, part: Part) -> tuple[float, tuple[int, ...]]:
@@ -247,12 +245,6 @@ def _areas(samples: SurfaceSamples, part: Part) -> tuple[float, tuple[int, ...]]
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     return sum(area for area in areas.values() if area > 0), unknown
-
-
-def _begun(faces: Sequence[FaceCells], laid_out: Sequence[CellContacts], upto: float) -> int:
-    """Look at the cells of all faces, those with the largest cells first: there each contact may gain most."""
-    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
-    return sum(faces[i].begin(laid_out[i], upto) for i in sorted(range(len(faces)), key=lambda i: -gains[i]))
 
 
 def _refined(faces: Sequence[FaceCells], budget: int, least: float, upto: float, work: Work) -> int:
@@ -297,11 +289,10 @@ def _joined(each: Sequence[Between]) -> Between:
     for one in each:
         pieces.append(replace(one.cells, piece=one.cells.piece + last))
         last = int(pieces[-1].piece.max(initial=last - 1)) + 1
-    columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
     return Between(
         sum(one.served for one in each), each[0].whole, sum(one.contacts for one in each), sum(one.left for one in each),
         sum(one.short for one in each), sum(one.dropped for one in each), each[0].unknown,
-        Cells(*map(np.concatenate, columns)), np.sum([one.surrounding_area for one in each], axis=0),
+        Cells.joined(pieces), np.sum([one.surrounding_area for one in each], axis=0),
     )  # fmt: skip
 
 
@@ -336,5 +327,4 @@ def _cells(faces: Sequence[FaceCells]) -> Cells:
         last += len(each)
         pieces.append(Cells(np.full(len(each), face_cells.field.number, np.int32), each.middle, each.span, each.axis, each.side,
                             each.whole, each.area, each.sample, piece))  # fmt: skip
-    columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
-    return Cells(*map(np.concatenate, columns))
+    return Cells.joined(pieces)

@@ -188,22 +188,11 @@ class Field:
 def laid(
     part: Part, orientation: Orientation, samples: SurfaceSamples, grid: FaceGrid, reach: Verdicts, conditions: Conditions
 ) -> tuple[Field, CellContacts, CellContacts]:
-    """The cells of a face.
-
-    Returns the field, the contacts at the samples, and those of tiles whose node lies outside the trim.
-    """
+    """The field of a face, the contacts at its samples, and those of tiles whose node lies outside the trim."""
     trim = part.trim(grid.face)
     assert trim is not None, "a face without a border has no samples"
-    (u, node_u), (v, node_v) = (
-        _tiles(line, closed, span, box)
-        for line, closed, span, box in zip(
-            (grid.u, grid.v),
-            (grid.closed_u, grid.closed_v),
-            (grid.span[:2], grid.span[2:]),
-            (trim.box[:2], trim.box[2:]),
-            strict=True,
-        )
-    )
+    u, node_u = _tiles(grid.u, grid.closed_u, grid.span[:2], trim.box[:2])
+    v, node_v = _tiles(grid.v, grid.closed_v, grid.span[2:], trim.box[2:])
     start = int(grid.index[grid.index >= 0].min())
     rows = np.arange(start, start + int((grid.index >= 0).sum()))
     tensor = tensors(samples.normal[rows], samples.direction_max[rows], samples.curvature[rows])
@@ -265,10 +254,7 @@ def laid(
 
 
 def quartered(contacts: CellContacts, field: Field, level: int, conditions: Conditions) -> CellContacts:
-    """Up to four contacts for each, one in each quarter of its cell that lies in the trim, that start from its posture.
-
-    `level` counts the halvings that led to `contacts`.
-    """
+    """Up to four contacts for each, in the quarters of its cell that lie in the trim; `level`: how often these were cut."""
     while len(field.lines) < level + 2:
         field.lines.append((_halved(field.lines[-1][0]), _halved(field.lines[-1][1])))
     lines = field.lines[level + 1]

@@ -129,10 +129,7 @@ class FaceCells:
         return (upto - self.work.looked - _ROUND) * max(1, self.seen) / max(1, self.spent)
 
     def add(self, contacts: CellContacts, level: int, upto: float = np.inf) -> float:
-        """Look at contacts of cells that were cut so many times; the area that is served by them.
-
-        Where so much work is done, other postures are not tried any more.
-        """
+        """Look at contacts of cells of a level, for other postures `upto` some work; the area that is served by them."""
         began = self.work.looked
         self.work.add(_ROUND + _CONTACT * len(contacts))
         status = _served(contacts, self, _MARGINS[min(level, len(_MARGINS) - 1)], upto)
@@ -215,10 +212,7 @@ def _poor(rounds: Sequence[tuple[int, float]], least: float) -> bool:
 
 
 def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float], upto: float) -> CellStatus:
-    """Outlook of contacts whose posture, or another one, serves their cell (0) or may serve parts of it.
-
-    Of the postures found on the way, the one with the best outlook is kept.
-    """
+    """Outlook of contacts whose posture, or another one, serves their cell (0) or parts of it; the one with the best is kept."""
     context = face_cells.context
     status = np.full(len(contacts), _UNTOLD, np.uint8)
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)

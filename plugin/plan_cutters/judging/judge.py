@@ -110,10 +110,7 @@ def judge(
 
 
 class CachedJudge:
-    """Judge as `judge` does, but for what a part's cache holds.
-
-    An entry belongs to the ground, the cutter, and what was known of its samples from other cutters.
-    """
+    """Judge as `judge` does, but for what a part's cache holds for this ground, cutter, and what was known from others."""
 
     def __init__(self) -> None:
         self._grounds = GroundDigests()

@@ -1,6 +1,4 @@
-"""Limits of a machine: samples within those of the rotary axes of one setup or another, where alone any cutter can reach them;
-and where the linear axes stand at the postures found.
-"""
+"""Limits of a machine: samples that any cutter can reach within those of its rotary axes; where its linear axes stand."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -59,9 +57,5 @@ def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, 
     placement = options.placement
     if placement is None or unjudged(options.machine, placement) is not None:
         return {}
-    return {
-        cutter.id: travel(
-            options.machine, placement, tips(cutter, samples.point, samples.normal, reach), reach.axis, cutter.length
-        )
-        for cutter, reach in reaches.items()
-    }
+    tip = {cutter: tips(cutter, samples.point, samples.normal, reach) for cutter, reach in reaches.items()}
+    return {c.id: travel(options.machine, placement, tip[c], reach.axis, c.length) for c, reach in reaches.items()}

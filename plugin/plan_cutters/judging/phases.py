@@ -49,10 +49,7 @@ def classify(samples: SurfaceSamples, diagonal: float) -> NDArray[np.uint8]:
 
 
 def regions(samples: SurfaceSamples, surface_class: NDArray[np.uint8]) -> Ints:
-    """Number the connected regions of equal class, across smooth face joints.
-
-    Returns (n,) int32: region of each sample, from 0.
-    """
+    """Number the connected regions of equal class, across smooth face joints: (n,) int32, region of each sample, from 0."""
     a, b = samples.neighbours.T
     same = surface_class[a] == surface_class[b]
     return connected(len(samples), samples.neighbours[same])

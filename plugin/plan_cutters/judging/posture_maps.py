@@ -184,7 +184,6 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
         # Within what is only perhaps a body.
         perhaps = open_tilts[within & ~sunk]
         undecided.append(unsure if not len(perhaps) else join(np.concatenate([unsure, perhaps])))
-        assert set(intervals[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     under_flat, flank_axis = _lying(contact, free, context)
     return PostureMap(
         rotations=rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
@@ -222,8 +221,7 @@ def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
     bounds = []
     for offset, radius, low, high, _ in tool.mode.tolist():
         least, most = local_gouge_range(float(curvature[0]), float(curvature[1]), rotation, offset, radius)
-        if max(least, low) <= min(most, high):
-            bounds.append((max(least, low), min(most, high)))
+        bounds += [(max(least, low), min(most, high))] if max(least, low) <= min(most, high) else []
     return join(np.array(bounds).reshape(-1, 2))
 
 
@@ -237,12 +235,9 @@ def _parts(
         return np.array([[first, last, OPEN]])
     parts = [np.zeros((0, 3))]
     for mode, (_, _, low, high, _) in enumerate(tool.mode.tolist()):
-        if max(first, low) <= min(last, high):
-            parts.append(
-                free_tilts(
-                    p, n, f, max(first, low), min(last, high), tool_of(tool), mode, narrowest, obstacles.tree, _MOST_INTERVALS
-                )
-            )
+        low, high = max(first, low), min(last, high)
+        if low <= high:
+            parts.append(free_tilts(p, n, f, low, high, tool_of(tool), mode, narrowest, obstacles.tree, _MOST_INTERVALS))
     return np.concatenate(parts)
 
 

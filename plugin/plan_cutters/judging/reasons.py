@@ -87,10 +87,7 @@ class Reasons:
     _known: dict[str, dict[Cutter, Verdicts]] = field(default_factory=dict)
 
     def of(self, cutter: Cutter, verdicts: Verdicts, progress: Progress | None = None) -> Explained:
-        """Find the reasons of what a cutter loses.
-
-        `verdicts`: what it reaches over all setups, with the reasons that its search found.
-        """
+        """Find the reasons of what a cutter loses; `verdicts`: over all setups, with the reasons that its search found."""
         tell = progress or (lambda done, total: None)
         first, n = self.conditions[0], len(verdicts.verdict)
         before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
@@ -143,13 +140,8 @@ class Reasons:
         served = np.zeros(len(rows), bool)
         for k, conditions in enumerate(self.conditions):
             open_ = self.machinable[k][rows] & ~served
-            verdicts = self._search(
-                f"setup {k}" if limited else f"unlimited {k}",
-                cutter,
-                rows[open_],
-                conditions if limited else conditions.without_machine(),
-            )
-            served |= open_ & verdicts.reached[rows]
+            under, there = (f"setup {k}", conditions) if limited else (f"unlimited {k}", conditions.without_machine())
+            served |= open_ & self._search(under, cutter, rows[open_], there).reached[rows]
         return served
 
     def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Verdicts:
@@ -209,10 +201,7 @@ def may_be_at_edge(verdicts: Verdicts, cutter: Cutter) -> bool:
 
 
 def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: Sequence[InsideEdge]) -> Ints:
-    """Find the sharp inside edge that loses each sample.
-
-    Returns (n,) int32: place in `edges`, -1 where it is none of them.
-    """
+    """Find the sharp inside edge that loses each sample: (n,) int32, place in `edges`, -1 where it is none of them."""
     result = np.full(len(samples), -1, np.int32)
     radius, losses, reached = least_radius(cutter), _losses(verdicts), np.flatnonzero(verdicts.reached)
     if radius is None or not losses.any() or not len(reached):
@@ -330,9 +319,7 @@ def _corner(
 def _served(
     samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float
 ) -> NDArray[np.bool_]:
-    """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
-    ball touches both faces.
-    """
+    """Points (k,) of an edge about which the cutter reaches the surface where the ball touches both faces."""
     served, sharp = np.zeros(len(wide), bool), np.flatnonzero(edge.sharp)
     rise = 0.5 * edge.curvature[side, sharp] * wide[sharp] ** 2
     place = edge.point[sharp] + wide[sharp, None] * edge.inward[side, sharp] + rise[:, None] * edge.normal[side, sharp]

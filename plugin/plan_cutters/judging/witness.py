@@ -90,11 +90,7 @@ def _groups(samples: SurfaceSamples, verdicts: Verdicts, inside: Ints | None) ->
     key = np.stack([samples.face[not_reached], verdicts.reason[not_reached], body], axis=1)
     each, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(which.reshape(-1), kind="stable")
-    pieces = (
-        np.split(not_reached[order], np.cumsum(np.bincount(which.reshape(-1), minlength=len(each)))[:-1])
-        if len(not_reached)
-        else []
-    )
+    pieces = np.split(not_reached[order], np.cumsum(np.bincount(which.reshape(-1), minlength=len(each)))[:-1])
     for i in np.argsort(first).tolist():
         face, reason, within = map(int, each[i])
         yield _Group(face, reason, within, pieces[i], float(np.nansum(samples.area[pieces[i]])))

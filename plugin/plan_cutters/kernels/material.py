@@ -350,10 +350,7 @@ def near_shell(points, clear, solids, near):
 
 @entry
 def far_inside(points, clear, solids, inside):
-    """Write for points (n, 3) whether a ball of radius `clear`, mm, about each lies wholly inside bodies.
-
-    Only skins that enclose something count: the ball may reach through other surfaces.
-    """
+    """Write for points (n, 3) whether a ball of radius `clear`, mm, lies wholly inside bodies, other surfaces aside."""
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
         x, y, z = points[row, 0], points[row, 1], points[row, 2]

@@ -57,9 +57,9 @@ class VerdictCounts(Frozen):
         return self.blocked + self.undecided
 
     @property
-    def lost(self) -> int:
-        """The former name of `not_reached`."""
-        return self.not_reached
+    def required(self) -> int:
+        """Samples that are asked of mills: those of the finished part's surface, judged or not."""
+        return self.reached + self.not_reached + self.unjudged
 
     def of(self, verdict: str) -> int:
         """Samples of the finished part's surface with a verdict."""

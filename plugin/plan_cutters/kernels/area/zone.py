@@ -274,10 +274,7 @@ _HIGH = 0.6
 
 @kernel
 def spared(distance, depth, chord):
-    """Return by how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm.
-
-    Lemma B4.
-    """
+    """Return by how much a paraboloid may curve more than the nose within a distance and gouge within limits (lemma B4)."""
     return 2.0 * max(0.0, depth - chord) / max(distance * distance, 1e-12)
 
 
@@ -342,9 +339,7 @@ def halvings(most, h, pose, flat, nose, depth, chord, near):
 
 @kernel
 def too_steep(pose, turn, flat, nose):
-    """Whether the normal turns too much within a patch for the tilt: the cutter must be tilted, and touch with the same mode, all
-    over it.
-    """
+    """Whether the normal turns too much within a patch for the cutter to be tilted, and touch in the same mode, all over it."""
     if flat:
         return False
     sine, cosine = pose

@@ -35,10 +35,7 @@ def place_on(triangle, i, share, point, ruling, normal):
 
 @kernel
 def _piece(triangle, point, ruling, normal, side, ends):
-    """Write where the plane through a line along a normal crosses a triangle: the two ends as (along, over) the line.
-
-    Returns whether it crosses it.
-    """
+    """Write where the plane through a line along a normal crosses a triangle, (along, over) the line; whether it does."""
     crosses = False
     for i in range(3):
         j = (i + 1) % 3

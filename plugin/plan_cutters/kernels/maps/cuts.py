@@ -199,9 +199,7 @@ def _first_in_the_way(met, a, b, sign, narrowest, workspace):
 
 @kernel
 def _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace):
-    """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
-    passed.
-    """
+    """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last failure and the first pass."""
     ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
     width, passed, failed, step = interval[g, LAST] - interval[g, FIRST], np.inf, 0.0, narrowest
     _fill(workspace.seen, corner)
@@ -267,10 +265,7 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
 
 @kernel
 def _ends_in_the_way(met, interval, g, workspace):
-    """Whether a triangle is in the way at the first tilt of an interval, and at the last.
-
-    What was undecided at an end no longer is where this triangle is in the way.
-    """
+    """Whether a triangle is in the way at either end of an interval: what was undecided there no longer is."""
     a, b, unsure_first, unsure_last = interval[g, FIRST], interval[g, LAST], interval[g, UF], interval[g, UL]
     at_first, at_last = _in_the_way(met, a, workspace), _in_the_way(met, b, workspace)
     if at_first and unsure_first > 0.0 and _in_the_way(met, a - unsure_first, workspace):

@@ -58,8 +58,7 @@ def _rising(view, below, block, lanes, low):
 
 @kernel
 def _leaf(leaf, which, vertex, frame, turn, interval, count, turning, mask, narrowest, margin, workspace):
-    """Take what the triangles of a leaf forbid to the pieces of a mask out of the intervals; (their count, the lane that cut last
-    or -1)."""
+    """Take what triangles of a leaf forbid to pieces of a mask out of the intervals; (their count, the last lane that cut)."""
     cosine, sine = turn
     last = -1
     for k in range(len(turning.piece)):
@@ -248,10 +247,7 @@ def _ball(turning):
 
 @kernel
 def _reachable(view, lanes, turning):
-    """The mask of the pieces that boxes of the first block may reach into at any posture.
-
-    They rise as high, and stand neither nearer nor farther than the piece.
-    """
+    """The mask of the pieces that boxes of the first block may reach into at any posture, by their heights and distances."""
     mask, known = 0, turning.known
     for k in range(len(turning.piece)):
         for lane in range(lanes):

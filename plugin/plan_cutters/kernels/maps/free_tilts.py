@@ -90,9 +90,7 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
 
 
 def local_gouge_range(kappa_max: float, kappa_min: float, rotation: float, offset: float, radius: float) -> tuple[float, float]:
-    """Least and largest tilt without local gouging, rad; nan if there is none. Curvatures 1/mm; the others as in
-    `arcs.local_gouge`.
-    """
+    """Least and largest tilt without local gouging, rad; nan if there is none. Arguments as of `arcs.local_gouge`."""
     least, most = local_gouge(kappa_max, kappa_min, np.cos(rotation), np.sin(rotation), offset, radius)
     return float(least), float(most)
 

@@ -249,9 +249,7 @@ def _never(polygon, count, radius, shrunk):
 
 @kernel
 def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
-    """Test a polygon like `_boxes_pass`, if necessary in two parts (lemma M3): one that the bottom sweeps over, one that stays
-    below it.
-    """
+    """Test a polygon like `_boxes_pass`, if necessary in two parts: what the bottom sweeps over, and the rest (lemma M3)."""
     radius, shrunk, low, high, _ = tool
     middle = 0.0
     for k in range(count):

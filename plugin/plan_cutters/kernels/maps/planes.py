@@ -170,9 +170,7 @@ _STEEP = 0.98
 
 @kernel
 def _towards(edge, x, y, height):
-    """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound; its part across the axis; about
-    how far.
-    """
+    """The unit direction (x, y, w), or 0, of a point farthest beyond a bound; its part across the axis; about how far."""
     q0, f0, q1, f1, _, slope, _ = edge
     q = np.sqrt(x * x + y * y)
     share = 1.0 / max(q, 1e-200)
@@ -239,9 +237,7 @@ def _least_of_triangle(gx, gy, gz, seen, lane):
 
 @kernel
 def _under(shape, boxes, end, bound, j, offset, clear):
-    """Mark boxes, or else triangles, that lie under a bound all over their interval, as seen along the normal tilted like the
-    rim (lemma M6).
-    """
+    """Mark boxes, or triangles, under a bound all over their interval, seen along the normal tilted like the rim (lemma M6)."""
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
@@ -318,9 +314,7 @@ def _all(clear):
 
 @kernel
 def boxes_clear(box, end, turning, k, clear):
-    """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their interval; whether all are
-    so.
-    """
+    """Mark boxes (`turn_boxes`) no point of which is in piece k at any tilt of their interval; whether all are so."""
     known, bound, offset = turning.known, turning.bound, turning.offset
     lateral, base, slope, near, far = known[k, LATERAL], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):

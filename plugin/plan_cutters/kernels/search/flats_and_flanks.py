@@ -212,10 +212,7 @@ def _radius_at(piece, k, height):
 
 @kernel
 def _met(vertex, triangle, piece, k, hit, u, v, flat):
-    """Write what a triangle forbids, that was met in piece k from a place with its point `hit`: a polygon behind the others.
-
-    Returns its corners and the radius by which it is grown.
-    """
+    """Write what a triangle met in piece k at `hit` forbids, a polygon behind the others; its corners, and its growth."""
     corner = flat.scratch.corner
     _, least, most, _ = into_frame(vertex, triangle, flat.body, 0.0, corner)
     low, high = piece[k, LOW], piece[k, HIGH]

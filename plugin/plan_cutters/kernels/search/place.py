@@ -69,31 +69,29 @@ def lies_within(x, y, z, solids, within, scratch):
 
 
 @kernel
+def _on_axis(body, height):
+    back = body[OFFSET]
+    x, y = body[P] + height * body[A] - back * body[X], body[P + 1] + height * body[A + 1] - back * body[X + 1]
+    return x, y, body[P + 2] + height * body[A + 2] - back * body[X + 2]
+
+
+@kernel
 def inside(body, tool, mode, solids, within, scratch):
     """Whether a tool that touches no skin lies in bodies: their winding number about a point of its axis is `within` or more.
 
     The end of the axis is asked first: where that is surely outside, or a way leads out from there, all of it is.
     """
-    high = tool.end - tool.mode[mode, OVER_TIP]
-    x = body[P] + high * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
+    x, y, z = _on_axis(body, tool.end - tool.mode[mode, OVER_TIP])
     if material.outside(x, y, z, solids):
         return False
     if not solids.whole:
         # Above the cells: a point that is low enough to be among them.
-        height = min(tool.inner, _LOW * solids.size) - tool.mode[mode, OVER_TIP]
-        x = body[P] + height * body[A] - body[OFFSET] * body[X]
-        y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
-        z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+        x, y, z = _on_axis(body, min(tool.inner, _LOW * solids.size) - tool.mode[mode, OVER_TIP])
         if material.outside(x, y, z, solids):
             return False
     if material.way_out(x, y, z, body[A], body[A + 1], body[A + 2], solids, scratch.stack):
         return False
-    height = tool.inner - tool.mode[mode, OVER_TIP]
-    x = body[P] + height * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+    x, y, z = _on_axis(body, tool.inner - tool.mode[mode, OVER_TIP])
     return lies_within(x, y, z, solids, within, scratch)
 
 
@@ -134,10 +132,7 @@ def put(body, frame, tilt, tool, mode):
 
 @kernel
 def turned(frame, tilt, tool, mode, tree, body, scratch):
-    """Return how far a posture that touches nothing can be tilted either way and still touch nothing, rad.
-
-    Lemma S5 of `docs/at_a_sample.md`.
-    """
+    """Return how far a posture that touches nothing can be tilted either way and touch nothing, rad (lemma S5)."""
     half = _TURN
     while half > 0.5 * NARROWEST:
         put(body, frame, tilt, tool, mode)
@@ -193,9 +188,7 @@ def search_workspace():
 
 @kernel
 def permitted(contacts, row, ranges, tool, mode, f, intervals):
-    """Write the tilts of a tilt direction f that the axis limit, the range asked for and the tool's own leave; their width, and
-    how many intervals they are.
-    """
+    """Write the tilts of a direction f that axis limit, range and tool leave; their width, and how many intervals they are."""
     low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
     if low > high:
         return 0.0, 0
@@ -208,9 +201,7 @@ def permitted(contacts, row, ranges, tool, mode, f, intervals):
 
 @kernel
 def straight(contacts, row, cosine, sine, tool, mode):
-    """Tilts from and to, at a rotation's cosine and sine, at which curvature keeps surface and tool apart next to the contact;
-    nan if there are none.
-    """
+    """Tilts from, to, at a rotation, at which curvature keeps surface and tool apart next to the contact; nan for none."""
     return local_gouge(
         contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
     )
@@ -281,9 +272,7 @@ def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace):
 
 @kernel
 def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):
-    """First and last of the tilts about one, `half` to either side at least, at which a point is in piece k; `arcs` is
-    scratch.
-    """
+    """First and last of the tilts about one, at least `half` to either side, at which a point is in piece k."""
     first, last = tilt - half, tilt + half
     if closed(offset, piece, k):
         for i in range(forbidden(height, px, py, tilt, offset, piece, k, arcs)):
@@ -296,9 +285,7 @@ def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):
 
 @kernel
 def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace):
-    """The same of a point that a probe at a tilt has met in piece k, in the tool's frame; (the new count, the point along f, t,
-    n).
-    """
+    """The same of a point, in the tool's frame, that a probe has met in piece k; (the new count, the point along f, t, n)."""
     offset, piece = tool.mode[mode, OFFSET_OF], tool.piece[mode]
     back, cosine, sine = px - offset, np.cos(tilt), np.sin(tilt)
     x, z = cosine * back + sine * height, cosine * height - sine * back + tool.mode[mode, RISE]

@@ -69,10 +69,7 @@ def _reason(tally, bent):
 
 @kernel
 def shut_in(contacts, row, deep, solids, scratch):
-    """Whether a contact may lie in a body so that every posture is blocked; `deep` as for `Mode`.
-
-    Lemma F3 of `docs/proofs.md`, for what perhaps encloses something.
-    """
+    """Whether every posture of a contact may be blocked by a body that perhaps encloses it (lemma F3 of `docs/proofs.md`)."""
     p, n = contacts.point[row], contacts.normal[row]
     x, y, z = p[0] + AWAY * deep * n[0], p[1] + AWAY * deep * n[1], p[2] + AWAY * deep * n[2]
     # A posture that a body blocks, beside it or within, is none: with no depth nothing is known.
@@ -196,10 +193,7 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *,
 
 @entry
 def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
-    """Write the reason (n,) of samples that no posture of a tool serves, where axis limit or curvature alone leave none.
-
-    `inner_tool` and `certain` as for `search`; other reasons stay as they are.
-    """
+    """Write the reason (n,) of samples that no posture serves, where axis limit or curvature alone leave none; not others."""
     rotations, modes = len(ranges.rotation_cos), len(inner_tool.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
@@ -340,9 +334,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
 
 @kernel
 def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results):
-    """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
-    of both sides ended.
-    """
+    """The largest tool that finds a posture, -1 for none, the verdict on the next, and where the searches of both sides ended."""
     count, turns = len(outer.tools.reach), len(ranges.rotation_cos)
     # Reached, not reached; not known to be inaccessible, known to be so.
     low, high, free, beyond = -1, count, -1, count

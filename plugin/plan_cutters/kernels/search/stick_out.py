@@ -139,8 +139,7 @@ def _at_most(box, i, body, outline):
 
 @kernel
 def _cleared(tree, body, outline, floor, stack, bound, corner):
-    """Least height of the nose, from the centre, no less than `floor`, that clears all triangles; the one that asks for it, or
-    -1."""
+    """Least height of the nose, from the centre, at least `floor`, that clears all triangles; the one that asks for it, or -1."""
     best, which = floor, -1
     for k in range(2):
         vertex, box, depth, begin = half(tree, k)

@@ -145,9 +145,7 @@ def _put(out, count, first, last):
 
 @kernel
 def _half(out, count, zero, low, high, d, floor, ceiling, up):
-    """Enter the tilts of cosines of alpha between two bounds and heights between two, on one half turn; `zero` the tilt of alpha
-    0.
-    """
+    """Enter tilts, on one half turn, of cosines of alpha and heights between two each; `zero`: the tilt of alpha 0."""
     least, most = (floor / d, ceiling / d) if up > 0.0 else (-ceiling / d, -floor / d)
     least, most = max(least, 0.0), min(most, 1.0)
     if least >= most:
@@ -182,10 +180,7 @@ def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
 
 @kernel
 def _own_arc(out, count, zero, d, y, radius, ring_radius, floor, ceiling):
-    """Write the tilts that a revolved arc forbids, whose circle of centres goes through the centre of tilting; the new count.
-
-    `radius` may have any sign.
-    """
+    """Write the tilts that a revolved arc forbids whose centres go through that of tilting, of any radius; the new count."""
     for up in (1.0, -1.0):
         if radius == 0.0:
             if d * d + y * y < ring_radius * ring_radius:

@@ -37,10 +37,7 @@ def scratch():
 
 @kernel
 def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
-    """Write the body whose axis is tilted from the normal of a frame towards its tilt direction.
-
-    Its centre stands `rise` over the contact, `offset` from the axis.
-    """
+    """Write the body tilted from the normal of a frame towards its direction: `rise` over the contact, `offset` from the axis."""
     p, n, f, t = frame.p, frame.n, frame.f, frame.t
     for k in range(3):
         body[P + k] = p[k] + rise * n[k]
@@ -264,10 +261,7 @@ def _shadow_distance(polygon, count, half):
 
 @kernel
 def extruded_hit(vertex, i, body, piece, mask, workspace):
-    """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
-
-    `vertex` (n, 3, 3) float64. `body` (14,) float64. `piece` (k, COLUMNS) float64.
-    """
+    """Those of the pieces of a mask, drawn out as the body says, into which triangle i of `vertex` (n, 3, 3) reaches."""
     corner, half = workspace.corner, body[HALF]
     _, least, most, total = into_frame(vertex, i, body, 0.0, corner)
     # What is no number is in the way.

@@ -72,9 +72,7 @@ def cut(source, count, target, level, keep):
 
 @kernel
 def clipped(corner, count, least, most, low, high, polygon, spare):
-    """Cut a polygon, whose heights lie between `least` and `most`, off at two heights: (where the rest is: 0 unchanged, 1 in
-    `polygon`, 2 in `spare`; its corners).
-    """
+    """Cut a polygon off at two heights: (where the rest is: 0 unchanged, 1 in `polygon`, 2 in `spare`; its corners)."""
     where = 0
     if least < low:
         count, where = cut(corner, count, polygon, low, 1.0), 1
