@@ -14,7 +14,8 @@ from plan_cutters.document.build import (
     counts,
     degrees,
     face_entries,
-    fixture_entries,
+    fixture_entry,
+    fixtures_in,
     inside_entry,
     missing_entries,
     part_info,
@@ -110,15 +111,11 @@ def _local(ready: Prepared) -> list[LocalTolerance]:
     faces, targets = ready.scene.part.faces, set(ready.chosen.targets)
     whole = sum(faces[number - 1].area for number in targets)
     changes = [
-        LocalTolerance(
-            face=f"F{number}",
-            chord_error_mm=error,
-            tolerance_mm=effective_tolerance(0.0, error),
-            area_mm2=faces[number - 1].area,
-            share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
-        )
+        filled(LocalTolerance, faces[number - 1], face=f"F{number}", chord_error_mm=error,
+               tolerance_mm=effective_tolerance(0.0, error),
+               share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0)
         for number, error in ready.conditions.surroundings.loose.items()
-    ]
+    ]  # fmt: skip
     return sorted(changes, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
 
 
@@ -150,22 +147,17 @@ _WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided
 
 def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: Surroundings) -> StickOutEntry:
     """A least stick-out."""
-    limited, none, at = stick_out.sample >= 0, np.isnan(stick_out.least), stick_out.sample
-    return StickOutEntry(
-        least_mm=None if none else stick_out.least,
-        floor_mm=None if none else stick_out.floor,
-        longest_mm=stick_out.longest,
-        limited_by=stick_out.why,
-        served=stick_out.served,
-        beyond_mm=stick_out.beyond if limited else None,
-        beyond=_WORDS.get(stick_out.verdict),
-        face=f"F{samples.face[at]}" if limited else None,
-        point=vector(samples.point[at]) if limited else None,
+    at = stick_out.sample
+    names = ("beyond_mm", "face", "point") if at < 0 else ()
+    names += ("least_mm", "floor_mm") if np.isnan(stick_out.least) else ()
+    limited = {} if at < 0 else {"face": f"F{samples.face[at]}", "point": vector(samples.point[at])}
+    return filled(
+        StickOutEntry, stick_out, limited_by=stick_out.why, beyond=_WORDS.get(stick_out.verdict), doubtful=surroundings.doubtful,
         posture=None if stick_out.axis is None else posture(stick_out.tilt, stick_out.rotation, stick_out.axis),
         obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
         obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
-        doubtful=surroundings.doubtful,
-    )
+        **limited, **dict.fromkeys(names),
+    )  # fmt: skip
 
 
 def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
@@ -181,17 +173,10 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
         }
     none = dict.fromkeys(("bottleneck_mm", "bottleneck_face", "bottleneck_point", "beyond", "reason"))
     return filled(
-        RadiusEntry,
-        radius_map,
-        length_over_radius=radius_map.ratio,
-        least_mm=radius_map.least,
-        most_mm=radius_map.most,
+        RadiusEntry, radius_map, length_over_radius=radius_map.ratio, doubtful=doubtful, **(none | bottleneck),
         percentiles_mm={str(q): radius for q, radius in radius_map.percentiles(samples.area).items()},
-        below=int(radius_map.less.sum()),
-        no_less=int(radius_map.no_less.sum()),
-        doubtful=doubtful,
-        **(none | bottleneck),
-    )
+        below=int(radius_map.less.sum()), no_less=int(radius_map.no_less.sum()),
+    )  # fmt: skip
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -245,20 +230,13 @@ def plan_of(
         reasons=list(REASONS),
         reason_words={code: WORDS[code].name for code in REASONS},
         machine=machine_entry(ready),
-        fixtures=fixture_entries([each.surroundings for each in ready.setups]),
+        fixtures=[fixture_entry(fixture, setups) for fixture, setups in fixtures_in(ready)],
         libraries=[
-            filled(
-                LibraryEntry,
-                library,
-                tools=len(library.entries),
-                cutters=len(library),
-                drills=len(library.drills),
-                notes=list(library.notes),
-                holders=[holder.name or holder.id for holder in library.holders],
-                unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
-            )
+            filled(LibraryEntry, library, tools=len(library.entries), cutters=len(library), drills=len(library.drills),
+                   holders=[holder.name or holder.id for holder in library.holders],
+                   unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused])
             for library in options.libraries
-        ],
+        ],  # fmt: skip
         cutters=list(entries),
         selected=selected,
         shown=shown,
@@ -287,18 +265,11 @@ def machine_entry(ready: Prepared) -> MachineEntry:
     rotary = None
     if kinematics is not None:
         rotary = [
-            RotaryEntry(
-                name=axis.name,
-                carries=axis.carries,
-                direction=vector(direction),
-                limits_deg=None if axis.limits is None else degrees(axis.limits),
-            )
+            filled(RotaryEntry, axis, direction=vector(direction), limits_deg=None if axis.limits is None else degrees(axis.limits))
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
-    return MachineEntry(
-        name=machine.name, tilt_limit_deg=limit, rotary=rotary, linear=linear_entries(ready), notes=list(machine.notes)
-    )
+    return filled(MachineEntry, machine, tilt_limit_deg=limit, rotary=rotary, linear=linear_entries(ready))
 
 
 def completed(
@@ -321,9 +292,7 @@ def completed(
         more: dict[str, Any] = {
             "beyond_setup": int(beyond.sum()),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, over.here[name], samples),
-            "sources": [
-                filled(SourceEntry, each, file=file.file, notes=list(each.notes)) for file, each in sources.get(name, ())
-            ],
+            "sources": [filled(SourceEntry, each, file=file.file) for file, each in sources.get(name, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
             "mend": None if mend is None else mend.entry,
             "area": area,

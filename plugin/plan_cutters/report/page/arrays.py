@@ -21,7 +21,6 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.words.cutters import ranked_spots
 from plan_cutters.report.protocol import Judged
-from plan_cutters.scene.surroundings import PlacedFixture
 
 
 def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:
@@ -360,7 +359,7 @@ def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface
         for number, mesh in sorted(render_mesh.meshes.items())
     }
     fixtures: dict[int, Range] = {}
-    for i, (fixture, _) in enumerate(fixtures_of(result)):
+    for i, (fixture, _) in enumerate(fixtures_in(result.ready)):
         # Flat facets.
         normal = np.cross(fixture.shown[:, 1] - fixture.shown[:, 0], fixture.shown[:, 2] - fixture.shown[:, 0])
         length = np.linalg.norm(normal, axis=1)
@@ -377,11 +376,6 @@ def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface
         faces,
         fixtures,
     )
-
-
-def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
-    """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
-    return fixtures_in([each.surroundings for each in result.ready.setups])
 
 
 def box_of(surface: Surface, samples: Any) -> tuple[Floats, Floats]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.document.build import counts, degrees
+from plan_cutters.document.build import counts, degrees, fixtures_in
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
@@ -27,7 +27,7 @@ from plan_cutters.plan_file.words.names import Line, as_fields, named, short_nam
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
 from plan_cutters.plan_file.words.text import CHIPS, Story, before_approval, chip, story_of
-from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
+from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, shares, turned_by
 from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
 from plan_cutters.report.protocol import Judged
 
@@ -152,7 +152,7 @@ def meta_of(
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
             {"name": fixture.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
-            for i, (fixture, setups) in enumerate(fixtures_of(result))
+            for i, (fixture, setups) in enumerate(fixtures_in(result.ready))
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
