@@ -34,7 +34,8 @@ from plan_cutters.judging.witness import witnesses
 from plan_cutters.operations.orientations import index_times
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
+from plan_cutters.plan_file.frozen import filled
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
 from plan_cutters.plan_file.words.notes import note
 from plan_cutters.plan_file.words.text import with_text
@@ -116,15 +117,11 @@ class JudgedPart:
             at_edge, verdicts = at_edges[cutter], reaches[cutter]
             with clock.stage(cutter.id, shown=False):
                 context, part = Context.of(cutter, ready.conditions), ready.scene.part
-                witness_list = (
-                    []
-                    if not explain
-                    else ready.cache.cached(
-                        "witnesses",
-                        (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
-                        partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
-                    )
-                )
+                ground = grounds.of(ready) if explain and ready.cache is not NO_CACHE else b""
+                witness_list = ready.cache.cached(
+                    "witnesses", (ground, part.key, replace(cutter, name=""), verdicts),
+                    partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                ) if explain else []  # fmt: skip
                 marched = march_differs(samples, convex, ready.region, mine.interference_free)
                 entry = cutter_entry(
                     cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
@@ -146,11 +143,10 @@ class JudgedPart:
 
     def over_setups(self) -> OverSetups:
         """The verdicts of all cutters by their ids, over all setups and in each."""
-        reaches = {cutter.id: each.verdicts for cutter, each in self.cutters.items()}
-        here = {cutter.id: each.here for cutter, each in self.cutters.items()}
-        served_in = {cutter.id: each.which for cutter, each in self.cutters.items()}
+        by_id = {cutter.id: each for cutter, each in self.cutters.items()}
+        reaches, here = ({name: getattr(each, word) for name, each in by_id.items()} for word in ("verdicts", "here"))
         there = tuple((axis, dict(each)) for axis, each in self.other_setups)
-        return OverSetups(reaches, here, served_in, self.ready.scene.setup, there)
+        return OverSetups(reaches, here, {name: each.which for name, each in by_id.items()}, self.ready.scene.setup, there)
 
     @property
     def looks_between(self) -> bool:
@@ -184,6 +180,11 @@ class JudgedPart:
                 (_grounds(ready), ready.scene.part.key, replace(cutter, name=""), judged.verdicts, judged.which, budget, most),
                 partial(_area, ready, cutter, judged, budget, most, tell),
             )}  # fmt: skip
+
+
+#: Adds to a plan how its setups came about.
+Describe = Callable[[Plan], Plan]
+Described = tuple[JudgedPart, Describe]
 
 
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
@@ -271,5 +272,4 @@ def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, mo
     which = np.minimum(judged.which, len(contexts) - 1)
     served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
                      budget=budget, most=most, covered_samples=ready.not_required, progress=tell)  # fmt: skip
-    return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
-                     short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+    return filled(AreaEntry, served, left_out=[f"F{n}" for n in served.unknown])

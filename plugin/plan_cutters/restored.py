@@ -22,13 +22,13 @@ from plan_cutters.options import cores
 from plan_cutters.outcome import Answers, Operation, OperationPlan, Operations
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.operations import OperationPlanEntry
 from plan_cutters.report.folder import file_name, sha256
 from plan_cutters.report.question import Question, read_question
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import rotations_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters_base.stage_cache import StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 Arrays = Mapping[str, NDArray[Any]]
 _AGAIN = "plan the part again"
@@ -56,7 +56,7 @@ def part_of(plan: Plan, folder: Path, named: Path | None = None) -> Path:
 
 
 def restored(
-    plan: Plan, folder: Path, part: Path, clock: Clock, *, at: At = lambda whose, face: None, cache: StageCache | None = None
+    plan: Plan, folder: Path, part: Path, clock: Clock, *, at: At = lambda whose, face: None, cache: Cache = NO_CACHE
 ) -> Result:
     """The result of a plan as its folder has it.
 
@@ -73,8 +73,15 @@ def restored(
         raise PlanError(f"made by another version, or of objects of a script: {_AGAIN}", file=file_name("npz"))
     ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache))
     over = _over_setups(plan, arrays, ready)
+    travels = {
+        each.id: Travel(
+            arrays[f"travel_{each.id}"], arrays[f"rotary_taken_{each.id}"], np.zeros_like(arrays[f"travel_{each.id}"])
+        )
+        for each in plan.cutters
+        if f"travel_{each.id}" in arrays
+    }
     operations = _operations(plan, folder, ready) if plan.operations is not None else None
-    return Result(plan, ready, over, _travels(plan, arrays), Answers(radius_maps=_radii(plan, arrays), operations=operations))
+    return Result(plan, ready, over, travels, Answers(radius_maps=_radii(plan, arrays), operations=operations))
 
 
 def _arrays(plan: Plan, folder: Path, form: str) -> dict[str, NDArray[Any]]:
@@ -125,16 +132,6 @@ def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:
     return Verdicts(arrays[f"verdict_{name}"], axis, tilted, np.arctan2(across, along), rotation, shift, arrays[f"reason_{name}"])
 
 
-def _travels(plan: Plan, arrays: Arrays) -> dict[str, Travel]:
-    return {
-        each.id: Travel(
-            arrays[f"travel_{each.id}"], arrays[f"rotary_taken_{each.id}"], np.zeros_like(arrays[f"travel_{each.id}"])
-        )
-        for each in plan.cutters
-        if f"travel_{each.id}" in arrays
-    }
-
-
 def _radii(plan: Plan, arrays: Arrays) -> tuple[RadiusMap, ...]:
     made = []
     for each in plan.largest_radius:
@@ -164,16 +161,15 @@ def _plan(entry: OperationPlanEntry, number: int, arrays: Arrays, ready: Prepare
         for word in ("operation", "strip_mm", "path_mm", "seconds", "exclusive", "lean", "strategy", "contact", "link_s")
     )
     label, n = label.astype(np.int32), len(label)
-    operations = tuple(_operation(each, np.flatnonzero(label == k), ready) for k, each in enumerate(entry.operations))
+    cutter = {each.id: each for each in ready.cutters}
+    operations = tuple(
+        Operation(each.id, each.mode, cutter[each.cutter], each.setup, None if each.axis is None else np.array(each.axis), None,
+                  None, np.flatnonzero(label == k))
+        for k, each in enumerate(entry.operations)
+    )  # fmt: skip
     serves = np.zeros((n, len(operations)), bool)
     rows = np.flatnonzero(alone)
     serves[rows, label[rows]] = True
     none = np.full(n, -1, np.int32)
     return OperationPlan(entry.name, operations, label, serves, strip, length, seconds, none, tilted, strategy, contact, link,
                          float(np.nan), float(np.nan), float(np.nan), np.empty(0, np.int64))  # fmt: skip
-
-
-def _operation(entry: OperationEntry, rows: NDArray[np.int64], ready: Prepared) -> Operation:
-    cutter = next(each for each in ready.cutters if each.id == entry.cutter)
-    axis = None if entry.axis is None else np.array(entry.axis)
-    return Operation(entry.id, entry.mode, cutter, entry.setup, axis, None, None, rows)

@@ -116,26 +116,21 @@ def on_face(
     verdicts = counts(reach.verdict[whole_face], inside[whole_face])
     mine = whole_face & ~inside & (reach.verdict != DRILLED)
     area, verdict = samples.area[mine], reach.verdict[mine]
-    shares, reasons = {}, {}
-    whole = float(area.sum())
+    shares, reasons, whole = {}, {}, float(area.sum())
     if whole > 0.0:
-        for code, word in _words(verdict):
-            shares[word] = float(area[verdict == code].sum()) / whole
+        shares = {WORDS[code]: float(area[verdict == code].sum()) / whole for code in np.unique(verdict).tolist()}
         why = reach.reason[mine]
         not_reached = {REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])}
         reasons = dict(sorted(not_reached.items(), key=lambda each: (-each[1], each[0])))
     deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
+    unjudged = "" if entry.target else "it is a check face: not judged, an obstacle only"
+    unjudged = "it is ignored: neither a target nor an obstacle" if entry.ignored else unjudged or entry.unjudged or ""
     return OnFace(
         entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()),
         VerdictCounts(**verdicts), shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
-        doubtful, _unjudged(entry),
+        doubtful, unjudged,
     )  # fmt: skip
-
-
-def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
-    """Codes and words of the verdicts that occur."""
-    return [(code, WORDS[code]) for code in np.unique(verdict).tolist()]
 
 
 def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out: StickOut | None) -> tuple[float | None, str]:
@@ -149,14 +144,6 @@ def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out
     if stick_out.why == "no holder":
         return None, "the cutter has no holder"
     return float(stick_out.least), ""
-
-
-def _unjudged(entry: FaceEntry) -> str:
-    if entry.ignored:
-        return "it is ignored: neither a target nor an obstacle"
-    if not entry.target:
-        return "it is a check face: not judged, an obstacle only"
-    return entry.unjudged or ""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -371,10 +358,7 @@ class Result:
 
         `which` is given in the words of `Options.faces`, as numbers, or as objects of the kernel or a CAD host.
         """
-        if which is None:
-            numbers = tuple(int(each.id[1:]) for each in self.plan.faces if each.target)
-        else:
-            numbers = face_numbers(self.part, which)
+        numbers = self.ready.chosen.targets if which is None else face_numbers(self.part, which)
         return tuple(self._on_face(number, cutter, stick_out) for number in numbers)
 
     def _on_face(self, number: int, cutter: str | None, stick_out: bool) -> OnFace:

@@ -121,7 +121,9 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     Faces without samples are not judged; those of unknown area do not count. Where the area of none is known, every face counts
     as one.
     """
-    targets = [(n, each.area_share, 1.0 - each.inside_share - each.exempt_share - each.drilled_share) for n, each in faces.items()]
+    targets = [
+        (n, each.area_share, 1.0 - each.inside_share - each.exempt_share - each.drilled_share) for n, each in faces.items()
+    ]
     targets += [(f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty]
     areas = _areas([name for name, _, _ in targets], part)
     seen = np.array([areas[name] * finished for name, _, finished in targets])
@@ -286,8 +288,8 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
             "not known for sure; a face or an edge may be missing"
         )
     on_shell = (
-        f"{listed([f'F{number}' for number in surroundings.on_bodies])} lie on faces of solids, as construction geometry does, and "
-        "are judged and in the way like all others: `--ignore` leaves them out"
+        f"{listed([f'F{number}' for number in surroundings.on_bodies])} lie on faces of solids, as construction geometry does, "
+        "and are judged and in the way like all others: `--ignore` leaves them out"
         if surroundings.on_bodies
         else ""
     )
@@ -340,12 +342,9 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
     side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
     angle = None if carrier.half_angle is None else math.degrees(carrier.half_angle)
     lengths = {"radius_mm": carrier.radius, "minor_radius_mm": carrier.minor_radius, "half_angle_deg": angle}
-    vectors = {"point_mm": carrier.point, "direction": carrier.direction}
-    return CarrierEntry(
-        outward=bool(side > 0) if side else None,
-        **{name: None if each is None else vector(np.round(each, _DIGITS) + 0.0) for name, each in vectors.items()},
-        **{name: None if value is None else round(value, _DIGITS) for name, value in lengths.items()},
-    )
+    point, direction = (each and vector(np.round(each, _DIGITS) + 0.0) for each in (carrier.point, carrier.direction))
+    fields = {name: value and round(value, _DIGITS) for name, value in lengths.items()}
+    return filled(CarrierEntry, carrier, point_mm=point, direction=direction, outward=bool(side > 0) if side else None, **fields)
 
 
 @cache

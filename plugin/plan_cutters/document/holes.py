@@ -10,7 +10,7 @@ from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.domain.thread import thread_in, tolerance_in
-from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.holes import (
     CounterboreEntry,
     CountersinkEntry,
@@ -40,11 +40,7 @@ _IN_TURN: tuple[Kind, ...] = ("centre drill", "drill", "reamer", "counterbore", 
 def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[HoleEntry]:
     """The holes for drills of a part, those of the first group first; `made`: by what tools."""
     number = groups(ready.holes)
-    return [_entry(ready.holes[k], number[k], made[k]) for k in _in_order(number)]
-
-
-def _in_order(number: Sequence[int]) -> list[int]:
-    return sorted(range(len(number)), key=lambda k: number[k])
+    return [_entry(ready.holes[k], number[k], made[k]) for k in np.argsort(number, kind="stable").tolist()]
 
 
 def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored], index_times: IndexTimes) -> ProcessEntry:
@@ -70,11 +66,11 @@ def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored],
 
 def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[DrillingStep]:
     """The steps that drill holes: by setup, kind and diameter; those of one tool follow each other."""
-    options, number = ready.options, groups(ready.holes)
+    options, in_order = ready.options, np.argsort(groups(ready.holes), kind="stable").tolist()
     entries_of = [entry for library in options.libraries for entry in library.entries if entry.drill is not None]
     feeds = {entry.drill.id: entry.feed for entry in reversed(entries_of) if entry.drill is not None and entry.feed is not None}
     same: dict[tuple[Any, ...], list[tuple[int, Drilled]]] = {}
-    for place, k in enumerate(_in_order(number)):
+    for place, k in enumerate(in_order):
         for use in made[k].uses:
             size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
@@ -84,7 +80,7 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
-        thread = threads[_in_order(number)[same[key][0][0]]] if use.drill.kind == "tap" else None
+        thread = threads[in_order[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
         strokes = [StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
@@ -143,42 +139,19 @@ def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
 def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
     by, sink, bore = made.by, hole.countersink, hole.counterbore
     thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
-    return HoleEntry(
-        faces=[f"F{number}" for number in hole.faces],
-        diameter_mm=round(hole.diameter, _DIGITS),
-        depth_mm=round(hole.depth, _DIGITS),
-        through=hole.through,
-        bottom=hole.bottom,
-        cone_deg=None if hole.cone is None else _degrees(hole.cone),
-        countersink=None if sink is None else CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
-        counterbore=None if bore is None else CounterboreEntry(**dict(zip(_BORE, np.round(bore, _DIGITS).tolist(), strict=True))),
-        axis=vector(hole.axis + 0.0),
-        place_mm=vector(np.round(hole.place, _DIGITS) + 0.0),
-        group=group,
-        drilled=by is not None,
-        tool=None if by is None else by.id,
-        missing=[_missing(each) for each in made.missing],
-        thread=None
-        if thread is None
-        else ThreadEntry(name=thread.name, diameter_mm=thread.diameter, pitch_mm=thread.pitch, fit=thread.fit, left=thread.left),
-        tolerance=None
-        if tolerance is None
-        else ToleranceEntry(nominal_mm=tolerance.nominal, lower_mm=tolerance.lower, upper_mm=tolerance.upper, fit=tolerance.fit),
-    )
+    missing = [filled(MissingEntry, each, **_size(each), angle_deg=each.angle and _degrees(each.angle)) for each in made.missing]
+    return filled(
+        HoleEntry, hole, faces=[f"F{number}" for number in hole.faces], **_size(hole), cone_deg=hole.cone and _degrees(hole.cone),
+        countersink=sink and CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
+        counterbore=bore and CounterboreEntry(diameter_mm=round(bore[0], _DIGITS), depth_mm=round(bore[1], _DIGITS)),
+        axis=vector(hole.axis + 0.0), place_mm=_rounded(hole.place), group=group,
+        drilled=by is not None, tool=None if by is None else by.id, missing=missing,
+        thread=thread and filled(ThreadEntry, thread), tolerance=tolerance and filled(ToleranceEntry, tolerance),
+    )  # fmt: skip
 
 
-def _missing(each: Missing) -> MissingEntry:
-    return MissingEntry(
-        thing=each.thing,
-        diameter_mm=round(each.diameter, _DIGITS),
-        depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
-        angle_deg=None if each.angle is None else _degrees(each.angle),
-        why=each.why,
-        name=each.name,
-    )
-
-
-_BORE = ("diameter_mm", "depth_mm")
+def _size(of: Hole | Missing) -> dict[str, float | None]:
+    return {"diameter_mm": round(of.diameter, _DIGITS), "depth_mm": None if of.depth is None else round(of.depth, _DIGITS)}
 
 
 def _degrees(angle: float) -> float:

@@ -41,6 +41,7 @@ from plan_cutters.domain.standard_tools import Fitting
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASON, REASONS, SADDLE, UNDECIDED, effective_tolerance
+from plan_cutters.library.raw_tool import Library
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.answers import Beyond, RadiusEntry, StickOutEntry
@@ -124,12 +125,10 @@ def _process(ready: Prepared) -> dict[str, Any] | None:
     process = ready.options.process
     if process is None:
         return None
-
-    def called(word: str) -> str:
-        return cutter_of(word, ready.cutters, "process").id
-
-    steps = tuple(replace(each, cutter=called(each.cutter)) for each in process.steps)
-    forbidden = tuple(replace(each, cutter=called(each.cutter)) for each in process.forbidden)
+    words = [*(each.cutter for each in process.steps), *(each.cutter for each in process.forbidden)]
+    ids = {word: cutter_of(word, ready.cutters, "process").id for word in words}
+    steps = tuple(replace(each, cutter=ids[each.cutter]) for each in process.steps)
+    forbidden = tuple(replace(each, cutter=ids[each.cutter]) for each in process.forbidden)
     return replace(process, steps=steps, forbidden=forbidden).written()
 
 
@@ -148,15 +147,17 @@ _WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided
 def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: Surroundings) -> StickOutEntry:
     """A least stick-out."""
     at = stick_out.sample
-    names = ("beyond_mm", "face", "point") if at < 0 else ()
-    names += ("least_mm", "floor_mm") if np.isnan(stick_out.least) else ()
-    limited = {} if at < 0 else {"face": f"F{samples.face[at]}", "point": vector(samples.point[at])}
+    nothing = [
+        *(["beyond_mm", "face", "point"] if at < 0 else []),
+        *(["least_mm", "floor_mm"] if np.isnan(stick_out.least) else []),
+    ]
+    limiting = {} if at < 0 else {"face": f"F{samples.face[at]}", "point": vector(samples.point[at])}
     return filled(
         StickOutEntry, stick_out, limited_by=stick_out.why, beyond=_WORDS.get(stick_out.verdict), doubtful=surroundings.doubtful,
         posture=None if stick_out.axis is None else posture(stick_out.tilt, stick_out.rotation, stick_out.axis),
         obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
         obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
-        **limited, **dict.fromkeys(names),
+        **limiting, **dict.fromkeys(nothing),
     )  # fmt: skip
 
 
@@ -203,7 +204,12 @@ def plan_of(
     held = any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
     absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     absent |= set() if ready.for_drills.any() else {"drilled"}
-    shown = selected or nearest(entries).id
+    shown, classes = selected or nearest(entries).id, {"convex": CONVEX, "concave": CONCAVE, "saddle": SADDLE}
+    rows = {**{name: ready.surface_class == code for name, code in classes.items()}, "unjudged": samples.unjudged >= 0,
+            "inside_bodies": ready.inside_bodies, "drilled": ready.for_drills}  # fmt: skip
+    counted: dict[str, Any] = {name: int(mine.sum()) for name, mine in rows.items()}
+    counted |= {"count": len(samples), "max_gap_mm": samples.max_gap, "regions": len(np.unique(ready.region))}
+    counted["exempt"] = 0 if ready.exempt is None else int(ready.exempt.sum())
     process = process_entry(ready, entries, answers, over, shown, fitting)
     return Plan(
         text=NO_TEXT,
@@ -211,18 +217,7 @@ def plan_of(
         part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),
         versions=versions(),
-        samples=SampleCounts(
-            count=len(samples),
-            max_gap_mm=samples.max_gap,
-            convex=int((ready.surface_class == CONVEX).sum()),
-            concave=int((ready.surface_class == CONCAVE).sum()),
-            saddle=int((ready.surface_class == SADDLE).sum()),
-            unjudged=int((samples.unjudged >= 0).sum()),
-            regions=len(np.unique(ready.region)),
-            inside_bodies=int(ready.inside_bodies.sum()),
-            exempt=0 if ready.exempt is None else int(ready.exempt.sum()),
-            drilled=int(ready.for_drills.sum()),
-        ),
+        samples=SampleCounts(**counted),
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
         faces=faces,
@@ -231,12 +226,7 @@ def plan_of(
         reason_words={code: WORDS[code].name for code in REASONS},
         machine=machine_entry(ready),
         fixtures=[fixture_entry(fixture, setups) for fixture, setups in fixtures_in(ready)],
-        libraries=[
-            filled(LibraryEntry, library, tools=len(library.entries), cutters=len(library), drills=len(library.drills),
-                   holders=[holder.name or holder.id for holder in library.holders],
-                   unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused])
-            for library in options.libraries
-        ],  # fmt: skip
+        libraries=[_library_entry(each) for each in options.libraries],
         cutters=list(entries),
         selected=selected,
         shown=shown,
@@ -259,13 +249,23 @@ def plan_of(
     )
 
 
+def _library_entry(library: Library) -> LibraryEntry:
+    return filled(
+        LibraryEntry, library, tools=len(library.entries), cutters=len(library), drills=len(library.drills),
+        holders=[holder.name or holder.id for holder in library.holders],
+        unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
+    )  # fmt: skip
+
+
 def machine_entry(ready: Prepared) -> MachineEntry:
     """The machine, its axes in the part's frame."""
     machine, kinematics = ready.options.machine, ready.conditions.kinematics
     rotary = None
     if kinematics is not None:
         rotary = [
-            filled(RotaryEntry, axis, direction=vector(direction), limits_deg=None if axis.limits is None else degrees(axis.limits))
+            filled(
+                RotaryEntry, axis, direction=vector(direction), limits_deg=None if axis.limits is None else degrees(axis.limits)
+            )
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
@@ -323,19 +323,17 @@ def for_setup(entries: Sequence[CutterEntry]) -> str | None:
 
 def selection(entries: Sequence[CutterEntry], free_form: float) -> tuple[str | None, Selection]:
     """Which cutter wins, of entries from the most wanted down, and why; `free_form`: the share of such faces."""
-    feasible, rule = [e for e in entries if e.feasible], words.rule(free_form)
-    first = feasible[0] if feasible else None
-    before = entries if first is None else entries[: entries.index(first)]
+    feasible = [e for e in entries if e.feasible]
+    before = entries[: entries.index(feasible[0])] if feasible else entries
+    selected, runners_up, best = None, feasible, nearest(entries)
     if stood := next((e for e in before if e.by_reason.get(ANOTHER_SETUP) and not any(leaves(e))), None):
-        runner_up = None if first is None else first.id
-        return None, Selection(rule=rule, free_form=free_form, runner_up=runner_up, why=words.stands(stood.id))
-    if first is None:
-        best = nearest(entries)
-        text = f"{unreached(best, best.area_share)} of the area"
-        why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {text}"
-        if not best.not_reached:
-            why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
-        return None, Selection(rule=rule, free_form=free_form, runner_up=None, why=why)
-    runner_up = feasible[1].id if len(feasible) > 1 else None
-    why = words.why([e.id for e in before])
-    return first.id, Selection(rule=rule, free_form=free_form, runner_up=runner_up, why=why)
+        why = words.stands(stood.id)
+    elif feasible:
+        selected, runners_up, why = feasible[0].id, feasible[1:], words.why([e.id for e in before])
+    elif best.not_reached:
+        share = unreached(best, best.area_share)
+        why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {share} of the area"
+    else:
+        why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
+    runner_up = runners_up[0].id if runners_up else None
+    return selected, Selection(rule=words.rule(free_form), free_form=free_form, runner_up=runner_up, why=why)

@@ -15,7 +15,7 @@ from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.document.stands import setups_and_stock
 from plan_cutters.domain.figures import exact
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_process import OwnResult
 from plan_cutters.domain.placement import Placement
@@ -111,17 +111,14 @@ def linear_entries(ready: Prepared) -> list[LinearEntry]:
     for axis in ready.options.machine.linear:
         direction = np.array(axis.direction) @ ready.conditions.frame
         along = ready.samples.point[ready.finished] @ direction
-        low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
-        entries.append(
-            LinearEntry(
-                name=axis.name,
-                carries=axis.carries,
-                direction=vector(direction),
-                limits_mm=(low, high),
-                extent_mm=float(np.ptp(along)) if len(along) else 0.0,
-            )
-        )
+        extent = float(np.ptp(along)) if len(along) else 0.0
+        entries.append(filled(LinearEntry, axis, direction=vector(direction), limits_mm=_limits(axis), extent_mm=extent))
     return entries
+
+
+def _limits(axis: Axis) -> tuple[float | None, float | None]:
+    low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+    return low, high
 
 
 def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
@@ -130,25 +127,16 @@ def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: Sur
     axes, worst = [], []
     for k, axis in enumerate(machine.linear):
         position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
-        low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
         least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
-        axes.append(
-            AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most, outside=int((beyond > 0.0).sum()))
-        )
-        if len(beyond) and beyond.max() > 0.0:
+        outside = int((beyond > 0.0).sum())
+        axes.append(AxisTravel(name=axis.name, limits_mm=_limits(axis), least_mm=least, most_mm=most, outside=outside))
+        if outside:
             at = int(beyond.argmax())
-            worst.append(
-                BeyondTravel(
-                    point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name, beyond_mm=float(beyond[at])
-                )
-            )
-    return TravelEntry(
-        judged=int(known.sum()),
-        unknown=int((reach.reached & ~known).sum()),
-        outside=int((travel.outside & known).sum()),
-        axes=axes,
-        worst=sorted(worst, key=lambda each: -each.beyond_mm),
-    )
+            point, face = vector(samples.point[at]), f"F{samples.face[at]}"
+            worst.append(BeyondTravel(point=point, face=face, axis=axis.name, beyond_mm=float(beyond[at])))
+    unknown, outside = int((reach.reached & ~known).sum()), int((travel.outside & known).sum())
+    worst.sort(key=lambda each: -each.beyond_mm)
+    return TravelEntry(judged=int(known.sum()), unknown=unknown, outside=outside, axes=axes, worst=worst)
 
 
 #: Angles that are written to three digits are equal within this, deg.
@@ -251,8 +239,7 @@ def remaining(
     in the plan file; `fitting` finds the usual sizes that fit.
     """
     samples, entries = ready.samples, list[RemainingEntry]()
-    cutters = {cutter.id: cutter for cutter in ready.cutters}
-    left = ready.finished & ~done
+    cutters, left = {cutter.id: cutter for cutter in ready.cutters}, ready.finished & ~done
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
         cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
@@ -265,15 +252,10 @@ def remaining(
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
             fits = None if fitting is None else fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
-            by_size["fits"] = (
-                None
-                if fits is None
-                else [
-                    FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=fit.share)
-                    for fit in fits
-                    for c in (fit.cutter,)
-                ]
-            )
+            by_size["fits"] = None if fits is None else [
+                FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=share)
+                for c, share in fits
+            ]  # fmt: skip
         helped = _helped(steps, mine, area)
         entries.append(remaining_entry(ready, cause, mine, area, requested, helped=helped, **by_size))
     unjudged = samples.unjudged >= 0
@@ -285,13 +267,12 @@ def remaining(
 
 def _points(ready: Prepared, rows: Rows, area: Floats) -> PointsEntry | None:
     """The inside cones with a point among the faces of some samples (m,)."""
-    whole = float(area[rows].sum())
     by_face = {number: rows[ready.samples.face[rows] == number] for number in np.unique(ready.samples.face[rows]).tolist()}
     sizes = {number: float(area[mine].sum()) for number, mine in by_face.items() if ends_in_a_point(ready, number, mine)}
     if not sizes:
         return None
     faces = [f"F{number}" for number in sorted(sizes, key=lambda number: (-sizes[number], number))]
-    return PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, whole)))
+    return PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, float(area[rows].sum()))))
 
 
 def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> list[HelpEntry]:
@@ -350,8 +331,7 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, name, seconds, times = float(area.sum()) + not_sampled, "", None, dict[str, Any]()
-    short = np.zeros(0, np.int64)
+    requested, name, seconds, times, short = float(area.sum()) + not_sampled, "", None, dict[str, Any](), np.zeros(0, np.int64)
     parts = _Parts(ready, over, area, requested)
     if answers.operations is not None:
         chosen, entry = min(
@@ -525,14 +505,9 @@ def _runs(
     ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups
 ) -> Iterator[tuple[int, str, NDArray[np.bool_]]]:
     """The fewest runs, each with its setup, its cutter, and the samples (n,) that none before it reaches."""
-    verdicts = [each for _, each in over.each()]
-    if answers.least_set is None:
-        pairs = [(0, nearest(entries).id)]
-    else:
-        pairs = [(run.number, run.cutter.id) for run in answers.least_set.runs]
-    open_, done = ready.machinable, np.zeros(len(ready.samples), bool)
-    for setup, cutter in pairs:
-        mine = verdicts[setup][cutter].reached & open_[setup] & ~done
+    least, done = answers.least_set, np.zeros(len(ready.samples), bool)
+    for setup, cutter in [(0, nearest(entries).id)] if least is None else [(run.number, run.cutter.id) for run in least.runs]:
+        mine = over.each()[setup][1][cutter].reached & ready.machinable[setup] & ~done
         done |= mine
         if mine.any():
             yield setup, cutter, mine
