@@ -16,11 +16,9 @@ from plan_cutters.report.protocol import Judged
 
 def process_toml(plan: Plan) -> str:
     """Write the process of a plan as TOML: a `[[step]]` each, in their order, with what it does as a comment."""
-    process = plan.process
-    setups = ""
-    if plan.setup_proposal is not None:
-        files = " ".join(f"--setup setup-{number}.toml" for number in range(1, 1 + len(plan.setup_proposal.setups)))
-        setups = f"# In place of --setup auto: {files}\n"
+    process, proposed = plan.process, plan.setup_proposal
+    files = [f"--setup setup-{number}.toml" for number in range(1, 1 + len(proposed.setups))] if proposed else []
+    setups = f"# In place of --setup auto: {' '.join(files)}\n" if files else ""
     names = {each.id: typed(each.id, each.name) for each in plan.cutters}
     often = Counter(names.values())
     words = {each: name if often[name] == 1 else each for each, name in names.items()}
