@@ -18,7 +18,7 @@ from plan_cutters.document.features import inside_radius_entries, pattern_entrie
 from plan_cutters.document.holes import hole_entries, with_drilling
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
-from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
+from plan_cutters.document.process import OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.standard_tools import Fit
@@ -70,7 +70,7 @@ class JudgedPart:
 
     ready: Prepared
     cutters: Mapping[Cutter, JudgedCutter]  #: What is known of each cutter.
-    other_setups: Sequence[OtherSetup]  #: Of each other setup its axis, and what each cutter reaches there by its id.
+    other_setups: Sequence[Mapping[Cutter, Verdicts]]  #: What each cutter reaches in each setup but the first.
     travels: dict[str, Travel]  #: Cutter id -> where the linear axes stand; empty where that is not judged.
     searched: Work  #: The work of all searches, which bounds that between the samples unless a budget was requested.
     started: datetime.datetime  #: When the work began.
@@ -85,7 +85,7 @@ class JudgedPart:
 
     @classmethod
     def of(
-        cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
+        cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[Mapping[Cutter, Verdicts]],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
         carried: NDArray[np.int64], by_cutter: "dict[Cutter, ExplainedIn]", *, explain: bool = True,
     ) -> "JudgedPart":  # fmt: skip
@@ -101,7 +101,7 @@ class JudgedPart:
             for k, (cutter, mine) in enumerate(here.items()):
                 if cutter in by_cutter:
                     continue
-                over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
+                over, which = over_setups([mine, *(there[cutter] for there in other_setups)])
                 if explain:
                     by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
                     continue
@@ -137,15 +137,16 @@ class JudgedPart:
         """The verdicts in the first setup by cutter."""
         return {cutter: each.here for cutter, each in self.cutters.items()}
 
-    def everywhere(self) -> list[dict[Cutter, Verdicts]]:
+    def everywhere(self) -> list[Mapping[Cutter, Verdicts]]:
         """The verdicts by cutter in each setup, the first one first."""
-        return [self.here, *({c: verdicts_there[c.id] for c in self.cutters} for _, verdicts_there in self.other_setups)]
+        return [self.here, *self.other_setups]
 
     def over_setups(self) -> OverSetups:
         """The verdicts of all cutters by their ids, over all setups and in each."""
         by_id = {cutter.id: each for cutter, each in self.cutters.items()}
         reaches, here = ({name: getattr(each, word) for name, each in by_id.items()} for word in ("verdicts", "here"))
-        there = tuple((axis, dict(each)) for axis, each in self.other_setups)
+        others = ({cutter.id: verdicts for cutter, verdicts in there.items()} for there in self.other_setups)
+        there = tuple(zip((axis for axis, _ in self.ready.axes[1:]), others, strict=True))
         return OverSetups(reaches, here, {name: each.which for name, each in by_id.items()}, self.ready.scene.setup, there)
 
     @property

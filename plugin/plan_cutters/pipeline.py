@@ -17,7 +17,6 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.process import OtherSetup
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import handed, order, wanted
 from plan_cutters.domain.verdicts import Verdicts
@@ -144,7 +143,9 @@ class Run:
                 )
                 seconds[cutter] = time.perf_counter() - began
 
-        def combined(of: Prepared, others: list[OtherSetup], by_cutter: dict[Cutter, ExplainedIn], explain: bool) -> JudgedPart:
+        def combined(
+            of: Prepared, others: list[dict[Cutter, Verdicts]], by_cutter: dict[Cutter, ExplainedIn], explain: bool
+        ) -> JudgedPart:
             return JudgedPart.of(of, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
 
         if options.other_setups:
@@ -158,7 +159,7 @@ class Run:
     def complete(self, part: JudgedPart, describe: Describe) -> Result:
         """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
         clock, interim, options = self.clock, self.interim, part.ready.options
-        least = least_set(part.ready, part.here, part.other_setups)
+        least = least_set(part.ready, part.everywhere())
         interim.judged(part, describe, Answers(least_set=least))
         interim.looked(part.between(clock, self.compiling))
         interim.planned(self._answered(part, least))
@@ -176,10 +177,8 @@ class Run:
             lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both
         ) as side:
             try:
-                ask(
-                    part.ready, part.here, clock.stage, part.other_setups, searched=part.searched.looked, least=least,
-                    answered=interim.answered,
-                )  # fmt: skip
+                ask(part.ready, part.everywhere(), clock.stage, searched=part.searched.looked, least=least,
+                    answered=interim.answered)  # fmt: skip
             except KeyboardInterrupt:
                 if (planned_by_now := side.ended()) is not None:
                     interim.planned(planned_by_now[0])
@@ -219,18 +218,20 @@ def _operations(
     return operations, clock.seconds, clock.boxes
 
 
-def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:
+def _in_other_setups(
+    ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge
+) -> list[dict[Cutter, Verdicts]]:
     """Find the verdicts of each cutter in each other setup."""
-    axes, others = ready.options.other_setups, list[OtherSetup]()
+    number = len(ready.options.other_setups)
     with clock.stage("setups") as tell:
-        for k, axis in enumerate(axes):
-            done = partial(part_of, tell, parts=len(axes) * len(here))
-            by_cutter = {
-                cutter.id: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
+        done = partial(part_of, tell, parts=number * len(here))
+        return [
+            {
+                cutter: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
                 for n, (cutter, verdicts) in enumerate(here.items())
             }
-            others.append((axis, by_cutter))
-    return others
+            for k in range(number)
+        ]
 
 
 def prepare(

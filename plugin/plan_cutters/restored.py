@@ -28,7 +28,7 @@ from plan_cutters.report.question import Question, read_question
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import rotations_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters_base.stage_cache import NO_CACHE, Cache
+from plan_cutters_base.stage_cache import NO_CACHE, StageCache
 
 Arrays = Mapping[str, NDArray[Any]]
 _AGAIN = "plan the part again"
@@ -56,7 +56,7 @@ def part_of(plan: Plan, folder: Path, named: Path | None = None) -> Path:
 
 
 def restored(
-    plan: Plan, folder: Path, part: Path, clock: Clock, *, at: At = lambda whose, face: None, cache: Cache = NO_CACHE
+    plan: Plan, folder: Path, part: Path, clock: Clock, *, at: At = lambda whose, face: None, cache: StageCache | None = None
 ) -> Result:
     """The result of a plan as its folder has it.
 
@@ -71,7 +71,7 @@ def restored(
     question = read_question(arrays["question"]) if "question" in arrays else None
     if question is None:
         raise PlanError(f"made by another version, or of objects of a script: {_AGAIN}", file=file_name("npz"))
-    ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache))
+    ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache or NO_CACHE))
     over = _over_setups(plan, arrays, ready)
     travels = {
         each.id: Travel(

@@ -108,8 +108,8 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: fl
     return verdicts.freeze()
 
 
-#: Of each setup beside the first its axis, and what each cutter reaches there by its id.
-OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
+#: What each cutter reaches in each setup, the first one first.
+Everywhere = Sequence[Mapping[Cutter, Verdicts]]
 #: What looks down at the table so squarely lies on it.
 _SQUARE = 1e-6
 #: Setups that are not planned yet of which what stands around the part is kept, at most.
@@ -117,12 +117,7 @@ _TABLES = 3
 
 
 class SetupOf(NamedTuple):
-    """A setup of a state.
-
-    axis : (float, float, float)
-    number : int or None
-        Its place among those of the plan, from 0; None of one that is not planned yet.
-    """
+    """A setup of a state; `number` is its place among those of the plan, from 0, None of one that is not planned yet."""
 
     axis: Axis
     number: int | None = None
@@ -236,14 +231,13 @@ class Judgements:
     tell: Callable[[], None] = lambda: None
 
     @classmethod
-    def of(cls, ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups = ()) -> "Judgements":
+    def of(cls, ready: Prepared, everywhere: Everywhere) -> "Judgements":
         """Those of a plan."""
         judgements, wanted = cls(), ready.finished
-        for k, ((axis, _), each) in enumerate(zip(ready.axes, (None, *(there for _, there in other_setups)), strict=False)):
-            for cutter, verdicts in reaches.items():
-                mine = verdicts if each is None else each[cutter.id]
+        for k, ((axis, _), there) in enumerate(zip(ready.axes, everywhere, strict=False)):
+            for cutter, verdicts in there.items():
                 name = key(ready, cutter, SetupOf(axis, k))
-                judgements.looked[name], judgements.missed[name] = wanted.copy(), mine.not_reached & wanted
+                judgements.looked[name], judgements.missed[name] = wanted.copy(), verdicts.not_reached & wanted
         return judgements
 
     def left(self, state: State, rows: Rows) -> Rows:
@@ -306,25 +300,14 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
-    """The samples that are not reached now, and a few of them that are looked at first.
-
-    state : State
-    left : (m,) int64
-        Samples that it leaves.
-    few : int64
-        Some of them.
-    finished : Finished
-    known : Judgements
-    given : tuple of Cutter
-        All that the plan judged.
-    """
+    """The samples that are not reached now, and a few of them that are looked at first."""
 
     state: State
-    left: Rows
-    few: Rows
+    left: Rows  #: Samples (m,) that it leaves.
+    few: Rows  #: Some of them.
     finished: Finished
     known: Judgements
-    given: tuple[Cutter, ...]
+    given: tuple[Cutter, ...]  #: All that the plan judged.
 
     @classmethod
     def of(cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]) -> "Scan":

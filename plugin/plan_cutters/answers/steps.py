@@ -12,14 +12,13 @@ import numpy as np
 
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
-from plan_cutters.answers.state import Candidate, Judgements, OtherSetups, Scan, State, move_of
+from plan_cutters.answers.state import Candidate, Everywhere, Judgements, Scan, State, move_of
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.answers import MEANS
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.standard_tools import USUAL, slenderness
-from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.outcome import Advice, Step
@@ -161,15 +160,9 @@ _APART = {
 
 
 def steps(
-    ready: Prepared,
-    advice: Advice,
-    cutter: Cutter,
-    reaches: Mapping[Cutter, Verdicts],
-    other_setups: OtherSetups = (),
-    *,
-    progress: Progress | None = None,
+    ready: Prepared, advice: Advice, cutter: Cutter, everywhere: Everywhere, *, progress: Progress | None = None,
     budget: Budget | None = None,
-) -> Advice:
+) -> Advice:  # fmt: skip
     """Find what to do next, and what it gains.
 
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
@@ -177,11 +170,11 @@ def steps(
 
     It has `share`, `steps` and `areas` then.
 
-    `advice`: what was found of the cutter so far. `cutter`: one of `reaches`. `reaches`: what each given cutter reaches in the
-    plan's first setup. `other_setups`: of each other setup its axis, and what each cutter reaches there by its id. `budget`: the
-    work that it may take; what promises most is judged in any case. None: as much as it takes.
+    `advice`: what was found of the cutter so far. `cutter`: one of those given. `everywhere`: what each of them reaches in each
+    setup, the first one first. `budget`: the work that it may take; what promises most is judged in any case. None: as much as
+    it takes.
     """
-    finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
+    finished, known = Finished.of(ready), Judgements.of(ready, everywhere)
     state = State.of(ready, cutter)
     open_rows = known.left(state, np.flatnonzero(finished.wanted))
     if not len(open_rows):
@@ -196,7 +189,7 @@ def steps(
 
     known.tell = tell
     areas = patches(ready.samples, finished, open_rows)
-    scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in reaches))
+    scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in everywhere[0]))
     # What other given cutters reach is known.
     budget = budget or Budget(math.inf)
     listed, uncompared = candidates(scan, budget)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: Where the context of a command says that setups are named behind `auto`.
 _NAMED = "plan_cutters.named_setups"
-#: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
+#: What the shell itself completes, which knows about `~` and blanks.
 FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
 
@@ -275,10 +275,8 @@ def folders(request: PlanRequest) -> list[Path]:
     """The output folder of each part; none where only standard output is written."""
     if request.json_out == "-" and request.out is None and request.formats is None:
         return []
-    if request.out is not None and len(request.parts) > 1:
-        outs = [Path(request.out) / f"{Path(p).stem}-plan" for p in request.parts]
-    else:
-        outs = [Path(request.out or f"{Path(p).stem}-plan") for p in request.parts]
+    outs = [Path(request.out or "") / f"{Path(p).stem}-plan" for p in request.parts]
+    outs = [Path(request.out)] if request.out and len(outs) == 1 else outs
     if len(set(outs)) < len(outs):
         twice = next(str(out) for out in outs if outs.count(out) > 1)
         raise OptionError(f"two parts have the same name and would write to the same folder, {twice}; plan them one by one")
@@ -292,12 +290,10 @@ def _words(request: PlanRequest) -> None:
     if request.formats is not None:
         read_formats(request.formats)
     checks, several = request.check_operations is not None, len(request.parts) > 1
+    other = request.json_out not in (None, "-")
     _refuse(
         (request.process is not None and several, "--process names faces of one part: give one part"),
-        (
-            request.json_out not in (None, "-"),
-            "--json takes -, for standard output; --formats json writes plan.json into the folder",
-        ),
+        (other, "--json takes -, for standard output; --formats json writes plan.json into the folder"),
         (request.json_out and several, "--json - writes one plan: give one part, or -o DIR --formats json for a file of each"),
         (request.json_out and sys.stdout is None, "--json -: standard output is closed"),
     )
