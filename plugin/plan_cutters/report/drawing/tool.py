@@ -32,7 +32,6 @@ _PENS = {
     "fine": {"stroke": "#000", "stroke-width": "0.13"},
     "frame": {"stroke": "#000", "stroke-width": "0.25"},
     "axis": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "6 1.2 0.6 1.2"},
-    "mark": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "1.2 0.8"},
 }
 
 
@@ -90,7 +89,6 @@ class Sheet:
         self._defs = ET.SubElement(self.root, "defs")
         self._lines = ET.SubElement(self.root, "g", {"fill": "none"})
         self._texts = ET.SubElement(self.root, "g", {"font-family": _FAMILY, "fill": "#000"})
-        self._clip: str | None = None
 
     def finished(self, width: float, height: float, **data: str) -> str:
         """The sheet as text, of a size, framed."""
@@ -103,14 +101,6 @@ class Sheet:
         paper = ET.Element("rect", {"width": _mm(width), "height": _mm(height), "fill": "#fff"})
         self._lines.insert(0, paper)
         return ET.tostring(self.root, encoding="unicode") + "\n"
-
-    def window(self, x: float, y: float, width: float, height: float) -> None:
-        """From here on only what lies in a rectangle is drawn of paths; a width of 0 ends that."""
-        self._clip = None
-        if width:
-            self._clip = f"{self.key}-window"
-            within = ET.SubElement(self._defs, "clipPath", {"id": self._clip})
-            ET.SubElement(within, "rect", {"x": _mm(x), "y": _mm(y), "width": _mm(width), "height": _mm(height)})
 
     def fill(self, path: str, name: str, kind: str) -> None:
         """A closed path in the fill of a part; `kind` is its class."""
@@ -129,15 +119,14 @@ class Sheet:
         element = ET.SubElement(self._lines, "path", {"d": path, **_PENS[pen]})
         element.attrib |= {"class": kind} if kind else {}
         element.attrib |= {"fill": fill} if fill else {}
-        element.attrib |= {"clip-path": f"url(#{self._clip})"} if self._clip else {}
 
     def lines(self, points: Iterable[Point], pen: str) -> None:
         """Straight lines from point to point."""
         self.path("M" + "L".join(at(point) for point in points), pen)
 
-    def circle(self, centre: Point, radius: float, pen: str, *, fill: str = "none") -> None:
+    def dot(self, centre: Point) -> None:
         ET.SubElement(
-            self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": _mm(radius), "fill": fill, **_PENS[pen]}
+            self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": "0.4", "fill": "#000", **_PENS["fine"]}
         )
 
     def text(self, x: float, y: float, words: str, *, size: float = FONT, anchor: str = "start", bold: bool = False,
@@ -278,8 +267,6 @@ def description(cutter: Cutter, notes: list[Note], spans: list[Span], facts: lis
 _PAGE, _MARGIN, _BELOW, _ABOVE = (210.0, 297.0), 9.0, 15.0, 6.0
 #: Distance of dimension lines; of the view from what stands beside it; room for leaders; least width of a sheet.
 _COLUMN, _GAP, _LEADER, _LEAST = 6.5, 5.0, 9.0, 112.0
-#: The enlarged cutting end, room for words below it, and what is drawn smaller than this asks for it.
-_DETAIL, _LABELS, _SMALL = (44.0, 40.0), 6.0, 6.0
 #: Letters of the id, most lines of names and of ids.
 _FINE, _NAMES, _IDS = 2.2, 2, 3
 #: Parts whose lengths the notes tell as well.
@@ -303,9 +290,8 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     """A tool assembly as an SVG drawing, an `svg` element without an XML declaration.
 
     It is drawn upright, its tip at the bottom, 1:1 where that fits an A4 sheet, else in the largest standard reduction that
-    does; the sheet states which, and is as large on paper as the SVG says. What is small of the cutting end is drawn again,
-    enlarged. `name` is the title; else the cutter's own name, or its id. `data-scale` is mm on paper a mm; paths of the class
-    `part` are the silhouettes of flutes, neck, shank and holder.
+    does; the sheet states which, and is as large on paper as the SVG says. `name` is the title; else the cutter's own name, or
+    its id. `data-scale` is mm on paper a mm; paths of the class `part` are the silhouettes of flutes, neck, shank and holder.
 
     >>> "no holder" in draw(Cutter.parse("R6L80"))
     True
@@ -317,13 +303,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     sheet = Sheet(title, description(cutter, notes, spans, facts))
     widest = max(width_of(words) for note in notes for words in note.lines)
     high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + LINE + 8.0)
-    available = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER
-    scale = _scale(line, spans, available - widest, high)
-    if _zoom(cutter, line, scale):
-        widest = max(widest, _DETAIL[0] + 12.0)
-        scale = _scale(line, spans, available - widest, high)
-    zoom = _zoom(cutter, line, scale)
-    enlarged = _DETAIL[1] + 2 * LINE if zoom else 0.0
+    scale = _scale(line, spans, _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - widest, high)
     columns = _columns(spans, scale)
     wide, tall = scale * line.widest, scale * line.height
     right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
@@ -331,7 +311,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     # A sheet is no narrower than its title: the view stands in its middle.
     right = 0.5 * (width + right - widest - _MARGIN)
     top = _MARGIN + _ABOVE
-    bottom = top + max(tall + _BELOW, sum(note.height for note in notes) + enlarged)
+    bottom = top + max(tall + _BELOW, sum(note.height for note in notes))
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
     _dimensions(sheet, columns, line, view)
@@ -341,9 +321,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
         sheet.lines(((view.x + side, view.y + 0.8), (view.x + side, y + 1.2)), "fine")
     sheet.between((view.x - r, y), (view.x + r, y))
     sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
-    _leaders(sheet, notes, view, wide, (right, top, bottom - enlarged))
-    if zoom:
-        _detail(sheet, cutter, line, view, zoom, (right, bottom - _DETAIL[1]))
+    _leaders(sheet, notes, view, wide, (right, top, bottom))
     end = _block(sheet, (title, cutter.id), facts, line.parts, scale, bottom + 3.0, width)
     return sheet.finished(width, end, scale=f"{scale:.10g}")
 
@@ -354,10 +332,6 @@ def _scale(line: Outline, spans: list[Span], wide: float, high: float) -> float:
     while 2.0 * scale * line.widest + len(_columns(spans, scale)) * _COLUMN > wide:
         scale = standard(0.9 * scale)
     return scale
-
-
-def _words(scale: float) -> str:
-    return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
 
 
 def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
@@ -442,46 +416,9 @@ def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins:
         point = view(note.at)
         elbow = (view.x + wide + 2.0, point[1])
         sheet.lines((point, elbow, (x - 3.0, y + 0.5 * size), (x - 1.0, y + 0.5 * size)), "fine")
-        sheet.circle(point, 0.4, "fine", fill="#000")
+        sheet.dot(point)
         for i, words in enumerate(note.lines):
             sheet.text(x, y + LINE * (i + 0.75), words)
-
-
-def _zoom(cutter: Cutter, line: Outline, scale: float) -> float:
-    """The scale of the enlarged cutting end; 0 where nothing of it is small."""
-    features = [s for s in line.of("flutes") if s.centre or cutter.shape == "form"]
-    if not features:
-        return 0.0
-    least = min(features, key=lambda s: s.length)
-    high = flute_length(cutter) if cutter.shape == "form" else least.end[1]
-    zoom = standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
-    return zoom if scale * min(2.0 * cutter.radius, least.length) < _SMALL and zoom > scale else 0.0
-
-
-def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: float, place: Point) -> None:
-    """The cutting end, enlarged, right of its axis."""
-    x, y = place
-    tall = _DETAIL[1] - _LABELS
-    near = _View(x, y + tall, zoom)
-    sheet.window(x - 0.2, y, _DETAIL[0] + 0.4, tall + 0.4)
-    for part in line.parts:
-        sheet.fill(_silhouette(line.of(part), near), part, f"detail {part}")
-    sheet.window(0, 0, 0, 0)
-    sheet.lines(((x, y - 1.0), (x, y + tall + 3.0)), "axis")
-    sheet.text(x, y - 2.5, f"A ({_words(zoom)})", bold=True)
-    seen = view((0.5 * cutter.radius, 0.5 * tall / zoom))
-    radius = max(2.2, math.dist(seen, (view.x, view.y)))
-    sheet.circle(seen, radius, "mark")
-    sheet.text(seen[0] + 0.75 * radius + 0.6, seen[1] + 0.75 * radius + 2.5, "A", bold=True)
-    for segment in line.of("flutes"):
-        # The highest of some points of an arc that can be seen.
-        points = [share for share in (0.5, 0.25, 0.1) if segment.at(share)[1] <= 0.9 * tall / zoom]
-        if segment.centre and points:
-            point, (a, b) = near(segment.at(points[0])), segment.direction(points[0])
-            end = (point[0] + 5.0 * b, point[1] + 5.0 * a)
-            sheet.lines((end, point), "fine")
-            sheet.arrow(point, end)
-            sheet.text(end[0] + 0.6, end[1] + 1.0, f"R{length(segment.radius)}")
 
 
 def _block(
@@ -501,7 +438,7 @@ def _block(
         sheet.text(left, y - 0.4, words, size=_FINE)
     sheet.lines(((4.0, top), (width - 4.0, top)), "frame")
     y += 1.0
-    scale_words = f"scale {_words(scale)}, in mm"
+    scale_words = f"scale 1:{1.0 / scale:g}, in mm"
     for i, words in enumerate(facts):
         y += LINE
         fact = wrapped(words, available - (width_of(scale_words) + 4.0 if i == 0 else 0.0), FONT, 1)
