@@ -195,7 +195,6 @@ class Run:
 
 
 def _motions(ready: Prepared) -> int:
-    """How many motions of the whole part there are."""
     return sum(len(each.motions) for each in ready.patterns if each.whole)
 
 

@@ -63,29 +63,13 @@ def judged_proposed(
 ) -> Described:
     """Propose setups, the fewest of up to three that serve nearly all, and judge them.
 
-    Parameters
-    ----------
-    stages : Stages
-    part : anything that `plan` takes
-    options : Options
-        With `propose`.
-    folder : str
-        Where the setups will be written; empty where they will not be.
-    stand : callable, optional
-        Called with what gives such a pair of the verdicts alone, as soon as those of the first proposal stand, in its first setup
-        and in all.
+    `part` is anything that `plan` takes; `options` have `propose`; `folder` is where the setups will be written, empty where they
+    will not be. `stand` is called with what gives such a pair of the verdicts alone, as soon as those of the first proposal
+    stand, in its first setup and in all.
 
-    Returns
-    -------
-    part : JudgedPart
-        In the first proposal that holds what it promised; where none of three does, in that which reaches most.
-    describe : callable
-        Gives a plan of it with its proposal, which says so.
-
-    Raises
-    ------
-    OptionError
-        In no direction is anything within the limits or reached, or no proposal can be planned.
+    Returns the part in the first proposal that holds what it promised, or, where none of three does, in that which reaches most;
+    and what gives a plan of it with its proposal. An OptionError where in no direction anything is within the limits or reached,
+    or no proposal can be planned.
     """
     words = _words(options)
     unproposed, stock = replace(options, propose=False, fixtures=(), stock=PART), Stock.of(options.stock)
@@ -167,7 +151,6 @@ def _words(options: Options) -> tuple[str, ...]:
 
 
 def _among(words: tuple[str, ...]) -> str:
-    """What holds the part, in words."""
     return "over a table" if words[0] == TABLE else f"held by {words[0]}"
 
 
@@ -248,7 +231,6 @@ def _in_other_setups(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]
 
 
 def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -> ProposedSetup:
-    """The entry of a proposed setup."""
     held = _held(ranking, k)
     return filled(
         ProposedSetup, held, axis=_axis(ranking, k), stands_on=[] if held.stock else _rests_on(ranking, k), clamping=held.kind,

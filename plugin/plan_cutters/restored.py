@@ -60,12 +60,8 @@ def restored(
 ) -> Result:
     """The result of a plan as its folder has it.
 
-    Raises
-    ------
-    CadIoError
-        The part cannot be read.
-    PlanError
-        The arrays are missing or not those of the plan, the part or a fixture has changed, or it was another version.
+    A CadIoError where the part cannot be read; a PlanError where the arrays are missing or not those of the plan, the part or a
+    fixture has changed, or it was another version.
     """
     arrays = _arrays(plan, folder, "npz")
     question = read_question(arrays["question"]) if "question" in arrays else None

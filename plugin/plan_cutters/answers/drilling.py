@@ -52,12 +52,8 @@ def drilled(ready: Prepared, done: NDArray[np.bool_], used: Sequence[int] = ()) 
     A drill of its diameter does, the nearest, of equal ones the shortest; else a reamer behind a drill; before a drill comes a
     centre drill where there is one. Countersinks and counterbores are made by tools of their own.
 
-    Parameters
-    ----------
-    done : (n,) bool
-        Samples that mills reach: the bottom of a hole may be among them.
-    used : sequence of int
-        Setups that are there anyway, which come first.
+    `done` (n,): samples that mills reach: the bottom of a hole may be among them. `used`: setups that are there anyway, which
+    come first.
     """
     maker = _Maker(ready, sorted(made_of(ready.options.libraries), key=lambda each: each.body.length), done, used)
     return [maker.bored(hole) for hole in ready.holes]

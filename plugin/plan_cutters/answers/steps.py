@@ -81,7 +81,6 @@ def _files(ready: Prepared) -> list[str]:
 
 
 def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
-    """Name the proposed setups, what holds the part there, and the faces to be finished."""
     part = ready.scene.part
     words = [word for file in _files(ready) for word in ("--setup", shlex.quote(file))]
     if not words:

@@ -93,7 +93,6 @@ def command(request: MachinesRequest) -> int:
 
 
 def _angles(text: str) -> dict[str, float]:
-    """Angles, rad, by the names of the axes."""
     angles: dict[str, float] = {}
     for word in text.split(","):
         name, _, value = word.partition("=")
@@ -152,7 +151,6 @@ def _list(machines: "Sequence[Machine]", console: "Console") -> None:
 
 
 def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> None:
-    """A machine for people."""
     from rich.table import Table
 
     from plan_cutters.machines.explain import limits_text, summary, vector_text

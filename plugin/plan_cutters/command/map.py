@@ -216,7 +216,6 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
 
 
 def _round(vector: Iterable[float]) -> list[float]:
-    """Coordinates without the noise of rounding."""
     return [round(float(x), 9) for x in vector]
 
 
@@ -265,7 +264,6 @@ def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], out
 
 
 def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
-    """The free intervals for people."""
     from rich.table import Table
 
     from plan_cutters.files.pictures import NO_PICTURES

@@ -29,14 +29,9 @@ if TYPE_CHECKING:
 
 
 def one_part(
-    part: str,
-    out: Path | None,
-    options: "Options",
-    request: "PlanRequest",
-    began: float | None = None,
-    omitted: Mapping[int, str] | None = None,
-    part_cases: "PartCases | None" = None,
-) -> tuple[int, str]:
+    part: str, out: Path | None, options: "Options", request: "PlanRequest", began: float | None,
+    omitted: Mapping[int, str] | None, part_cases: "PartCases | None",
+) -> tuple[int, str]:  # fmt: skip
     """Plan one part into a folder, None for none; exit code and a line about it.
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number;

@@ -129,7 +129,6 @@ class Command(click.Command):
 
 
 def _help_all(ctx: click.Context, param: click.Parameter, requested: bool) -> None:
-    """Print all of the help, and end."""
     if not requested or ctx.resilient_parsing:
         return
     ctx.meta[_ALL] = True
@@ -280,7 +279,6 @@ def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., A
 
 
 def _of_click(option: Option) -> dict[str, Any]:
-    """What click is told of an option."""
     more: dict[str, Any] = {"help": option.help, "brief": option.brief}
     if option.kind is bool:
         more |= {"is_flag": True, **({"flag_value": False} if option.default else {})}

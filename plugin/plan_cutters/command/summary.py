@@ -190,7 +190,6 @@ def _not_split(plan: "Plan") -> Iterator[str]:
 
 
 def _apart(lines: Sequence[Any]) -> list[Any]:
-    """A paragraph, set apart, if there is any."""
     return ["", *lines] if lines else []
 
 

@@ -133,7 +133,6 @@ def _holders(request: ToolsRequest) -> int:
 
 
 def _plain(library: "Library") -> dict[str, Any]:
-    """A library as JSON has it."""
     from plan_cutters.domain.shapes import flute_length
 
     return {
@@ -195,7 +194,6 @@ def _listed(console: "Console", row: list[str]) -> None:
 
 
 def _row(entry: "Entry") -> list[str]:
-    """A tool as the table has it."""
     codes, cutter = dict(entry.given), entry.cutter
     if entry.drill is not None:
         codes |= {"LCF": entry.drill.body.flutes or codes.get("LCF", 0.0)}

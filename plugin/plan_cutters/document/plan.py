@@ -182,19 +182,10 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
 
 @reporting(lambda ready: ready.options.reported_unit)
 def plan_of(
-    ready: Prepared,
-    entries: Sequence[CutterEntry],
-    selected: str | None,
-    selection: Selection,
-    started: datetime.datetime,
-    answers: Answers,
-    over: OverSetups,
-    setups: Sequence[SetupEntry] = (),
-    sharp_edges: Sequence[SharpEdgeEntry] = (),
-    inside_radii: Sequence[InsideRadiusEntry] = (),
-    patterns: Sequence[PatternEntry] = (),
-    fitting: Fitting | None = None,
-) -> Plan:
+    ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection, started: datetime.datetime,
+    answers: Answers, over: OverSetups, setups: Sequence[SetupEntry], sharp_edges: Sequence[SharpEdgeEntry],
+    inside_radii: Sequence[InsideRadiusEntry], patterns: Sequence[PatternEntry], fitting: Fitting,
+) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
@@ -273,14 +264,9 @@ def machine_entry(ready: Prepared) -> MachineEntry:
 
 
 def completed(
-    entries: Sequence[CutterEntry],
-    ready: Prepared,
-    answers: Answers,
-    over: OverSetups,
-    beyond: NDArray[np.bool_],
-    travels: Mapping[str, Travel],
-    between: Mapping[str, AreaEntry],
-) -> list[CutterEntry]:
+    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, over: OverSetups, beyond: NDArray[np.bool_],
+    travels: Mapping[str, Travel], between: Mapping[str, AreaEntry],
+) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was found after them."""
     completed_entries, sources, samples, inside = [], ready.options.sources, ready.samples, ready.inside_bodies
     kinematics, frames = ready.conditions.kinematics, [each.kinematics for each in ready.setups]

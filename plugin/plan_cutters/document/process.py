@@ -230,9 +230,14 @@ def reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[Pr
 
 
 def remaining(
-    ready: Prepared, done: NDArray[np.bool_], why: Reasons, area: Floats, requested: float, steps: Sequence[Step] = (),
-    fitting: Fitting | None = None,
-) -> list[RemainingEntry]:  # fmt: skip
+    ready: Prepared,
+    done: NDArray[np.bool_],
+    why: Reasons,
+    area: Floats,
+    requested: float,
+    steps: Sequence[Step],
+    fitting: Fitting,
+) -> list[RemainingEntry]:
     """List what is left by cause, the largest area first.
 
     `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand
@@ -250,7 +255,7 @@ def remaining(
             large = np.bincount(samples.face[rows], area[rows])[samples.face[rows]] >= _SPEAKS
             rows = rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
-            fits = None if fitting is None else fitting(cutter, rows, area)
+            fits = fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
             by_size["fits"] = None if fits is None else [
                 FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=share)
@@ -320,9 +325,8 @@ _BELOW = -0.01
 
 
 def process_entry(
-    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str,
-    fitting: Fitting | None = None,
-) -> ProcessEntry:  # fmt: skip
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str, fitting: Fitting
+) -> ProcessEntry:
     """Put together what the given cutters, setups and operations finish.
 
     The plan of operations among the `answers` is the process where there is one, else the fewest runs of cutters and setups.

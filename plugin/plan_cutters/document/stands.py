@@ -40,7 +40,6 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
 
 
 def _stock(ready: Prepared, conditions: Conditions, blank: Fixture, volume: float) -> StockEntry:
-    """The entry of stock about a part of a volume, mm3."""
     surroundings, rate = conditions.surroundings, ready.options.removal_rate
     chord = CHORD_REQUESTED * ready.scene.asked
     body = stock_body(blank, vector(conditions.setup), surroundings.alone or surroundings, chord, {})
