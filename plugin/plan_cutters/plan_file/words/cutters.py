@@ -130,14 +130,11 @@ def remaining_text(plan: Plan, c: CutterEntry) -> str:
     if deep:
         worst = max(deep, key=lambda w: w.depth_mm or 0.0)
         sure = "may be" if worst.verdict == "undecided" else "is"
-        where = (
-            f"; the worst is on {worst.face} at ({place(worst.point)}), "
-            f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
-        )
+        deep_there = f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
+        where = f"; the worst is on {worst.face} at ({place(worst.point)}), {deep_there}"
     return (
         f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached:,} of {plan.samples.finished:,} "
-        "samples): "
-        f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}."
+        f"samples): {why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}."
     )
 
 
@@ -173,9 +170,7 @@ def spot(witness: WitnessEntry) -> str:
 
 def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
     """The deepest of each face and reason first, then the others; the deepest first in both."""
-    seen: set[tuple[str, str]] = set()
-    first: list[WitnessEntry] = []
-    rest: list[WitnessEntry] = []
+    seen, first, rest = set[tuple[str, str]](), list[WitnessEntry](), list[WitnessEntry]()
     for w in sorted((w for w in witnesses if not w.inside_bodies), key=lambda w: -(w.depth_mm or 0.0)):
         (rest if (w.face, w.reason) in seen else first).append(w)
         seen.add((w.face, w.reason))
@@ -259,7 +254,7 @@ def details(plan: Plan) -> Iterator[str]:
     e = plan.effective
     # The end of a range of rotations: here a whole turn is one.
     turns = ["360°" if degrees == 360.0 else angle(degrees) for degrees in e.rotation_deg]
-    yield (f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
+    yield f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}."
     yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
     yield (
         f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "

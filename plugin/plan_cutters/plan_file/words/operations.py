@@ -255,20 +255,18 @@ def turning(each: OperationEntry) -> str:
         return ""
     if not turn.pieces_mm2:
         return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
-    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
-    text = (
-        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
-        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
-    )
+    texts = [
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in "
+        f"{count(len(turn.pieces_mm2), 'piece')}, with axes that turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
+    ]
     if turn.angles_deg is not None:
-        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
-    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
-        text += (
-            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
-        )
+        texts.append(", ".join(f"{name} {low:.0f} to {high:.0f} deg" for name, (low, high) in turn.angles_deg.items()))
+        if turn.held_share < 1.0 - ROUNDING:
+            back = "no solution of the rotary axes goes from end to end without turning back"
+            texts.append(f"in {some(1.0 - turn.held_share)} of that {back}")
     if turn.singular_mm2 > 0.0:
-        text += f"; {area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
-    return f"{text}."
+        texts.append(f"{area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast")
+    return f"{'; '.join(texts)}."
 
 
 class OperationText(NamedTuple):

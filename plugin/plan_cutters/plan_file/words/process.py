@@ -74,10 +74,10 @@ class StepRow(NamedTuple):
     cutter: str
     share: str
     took: str
-    faces: list[str]
-    alone: str
-    operation: str
     at: int
+    faces: Sequence[str] = ()
+    alone: str = ""
+    operation: str = ""
     holes: int = 0
 
 
@@ -154,14 +154,13 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         many = percent(sum(step.share for step in rest), some=True, whole=False)
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
-    least, step = min(known, default=(0.0, 0))
-    clearance = (
-        f"Least clearance of neck, shank and holder: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}."
-        if known
-        else ""
-    )
-    if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
-        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`."
+    clearance = ""
+    if known:
+        least, step = min(known)
+        wider = least < MARGIN and plan.effective.holder_clearance_mm < MARGIN
+        more = f"; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`" if wider else ""
+        much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
+        clearance = f"Least clearance of neck, shank and holder: {much}{more}."
     return ProcessStory(
         rows=tuple(rows),
         stands=tuple(each.text for each in process.setups),
@@ -227,9 +226,6 @@ def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool)
         cutter=drilling_words(step),
         share=count(len(step.holes), "hole"),
         took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
-        faces=[],
-        alone="",
-        operation="",
         at=step.setup,
         holes=len(step.holes),
     )
@@ -249,7 +245,8 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
         how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
-        how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
+        are = "is" if len(setup.stands_on or ()) == 1 else "are"
+        how = f"nothing holds it yet{f'; {on} {are} below' if on else ''}"
     else:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
@@ -289,11 +286,7 @@ def _besides(process: ProcessEntry) -> str:
     return f"Between steps: {', '.join(each)}." if each else ""
 
 
-def _is_are(setup: ProcessSetup) -> str:
-    return "is" if len(setup.stands_on or ()) == 1 else "are"
-
-
-def _fitting(faces: list[str], width: int) -> str:
+def _fitting(faces: Sequence[str], width: int) -> str:
     """As many faces as fit into a width, and how many more there are.
 
     >>> _fitting(["F1", "F22", "F3"], 20), _fitting(["F1", "F22", "F3"], 8), _fitting(["F1"], 1)

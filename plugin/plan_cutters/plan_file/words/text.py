@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import count, reporting, sentence
+from plan_cutters.domain.figures import count, listed, reporting, sentence
 from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
@@ -101,33 +101,29 @@ def story_of(plan: Plan) -> Story:
 
 
 class Chip(NamedTuple):
-    """A kind (`good`, `unsure` or `bad`: its colours), a sign, and a word."""
+    """The tone of a text, a sign, and a word."""
 
-    kind: str
+    tone: Tone
     sign: str
     word: str
+
+    @property
+    def kind(self) -> str:
+        """`good`, `unsure` or `bad`: its colours."""
+        return "unsure" if self.tone == "partly" else self.tone
 
 
 #: Of a cutter: feasible, not, undecided.
 CHIPS = {True: Chip("good", "✓", "Feasible"), False: Chip("bad", "✕", "Not feasible"), None: Chip("unsure", "?", "Undecided")}
 #: Where it says more than that.
-_WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
-_IN_PART = Chip("unsure", "◐", "Feasible in part")
-#: The tone of a text, by its chip.
-TONES: dict[Chip, Tone] = {
-    CHIPS[True]: "good",
-    CHIPS[False]: "bad",
-    CHIPS[None]: "unsure",
-    _WHERE_JUDGED: "unsure",
-    _IN_PART: "partly",
-}
+_WHERE_JUDGED, _IN_PART = Chip("unsure", "!", "Feasible where judged"), Chip("partly", "◐", "Feasible in part")
 
 
 def chip(plan: Plan, story: Story) -> Chip:
     """The verdict on the part. Feasible without more words is only what the exit code calls so, too."""
     good = story.headline.good
-    if good:
-        return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
+    if good and (could_not(plan) or unseen(plan)):
+        return _WHERE_JUDGED
     if good is None and not plan.process.finished and any(c.blocked for c in plan.cutters):
         return _IN_PART
     return CHIPS[good]
@@ -162,10 +158,10 @@ def text_of(plan: Plan) -> TextEntry:
     chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
         headline=f"{story.headline.title}.",
-        tone=TONES[chip(plan, story)],
+        tone=chip(plan, story).tone,
         lines=process_lines(plan, story),
         cutters={each.id: each.sentence for each in story.cutters},
-        verdicts={name: VerdictText(tone=TONES[each], word=each.word) for name, each in chips.items()},
+        verdicts={name: VerdictText(tone=each.tone, word=each.word) for name, each in chips.items()},
         shares={each.id: each.shares for each in story.cutters},
     )
 
@@ -246,8 +242,7 @@ def _alone(story: Story) -> list[str]:
     why = {c.id: f" ({c.reason})" if c.reason else "" for c in story.cutters}
     each = [f"{c.name} {'all' if c.feasible else f'{c.reached}{why[c.id]}'}" for c in story.cutters]
     for shown in range(min(_CUTTERS, len(each)), 0, -1):
-        more = f" and {len(each) - shown} more" if len(each) > shown else ""
-        text = f"Each alone reaches: {', '.join(each[:shown])}{more}."
+        text = f"Each alone reaches: {listed(each, shown)}."
         if len(wrapped([text], len(text))) <= _ALONE:
             break
     return [text]
