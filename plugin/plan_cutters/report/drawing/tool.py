@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.outline import AnyPart, Outline, Point, Segment, outline
+from plan_cutters.domain.outline import Outline, Point, Segment, outline
 from plan_cutters.domain.shapes import SAME, flank, flute_length, stages, top_radius
 from plan_cutters.report.drawing.posture_map import printable, standard
 
@@ -20,13 +20,8 @@ _FAMILY = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 #: Length and half width of arrow heads.
 ARROW, _HALF = 2.4, 0.4
 
-#: Fills: the ground; colour, angle, deg, and distance of the strokes on it, and how long each of them is (distance: a line).
-FILLS: dict[str, tuple[str, str, float, float, float]] = {
-    "flutes": ("#FFD27A", "#7A4A00", 45.0, 1.2, 1.2),
-    "neck": ("#FFF6DD", "#8C6D1F", 45.0, 1.3, 0.3),
-    "shank": ("#D9D9D9", "#D9D9D9", 0.0, 1.0, 0.0),
-    "holder": ("#BBD5EA", "#2F5D86", -45.0, 2.6, 2.6),
-}
+#: A note tells what each part is: colours only help.
+FILLS = {"flutes": "#FFD27A", "neck": "#FFF6DD", "shank": "#D9D9D9", "holder": "#BBD5EA"}
 _PENS = {
     "edge": {"stroke": "#000", "stroke-width": "0.35", "stroke-linejoin": "round"},
     "fine": {"stroke": "#000", "stroke-width": "0.13"},
@@ -86,7 +81,6 @@ class Sheet:
         )
         ET.SubElement(self.root, "title", {"id": f"{self.key}-title"}).text = title
         ET.SubElement(self.root, "desc", {"id": f"{self.key}-desc"}).text = description
-        self._defs = ET.SubElement(self.root, "defs")
         self._lines = ET.SubElement(self.root, "g", {"fill": "none"})
         self._texts = ET.SubElement(self.root, "g", {"font-family": _FAMILY, "fill": "#000"})
 
@@ -101,19 +95,6 @@ class Sheet:
         paper = ET.Element("rect", {"width": _mm(width), "height": _mm(height), "fill": "#fff"})
         self._lines.insert(0, paper)
         return ET.tostring(self.root, encoding="unicode") + "\n"
-
-    def fill(self, path: str, name: str, kind: str) -> None:
-        """A closed path in the fill of a part; `kind` is its class."""
-        ground, colour, angle, gap, stroke = FILLS[name]
-        id_ = f"{self.key}-{name}"
-        if self._defs.find(f"pattern[@id='{id_}']") is None:
-            pattern = ET.SubElement(self._defs, "pattern", {"id": id_, "width": _mm(gap), "height": _mm(gap), "patternUnits":
-                                "userSpaceOnUse", "patternTransform": f"rotate({angle:g})"})  # fmt: skip
-            ET.SubElement(pattern, "rect", {"width": _mm(gap), "height": _mm(gap), "fill": ground})
-            if stroke:
-                line = {"d": f"M0 {_mm(0.5 * gap)}h{_mm(stroke)}", "stroke": colour, "stroke-width": "0.25"}
-                ET.SubElement(pattern, "path", line)
-        self.path(path, "edge", fill=f"url(#{id_})", kind=kind)
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:
         element = ET.SubElement(self._lines, "path", {"d": path, **_PENS[pen]})
@@ -183,18 +164,6 @@ class Note(NamedTuple):
         return LINE * len(self.lines) + 0.8
 
 
-class Span(NamedTuple):
-    """A length along the axis, between two heights, and its number."""
-
-    low: float
-    high: float
-    name: str
-
-    @property
-    def number(self) -> str:
-        return length(self.high - self.low)
-
-
 def across(radius: float, upper: float | None = None) -> str:
     words = f"Ø{length(2 * radius)}"
     return words if upper is None or upper == radius else f"{words} to Ø{length(2 * upper)}"
@@ -235,16 +204,11 @@ def notes_of(cutter: Cutter, line: Outline) -> list[Note]:
     return notes
 
 
-def spans_of(cutter: Cutter) -> list[Span]:
-    top, spans = flute_length(cutter), []
-    if stages(cutter):
-        spans.append(Span(0.0, top, "flutes"))
-    spans += [Span(low, low + stage.length, part) for part, low, stage in stages(cutter) if part != "holder"]
-    spans.append(Span(0.0, cutter.length, "stick-out" if cutter.holder else "length"))
-    if cutter.holder:
-        end = cutter.length + sum(stage.length for stage in cutter.holder.stages)
-        spans += [Span(cutter.length, end, "holder"), Span(0.0, end, "overall")]
-    return spans
+def heights_of(cutter: Cutter) -> dict[str, float]:
+    """Heights over the tip that have a dimension line, mm, the lowest first."""
+    if cutter.holder is None:
+        return {"length": cutter.length}
+    return {"stick-out": cutter.length, "overall": cutter.length + sum(stage.length for stage in cutter.holder.stages)}
 
 
 def facts_of(cutter: Cutter) -> list[str]:
@@ -256,11 +220,12 @@ def facts_of(cutter: Cutter) -> list[str]:
     return facts + clearance
 
 
-def description(cutter: Cutter, notes: list[Note], spans: list[Span], facts: list[str]) -> str:
+def description(cutter: Cutter, notes: list[Note], facts: list[str]) -> str:
     """All of it in words, for whoever sees no picture; nothing is left out here."""
-    form = "; ".join(f"{across(r)} at height {length(h)}" for r, h in cutter.outline)
     lines = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
-    return "; ".join([*lines, *(f"{span.name} {span.number}" for span in spans), *facts, *([form] if form else [])]) + "."
+    lines += [f"{name} {length(height)}" for name, height in heights_of(cutter).items()]
+    form = [f"{across(r)} at height {length(h)}" for r, h in cutter.outline]
+    return "; ".join([*lines, *facts, *form]) + "."
 
 
 #: A4 upright, its margin, and what stands around the view: room for arrows below the tip and for the axis above the end.
@@ -269,8 +234,6 @@ _PAGE, _MARGIN, _BELOW, _ABOVE = (210.0, 297.0), 9.0, 15.0, 6.0
 _COLUMN, _GAP, _LEADER, _LEAST = 6.5, 5.0, 9.0, 112.0
 #: Letters of the id, most lines of names and of ids.
 _FINE, _NAMES, _IDS = 2.2, 2, 3
-#: Parts whose lengths the notes tell as well.
-_NOTED = ("flutes", "neck", "shank")
 #: Directions closer to each other than this have no edge between them, rad.
 _SMOOTH = 1e-4
 
@@ -298,15 +261,14 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     """
     line = outline(cutter)
     title = printable(name or cutter.name or cutter.id)
-    notes, spans = notes_of(cutter, line), spans_of(cutter)
-    facts = facts_of(cutter)
-    sheet = Sheet(title, description(cutter, notes, spans, facts))
+    notes, heights, facts = notes_of(cutter, line), heights_of(cutter), facts_of(cutter)
+    sheet = Sheet(title, description(cutter, notes, facts))
     widest = max(width_of(words) for note in notes for words in note.lines)
-    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + LINE + 8.0)
-    scale = _scale(line, spans, _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - widest, high)
-    columns = _columns(spans, scale)
+    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + 8.0)
+    broad = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - widest - len(heights) * _COLUMN
+    scale = min(1.0, standard(min(broad / (2.0 * line.widest), high / line.height)))
     wide, tall = scale * line.widest, scale * line.height
-    right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
+    right = _MARGIN + len(heights) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
     width = max(_LEAST, right + widest + _MARGIN)
     # A sheet is no narrower than its title: the view stands in its middle.
     right = 0.5 * (width + right - widest - _MARGIN)
@@ -314,7 +276,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     bottom = top + max(tall + _BELOW, sum(note.height for note in notes))
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
-    _dimensions(sheet, columns, line, view)
+    _dimensions(sheet, heights, line, view)
     # The cutting diameter, below the tip.
     y, r = view.y + 9.0, view.scale * cutter.radius
     for side in (-r, r):
@@ -322,42 +284,8 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     sheet.between((view.x - r, y), (view.x + r, y))
     sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
     _leaders(sheet, notes, view, wide, (right, top, bottom))
-    end = _block(sheet, (title, cutter.id), facts, line.parts, scale, bottom + 3.0, width)
+    end = _block(sheet, (title, cutter.id), facts, scale, bottom + 3.0, width)
     return sheet.finished(width, end, scale=f"{scale:.10g}")
-
-
-def _scale(line: Outline, spans: list[Span], wide: float, high: float) -> float:
-    """The largest standard scale, 1:1 at most, in which the view fits a width with its dimension lines, and a height."""
-    scale = min(1.0, standard(min(wide / (2.0 * line.widest), high / line.height)))
-    while 2.0 * scale * line.widest + len(_columns(spans, scale)) * _COLUMN > wide:
-        scale = standard(0.9 * scale)
-    return scale
-
-
-def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
-    """Spans and what is written on them in columns, from the view outwards: short ones first, and none over another's words.
-
-    A span of the cutter too short for its words has its number alone; one that is too short for that is left to the notes.
-    """
-    columns: list[list[tuple[Span, str]]] = []
-    taken: list[list[Point]] = []
-    for span in sorted(spans, key=lambda each: each.high - each.low):
-        column_width, words = scale * (span.high - span.low), f"{span.name} {span.number}"
-        if span.name in _NOTED and width_of(words) > column_width:
-            words = span.number
-            if max(width_of(words), 3.0 * ARROW) > column_width:
-                continue
-        middle, half = 0.5 * scale * (span.low + span.high), 0.5 * max(column_width, width_of(words) + 1.0)
-        mine = (middle - half, middle + half)
-        for column, others in zip(columns, taken, strict=True):
-            if all(mine[1] <= low + 1e-6 or mine[0] >= high - 1e-6 for low, high in others):
-                column.append((span, words))
-                others.append(mine)
-                break
-        else:
-            columns.append([(span, words)])
-            taken.append([mine])
-    return columns
 
 
 def _silhouette(segments: tuple[Segment, ...], view: _View) -> str:
@@ -377,7 +305,7 @@ def _side(segment: Segment, view: _View, to: Point, side: float = 1.0) -> str:
 
 def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
     for part in line.parts:
-        sheet.fill(_silhouette(line.of(part), view), part, f"part {part}")
+        sheet.path(_silhouette(line.of(part), view), "edge", fill=FILLS[part], kind=f"part {part}")
     for below, above in zip(line.segments[:-1], line.segments[1:], strict=True):
         # Circles along which the outline has an edge: seen from the side they are lines across.
         (a, b), (c, d) = below.direction(1.0), above.direction(0.0)
@@ -386,18 +314,17 @@ def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
     sheet.lines(((view.x, view.y + 4.0), (view.x, view.y - view.scale * line.height - 4.0)), "axis")
 
 
-def _dimensions(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
-    """Dimension lines along the axis, in columns left of the view, each from the largest radius at its height."""
+def _dimensions(sheet: Sheet, heights: dict[str, float], line: Outline, view: _View) -> None:
+    """Dimension lines from the tip up, left of the view, each from the largest radius at its height."""
     ends = [end for segment in line.segments for end in (segment.start, segment.end)]
-    for i, column in enumerate(columns):
+    for i, (name, height) in enumerate(heights.items()):
         x = view.x - view.scale * line.widest - _GAP - i * _COLUMN
-        for span, words in column:
-            low, high = view.y - view.scale * span.low, view.y - view.scale * span.high
-            for height, y in ((span.low, low), (span.high, high)):
-                radius = max((r for r, h in ends if abs(h - height) <= 1e-6), default=0.0)
-                sheet.lines(((view.x - view.scale * radius - 0.8, y), (x - 1.2, y)), "fine")
-            sheet.between((x, low), (x, high))
-            sheet.text(x - 1.0, 0.5 * (low + high), words, anchor="middle", upright=True)
+        high = view.y - view.scale * height
+        for at_height, y in ((0.0, view.y), (height, high)):
+            radius = max((r for r, h in ends if abs(h - at_height) <= 1e-6), default=0.0)
+            sheet.lines(((view.x - view.scale * radius - 0.8, y), (x - 1.2, y)), "fine")
+        sheet.between((x, view.y), (x, high))
+        sheet.text(x - 1.0, 0.5 * (view.y + high), f"{name} {length(height)}", anchor="middle", upright=True)
 
 
 def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins: tuple[float, float, float]) -> None:
@@ -421,10 +348,8 @@ def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins:
             sheet.text(x, y + LINE * (i + 0.75), words)
 
 
-def _block(
-    sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[AnyPart, ...], scale: float, top: float, width: float
-) -> float:
-    """The title block: name, id, scale, what is true of the whole, and which fill is which part; returns where it ends."""
+def _block(sheet: Sheet, names: tuple[str, str], facts: list[str], scale: float, top: float, width: float) -> float:
+    """The title block: name, id, scale, and what is true of the whole; returns where it ends."""
     left, available = _MARGIN, width - 2 * _MARGIN
     title, id_ = names
     lines = wrapped(title, available, 3.6, _NAMES, bold=True)
@@ -445,12 +370,6 @@ def _block(
         sheet.text(left, y, "".join(fact))
         if i == 0:
             sheet.text(width - _MARGIN, y, scale_words, anchor="end", bold=True)
-    y += LINE + 2.0
-    x = left
-    for part in parts:
-        sheet.fill(f"M{at((x, y - 3.0))}h7v3.6h-7Z", part, "legend")
-        sheet.text(x + 8.5, y, part)
-        x += 8.5 + width_of(part) + 5.0
     y += 8.0
     sheet.path(f"M4 4H{width - 4.0:.4f}V{y - 4.0:.4f}H4Z", "frame")
     return y
