@@ -78,33 +78,22 @@ def effective(ready: Prepared) -> Effective:
     scene, options, choice, surroundings = ready.scene, ready.options, ready.chosen, ready.conditions.surroundings
     sources = [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
     made: dict[str, Any] = {
-        "cutters": [c.id for c in ready.cutters],
-        "units": options.reported_unit,
-        "cutter_source": " and ".join(sources) or "built-in",
-        "holder": None if options.holder is None else options.holder.id,
-        "fixtures": [each.text for each in scene.fixtures],
-        "machine": options.machine.name,
-        "setup": scene.setup,
-        "placement": placement_entry(options.placement),
+        "cutters": [c.id for c in ready.cutters], "cutter_source": " and ".join(sources) or "built-in",
+        "holder": options.holder and options.holder.id, "machine": options.machine.name, "units": options.reported_unit,
+        "setup": scene.setup, "placement": placement_entry(options.placement),
         "other_placements": [placement_entry(each) for each in options.other_placements],
-        "faces": choice.asked,
-        "ignore": list(choice.ignore),
-        "target_faces": [f"F{n}" for n in choice.targets],
+        "fixtures": [each.text for each in scene.fixtures],
+        "faces": choice.asked, "ignore": list(choice.ignore), "target_faces": [f"F{n}" for n in choice.targets],
         "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
-        "tolerance_mm": ready.conditions.tolerance,
-        "tolerance_requested_mm": scene.asked,
-        "local_tolerance": _local(ready),
+        "tolerance_mm": ready.conditions.tolerance, "tolerance_requested_mm": scene.asked, "local_tolerance": _local(ready),
         "chord_error_mm": surroundings.certain.triangles.chord_error,
         "chord_measured_share": surroundings.certain.triangles.measured_share,
         "obstacle_triangles": len(surroundings.possible.triangles),
-        "effort": options.effort,
-        "area_budget": options.contacts_between(len(ready.samples)),
-        "process": _process(ready),
-        "axis_accuracy_deg": float(np.degrees(options.accuracy)),
+        "area_budget": options.contacts_between(len(ready.samples)), "process": _process(ready),
+        "axis_accuracy_deg": float(np.degrees(options.accuracy)), "rotary_rates_deg_s": options.machine.rates_deg,
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
-        "rotary_rates_deg_s": options.machine.rates_deg,
-    }
+    }  # fmt: skip
     return Effective(**{name: as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
 
 
@@ -203,41 +192,24 @@ def plan_of(
     counted["exempt"] = 0 if ready.exempt is None else int(ready.exempt.sum())
     process = process_entry(ready, entries, answers, over, shown, fitting)
     return Plan(
-        text=NO_TEXT,
-        process=process,
-        part=part_info(scene, surroundings, void_faces(ready)),
-        effective=effective(ready),
-        versions=versions(),
-        samples=SampleCounts(**counted),
-        scope=scope_of(faces),
-        inside_other_bodies=inside_entry(ready, entries[0].faces),
-        faces=faces,
-        missing=missing_entries(part, surroundings),
-        reasons=list(REASONS),
-        reason_words={code: WORDS[code].name for code in REASONS},
-        machine=machine_entry(ready),
+        text=NO_TEXT, process=process, part=part_info(scene, surroundings, void_faces(ready)), effective=effective(ready),
+        versions=versions(), samples=SampleCounts(**counted), scope=scope_of(faces),
+        inside_other_bodies=inside_entry(ready, entries[0].faces), faces=faces, missing=missing_entries(part, surroundings),
+        reasons=list(REASONS), reason_words={code: WORDS[code].name for code in REASONS}, machine=machine_entry(ready),
         fixtures=[fixture_entry(fixture, setups) for fixture, setups in fixtures_in(ready)],
         libraries=[_library_entry(each) for each in options.libraries],
-        cutters=list(entries),
-        selected=selected,
-        shown=shown,
-        selection=selection,
+        cutters=list(entries), selected=selected, shown=shown, selection=selection,
         selected_over_setups=None if surroundings.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
-        sharp_edges=list(sharp_edges),
-        inside_radii=list(inside_radii),
-        patterns=list(patterns),
-        setups=list(setups),
+        sharp_edges=list(sharp_edges), inside_radii=list(inside_radii), patterns=list(patterns), setups=list(setups),
         least_set=None if answers.least_set is None else answers.least_set.entry,
         operations=None if answers.operations is None else in_colours_of_steps(answers.operations.entry, process),
-        not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
-        notes=[each.text for each in remarks],
-        note_codes=[each.code for each in remarks],
+        not_mended=list(answers.not_mended), notes=[each.text for each in remarks], note_codes=[each.code for each in remarks],
         legend={word: colour for word, colour in PALETTE.items() if word not in absent},
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
-    )
+    )  # fmt: skip
 
 
 def _library_entry(library: Library) -> LibraryEntry:
@@ -276,14 +248,11 @@ def completed(
         stick_out, mend = answers.stick_outs.get(name), answers.mends.get(name)
         surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
         more: dict[str, Any] = {
-            "beyond_setup": int(beyond.sum()),
-            "travel": None if moved is None else travel_entry(ready.options.machine, moved, over.here[name], samples),
+            "beyond_setup": int(beyond.sum()), "area": area, "seen": entry.seen or (area is not None and area.feasible),
+            "travel": moved and travel_entry(ready.options.machine, moved, over.here[name], samples),
             "sources": [filled(SourceEntry, each, file=file.file) for file, each in sources.get(name, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
-            "mend": None if mend is None else mend.entry,
-            "area": area,
-            "seen": entry.seen or (area is not None and area.feasible),
-        }
+            "least_stick_out": stick_out and stick_out_entry(stick_out, samples, surroundings), "mend": mend and mend.entry,
+        }  # fmt: skip
         # How many of the postures found lie near the rotary axis next to the part.
         if kinematics is not None and len(kinematics.turning()[1]) > 1:
             _, _, singular = positions(frames, reach.axis, serves)

@@ -72,21 +72,11 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     unsure = "" if c.feasible else ", but obstacles are missing that may be in its way"
     failing = _by_remaining_area(plan, c)
     return CutterStory(
-        id=c.id,
-        name=name,
-        tool=described(c, name),
-        feasible=c.feasible,
-        reached=reached(c, c.area_share),
-        shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
-        reason=main.name if main else "",
-        hint=hint,
-        sentence=loss or f"{capital(name)} reaches {every(plan)}{unsure}.",
-        next=_next(plan, c),
-        left=loss,
-        between=between(plan, c),
-        faces=tuple(_worst(face, c) for face in failing[:_WORST]),
-        failing=len(failing),
-    )
+        id=c.id, name=name, tool=described(c, name), feasible=c.feasible, reached=reached(c, c.area_share),
+        shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS}, reason=main.name if main else "", hint=hint,
+        sentence=loss or f"{capital(name)} reaches {every(plan)}{unsure}.", next=_next(plan, c), left=loss,
+        between=between(plan, c), faces=tuple(_worst(face, c) for face in failing[:_WORST]), failing=len(failing),
+    )  # fmt: skip
 
 
 def main_reason(share: AreaShare) -> str:

@@ -162,17 +162,11 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
         clearance = f"Least clearance of neck, shank and holder: {much}{more}."
     return ProcessStory(
-        rows=tuple(rows),
-        stands=tuple(each.text for each in process.setups),
-        roughing=roughing(process),
-        more=more,
-        besides=_besides(process),
-        own=tuple(own_steps(process)),
-        remaining=tuple(_remaining(process, plan)),
+        rows=tuple(rows), stands=tuple(each.text for each in process.setups), roughing=roughing(process), more=more,
+        besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
-        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
-        clearance=clearance,
-    )
+        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=clearance,
+    )  # fmt: skip
 
 
 def with_process_words(plan: Plan) -> Plan:
@@ -205,30 +199,23 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
     longest = 26 if fixed else 40
     return StepRow(
-        number=str(number),
-        setup=f"setup {step.setup + 1}" if setups else "",
-        turned=times + turned,
+        number=str(number), setup=f"setup {step.setup + 1}" if setups else "", turned=times + turned,
         cutter=what if len(what) <= longest else f"{what[: longest - 3]}...",
-        share=percent(step.share, some=step.area_mm2 > 0.0),
-        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
-        faces=step.faces,
-        alone="" if step.alone_mm2 is None else area(step.alone_mm2),
-        operation=step.operation,
-        at=step.setup,
-    )
+        share=percent(step.share, some=step.area_mm2 > 0.0), took=_took(step), at=step.setup, faces=step.faces,
+        alone="" if step.alone_mm2 is None else area(step.alone_mm2), operation=step.operation,
+    )  # fmt: skip
 
 
 def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool) -> StepRow:
     return StepRow(
-        number=str(number),
-        setup=f"setup {step.setup + 1}" if setups else "",
-        turned=angles_text(step.angles_deg or {}) if fixed else "",
-        cutter=drilling_words(step),
-        share=count(len(step.holes), "hole"),
-        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
-        at=step.setup,
-        holes=len(step.holes),
-    )
+        number=str(number), setup=f"setup {step.setup + 1}" if setups else "", cutter=drilling_words(step),
+        turned=angles_text(step.angles_deg or {}) if fixed else "", share=count(len(step.holes), "hole"), took=_took(step),
+        at=step.setup, holes=len(step.holes),
+    )  # fmt: skip
+
+
+def _took(step: ProcessStep | DrillingStep) -> str:
+    return duration(None if step.seconds is None else step.seconds + step.link_seconds)
 
 
 def stand_text(plan: Plan, setup: ProcessSetup) -> str:

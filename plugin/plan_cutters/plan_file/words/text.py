@@ -72,32 +72,19 @@ def story_of(plan: Plan) -> Story:
     cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
     finished = plan.selected or plan.selected_over_setups
     pair = "" if finished else together(plan)
+    scope = (
+        *undecided(plan, names), *holes(plan), *sharp_edges(plan, names), *inside_radii(plan, names), *not_judged(plan),
+        *not_seen(plan, names), *([sentence(named(plan, pair))] if pair else []),
+    )  # fmt: skip
     return Story(
-        names=names,
-        taken=finished or plan.selected_for_setup,
-        shown=best.id,
-        inside=tuple(named(plan, line) for line in inside(plan)),
-        headline=headline(plan, names),
-        process=process_story(plan, names),
-        proposal=proposal(plan),
-        in_short=tuple(in_short(plan)),
-        scope=(
-            *undecided(plan, names),
-            *holes(plan),
-            *sharp_edges(plan, names),
-            *inside_radii(plan, names),
-            *not_judged(plan),
-            *not_seen(plan, names),
-            *([sentence(named(plan, pair))] if pair else []),
-        ),
-        between=tuple(each.between for each in cutters if each.between),
-        cutters=cutters,
-        setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
-        operations=tuple(operations(plan)),
-        answers=tuple(answers(plan)),
-        doubts=notes.unsure(plan),
+        names=names, taken=finished or plan.selected_for_setup, shown=best.id,
+        inside=tuple(named(plan, line) for line in inside(plan)), headline=headline(plan, names),
+        process=process_story(plan, names), proposal=proposal(plan), in_short=tuple(in_short(plan)), scope=scope,
+        between=tuple(each.between for each in cutters if each.between), cutters=cutters,
+        setups=(*notes.setups(plan, best), *notes.travel(plan, best)), operations=tuple(operations(plan)),
+        answers=tuple(answers(plan)), doubts=notes.unsure(plan),
         notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
-    )
+    )  # fmt: skip
 
 
 class Chip(NamedTuple):

@@ -110,10 +110,7 @@ def meta_of(
         "format": FORMAT,
         "part": {**_of(plan.part, "file", "sha256", "size_mm"), "low": low.tolist(), "high": high.tolist()},
         "setup": {"z": effective.setup, "x": effective.placement and effective.placement.x},
-        "machine": plan.machine.name,
-        "tolerance_mm": effective.tolerance_mm,
-        "shown": result.shown,
-        "selected": plan.selected,
+        "machine": plan.machine.name, "tolerance_mm": effective.tolerance_mm, "shown": result.shown, "selected": plan.selected,
         "reasons": plan.reasons,
         "verdicts": {str(code): word for code, word in WORDS.items()},
         "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
@@ -149,7 +146,7 @@ def meta_of(
         ],
         "operations": operations_of(result),
         "process": process_of(result, story_of(plan), number),
-    }
+    }  # fmt: skip
 
 
 def _posture(best: Posture | None) -> dict[str, Any]:
@@ -234,39 +231,23 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         bars[c.id] = [(word, round(at, 2), round(width, 2), plan.legend[word]) for word, at, width in row if width]
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
     return {
-        "w": numbers,
-        "plan": plan,
-        "story": story,
+        "w": numbers, "plan": plan, "story": story, "plain": as_fields, "names": story.names,
         "header": [*story.process.own, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))],
-        "plain": as_fields,
-        "size": numbers.size(plan.part.size_mm),
-        "stands": story.process.stands,
+        "size": numbers.size(plan.part.size_mm), "stands": story.process.stands,
         "check": as_fields(" ".join(before_approval(story))),
         **process_tables(plan, story),
-        "names": story.names,
-        "named": lambda text: named(plan, text),
-        "step_told": step_text,
-        "limit": answers.limit,
-        "narrowest": answers.narrowest,
-        "called": cutters.called,
-        "chip": chip(plan, story),
-        "chips": CHIPS,
-        "feasible": cutters.FEASIBLE,
-        "order": {True: 0, None: 1, False: 2},
+        "named": lambda text: named(plan, text), "step_told": step_text, "limit": answers.limit,
+        "narrowest": answers.narrowest, "called": cutters.called, "label": label,
+        "chip": chip(plan, story), "chips": CHIPS, "feasible": cutters.FEASIBLE, "order": {True: 0, None: 1, False: 2},
         "cutters": [(c, entry, bars[c.id]) for c, entry in sorted(rows, key=lambda each: each[1] is not shown)],
-        "label": label,
-        "failing": [c for c in first if c.failing][:_CUTTERS],
-        "verdicts": _VERDICTS,
+        "failing": [c for c in first if c.failing][:_CUTTERS], "verdicts": _VERDICTS,
         "reasons": [REASONS[word] for word in plan.reasons if word in reasons and word in REASONS],
         "spots": [
             (c, witnesses)
             for c in first
             if (witnesses := [(k, s.witness, cutters.spot(s.witness)) for k, s in enumerate(spots) if s.cutter == c.id])
         ],
-        "more": more,
-        "faces": faces[:_FACES],
-        "unlisted": len(faces[_FACES:]),
-        "warnings": warnings,
+        "more": more, "faces": faces[:_FACES], "unlisted": len(faces[_FACES:]), "warnings": warnings,
         "doubts": [line for each in story.doubts.values() for line in each],
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
         "effective": [
@@ -274,12 +255,9 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
             for name, value in plan.effective.model_dump(mode="json").items()
             if value not in (None, [], {}, "")
         ],
-        "drawing": drawing,
-        "left": omitted,
-        "empty": headline.not_sampled(plan),
-        "operations": tables(plan, story),
+        "drawing": drawing, "left": omitted, "empty": headline.not_sampled(plan), "operations": tables(plan, story),
         "stepped": lambda of, name: stepped(plan, of, name),
-    }
+    }  # fmt: skip
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
