@@ -167,7 +167,7 @@ def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> N
         for axis in machine.axes:
             rotary, rate = axis.kind == "rotary", ""
             if axis.rate is not None:
-                rate = f"{math.degrees(axis.rate):.6g} deg/s" if rotary else f"{axis.rate:.6g} mm/s"
+                rate = f"{math.degrees(axis.rate) if rotary else axis.rate:.6g} {'deg' if rotary else 'mm'}/s"
             moves, through = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}", vector_text(axis.point)
             table.add_row(clean(axis.name), axis.carries, moves, limits_text(axis), through if rotary else "", rate)
         console.print(table)

@@ -273,7 +273,7 @@ class Teller:
 
 
 class ModelsListener:
-    """What of the models is being written is told to whoever waits; with `debug`, why one is not."""
+    """A listener tells whoever waits what of the models is being written; with `debug`, why one is not."""
 
     def __init__(self, tell: Teller, debug: bool) -> None:
         self.tell, self.debug = tell, debug

@@ -130,8 +130,8 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     weights = (seen / max(1e-300, seen.sum())).tolist()
     parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
     sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in VERDICTS}
-    lost_by = {reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS}
-    return AreaShare(**sums, lost_by={reason: share for reason, share in lost_by.items() if share})
+    sums_by = {reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS}
+    return AreaShare(**sums, lost_by={reason: share for reason, share in sums_by.items() if share})
 
 
 def sample_areas(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[NDArray[np.float64], float]:

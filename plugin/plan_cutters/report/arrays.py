@@ -121,6 +121,7 @@ def write_postures(result: Judged, _split: object, path: Path) -> None:
     Whatever the machine: what one holds of them is for the reader to find. `missing`: obstacles that are missing or guessed.
     """
     maps = result.maps
+    assert maps is not None, "written where posture maps were requested"
     name = maps.cutter
     about = {"format": "plan-cutters-postures", "version": 3, "cutter": name, "part": maps.part, "tilt": maps.tilt,
              "tolerance": maps.tolerance, "missing": maps.missing, "unmapped": maps.unmapped}  # fmt: skip

@@ -158,9 +158,9 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     if known:
         least, step = min(known)
         wider = least < MARGIN and plan.effective.holder_clearance_mm < MARGIN
-        more = f"; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`" if wider else ""
+        advice = f"; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`" if wider else ""
         much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
-        clearance = f"Least clearance of neck, shank and holder: {much}{more}."
+        clearance = f"Least clearance of neck, shank and holder: {much}{advice}."
     return ProcessStory(
         rows=tuple(rows), stands=tuple(each.text for each in process.setups), roughing=roughing(process), more=more,
         besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
