@@ -474,7 +474,7 @@ class Result:
         Plan
             The plan as written, with its `files`, `split` and `not_written`.
         """
-        from plan_cutters.report import write_all
+        from plan_cutters.report.folder import write_all
 
         chosen = formats.split(",") if isinstance(formats, str) else formats
         return write_all(self, Path(out), chosen, step_schema=step_schema)

@@ -30,7 +30,7 @@ def show_plan(out: Path, request: "PlanRequest", *, summarised: bool) -> None:
     """Show the plan of a run that was ended: its summary, unless that was shown already, its files, and itself where that is
     requested.
     """
-    from plan_cutters.report import PLAN
+    from plan_cutters.report.folder import PLAN
 
     path = out / PLAN
     if not path.is_file():
@@ -51,7 +51,7 @@ def show_plan(out: Path, request: "PlanRequest", *, summarised: bool) -> None:
 
 def remaining_text(out: Path, why: str) -> str:
     """Say what is missing of a plan in a folder, whose run ended for a reason; the plan says so, too."""
-    from plan_cutters.report import PLAN
+    from plan_cutters.report.folder import PLAN
 
     missing = _ended(out, why)
     if text := verdicts_text(out, missing):
@@ -74,7 +74,7 @@ def verdicts_text(out: Path, missing: str = "") -> str:
     It is empty where there is another plan or none.
     """
     from plan_cutters.plan_file.words.names import typed
-    from plan_cutters.report import PLAN
+    from plan_cutters.report.folder import PLAN
     from plan_cutters.report.to_json import unfinished
 
     if not (text := typed(unfinished(out / PLAN))):

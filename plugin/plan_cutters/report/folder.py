@@ -40,7 +40,7 @@ class Writer(NamedTuple):
 
 _FASTEST = {"name": "fastest"}
 WRITERS = {
-    "html": Writer("review.html", "page", "write_html", by_name=True),
+    "html": Writer("review.html", "page.write", "write_html", by_name=True),
     "step": Writer("annotated.step", "models", "write_step", by_name=True),
     "glb": Writer("annotated.glb", "models", "write_glb", by_name=True),
     "merged": Writer("merged.glb", "models", "write_glb", by_name=True, options={"merged": True}),
