@@ -144,10 +144,9 @@ class JudgedPart:
     def over_setups(self) -> OverSetups:
         """The verdicts of all cutters by their ids, over all setups and in each."""
         by_id = {cutter.id: each for cutter, each in self.cutters.items()}
-        reaches, here = ({name: getattr(each, word) for name, each in by_id.items()} for word in ("verdicts", "here"))
-        others = ({cutter.id: verdicts for cutter, verdicts in there.items()} for there in self.other_setups)
-        there = tuple(zip((axis for axis, _ in self.ready.axes[1:]), others, strict=True))
-        return OverSetups(reaches, here, {name: each.which for name, each in by_id.items()}, self.ready.scene.setup, there)
+        reaches, served_in = ({name: getattr(each, word) for name, each in by_id.items()} for word in ("verdicts", "which"))
+        each = ({cutter.id: verdicts for cutter, verdicts in there.items()} for there in self.everywhere())
+        return OverSetups(reaches, served_in, tuple(zip((axis for axis, _ in self.ready.axes), each, strict=True)))
 
     @property
     def looks_between(self) -> bool:

@@ -111,9 +111,9 @@ def _over_setups(plan: Plan, arrays: Arrays, ready: Prepared) -> OverSetups:
         raise PlanError(f"its cutters are not those of plan.json: {_AGAIN}", file=file_name("npz"))
     reaches = {name: _verdicts(arrays, name, ready) for name in ids}
     # What each setup reaches alone is no part of a model.
-    others = tuple((axis, dict(reaches)) for axis in ready.options.other_setups)
-    served = {name: arrays[f"setup_{name}"] for name in ids} if others else {}
-    return OverSetups(reaches, dict(reaches), served, ready.scene.setup, others)
+    each = tuple((axis, dict(reaches)) for axis, _ in ready.axes)
+    served = {name: arrays[f"setup_{name}"] for name in ids} if len(each) > 1 else {}
+    return OverSetups(reaches, served, each)
 
 
 def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:

@@ -230,22 +230,12 @@ class Result:
         return self.over_setups.reaches
 
     @property
-    def here(self) -> dict[str, Verdicts]:
-        """Verdicts by cutter id, in the first setup alone."""
-        return self.over_setups.here
-
-    @property
-    def elsewhere(self) -> tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...]:
-        """The axis of each other setup, and the verdicts there by cutter id."""
-        return self.over_setups.elsewhere
-
-    @property
     def served_in(self) -> dict[str, Ints]:
         """The setup (n,) whose posture a sample has, by cutter id: counted from 0 as in `plan.cutters[].setups`, -1 for none.
 
         It is empty where there is one setup.
         """
-        return self.over_setups.served_in if self.elsewhere else {}
+        return self.over_setups.served_in if len(self.over_setups.each) > 1 else {}
 
     @property
     def cutters(self) -> list[CutterEntry]:

@@ -249,7 +249,7 @@ def completed(
         surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
         more: dict[str, Any] = {
             "beyond_setup": int(beyond.sum()), "area": area, "seen": entry.seen or (area is not None and area.feasible),
-            "travel": moved and travel_entry(ready.options.machine, moved, over.here[name], samples),
+            "travel": moved and travel_entry(ready.options.machine, moved, over.each[0][1][name], samples),
             "sources": [filled(SourceEntry, each, file=file.file) for file, each in sources.get(name, ())],
             "least_stick_out": stick_out and stick_out_entry(stick_out, samples, surroundings), "mend": mend and mend.entry,
         }  # fmt: skip
@@ -257,10 +257,10 @@ def completed(
         if kinematics is not None and len(kinematics.turning()[1]) > 1:
             _, _, singular = positions(frames, reach.axis, serves)
             more["singular"] = int(singular[reach.reached].sum())
-        if over.elsewhere:
+        if len(over.each) > 1:
             more["setups"] = [
                 SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
-                for k, (axis, verdicts) in enumerate(over.each())
+                for k, (axis, verdicts) in enumerate(over.each)
             ]
             more["lost_in_all"] = int((reach.not_reached & ready.finished).sum())
         completed_entries.append(entry.model_copy(update=more))

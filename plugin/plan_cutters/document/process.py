@@ -52,25 +52,15 @@ from plan_cutters.plan_file.words.names import kind
 from plan_cutters.plan_file.words.operations import numbered
 from plan_cutters.scene.preparation import Prepared
 
-#: A setup axis, and what each cutter reaches there by its id.
-OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
 
-
-@dataclass(frozen=True, slots=True)
-class OverSetups:
-    """The verdicts of each cutter, by its id, over all setups and in each of them: in one or another, in the `first` (its axis),
-    and in each other setup; `served_in` has the setup that serves each sample, (n,) int32.
+class OverSetups(NamedTuple):
+    """The verdicts of each cutter, by its id, in one setup or another; the setup that serves each sample, (n,) int32; and of each
+    setup, the first one first, its axis and what each cutter reaches there.
     """
 
     reaches: dict[str, Verdicts]
-    here: dict[str, Verdicts]
     served_in: dict[str, Ints]
-    first: Vector
-    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
-
-    def each(self) -> tuple[OtherSetup, ...]:
-        """Every setup with what is reached there, the first one first."""
-        return ((self.first, self.here), *self.elsewhere)
+    each: tuple[tuple[Vector, dict[str, Verdicts]], ...]
 
 
 def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
@@ -86,7 +76,7 @@ def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: Over
         return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
 
     entries: dict[Vector, SetupEntry] = {}
-    for (axis, each), inside in zip(over.each(), within, strict=False):
+    for (axis, each), inside in zip(over.each, within, strict=False):
         mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
         count, reached, part = int(inside.sum()), int(mine.sum()), share(mine)
         entries.setdefault(axis, SetupEntry(axis=axis, within=count, share=share(inside), reached=reached, reached_share=part))
@@ -417,7 +407,7 @@ class _Parts:
         """
         size, ready = float(self.area[mine].sum()), self.ready
         setup, cutter, axis = (fields[name] if name in fields else getattr(made, name) for name in ("setup", "cutter", "axis"))
-        axes = self.over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
+        axes = self.over.each[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
         below = axes @ ready.setups[setup].setup < _BELOW
         return filled(
             ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
@@ -479,7 +469,7 @@ class _Parts:
         missed[outcome.requested] = True
         missed[done] = False
         if process is not None and process.steps[outcome.number - 1].faces is not None:
-            verdicts = self.over.each()[outcome.setup][1][outcome.cutter.id]
+            verdicts = self.over.each[outcome.setup][1][outcome.cutter.id]
             cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
             for code in np.unique(cause[missed]).tolist():
                 word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
@@ -511,7 +501,7 @@ def _runs(
     """The fewest runs, each with its setup, its cutter, and the samples (n,) that none before it reaches."""
     least, done = answers.least_set, np.zeros(len(ready.samples), bool)
     for setup, cutter in [(0, nearest(entries).id)] if least is None else [(run.number, run.cutter.id) for run in least.runs]:
-        mine = over.each()[setup][1][cutter].reached & ready.machinable[setup] & ~done
+        mine = over.each[setup][1][cutter].reached & ready.machinable[setup] & ~done
         done |= mine
         if mine.any():
             yield setup, cutter, mine

@@ -89,12 +89,11 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
             if name in result.travels:
                 arrays[f"travel_{name}"] = result.travels[name].position
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
-    if result.elsewhere:
-        arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
-        for name, verdicts in result.here.items():
-            each = [verdicts, *(verdicts_there[name] for _, verdicts_there in result.elsewhere)]
-            arrays[f"setup_{name}"] = result.served_in[name]
-            arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
+    if result.served_in:
+        arrays["setups"] = np.array([axis for axis, _ in result.over_setups.each])
+        for name, which in result.served_in.items():
+            arrays[f"setup_{name}"] = which
+            arrays[f"reached_in_{name}"] = np.stack([there[name].reached for _, there in result.over_setups.each], axis=1)
     for radii in result.answers.radius_maps:
         words = {"": radii.radius, "beyond_": radii.beyond, "axis_": radii.axis, "lean_": radii.tilt_direction}
         arrays |= {f"radius_{word}{radii.shape}": each for word, each in words.items()}
@@ -270,7 +269,7 @@ def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
         Column("nearest_face", near.face, words={0: "", **faces}),
     ]
     if name in result.served_in:
-        setups = range(len(result.elsewhere) + 1)
+        setups = range(len(result.over_setups.each))
         table.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
     # Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged.
     machine = result.conditions.machine

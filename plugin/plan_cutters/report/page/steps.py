@@ -41,7 +41,7 @@ def step_of(result: Judged) -> NDArray[np.uint16]:
 def _finished(result: Judged, step: ProcessStep) -> NDArray[np.bool_]:
     """Samples (n,) that a step without an operation finishes: what its cutter reaches in its setup; of a drill its holes."""
     samples, ready = result.samples, result.ready
-    verdicts = result.here if step.setup == 0 else result.elsewhere[step.setup - 1][1]
+    verdicts = result.over_setups.each[step.setup][1]
     if step.cutter in verdicts:
         return np.asarray(verdicts[step.cutter].reached & ready.machinable[step.setup])
     return np.isin(samples.face, [int(face[1:]) for face in step.faces])

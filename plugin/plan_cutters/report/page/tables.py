@@ -123,7 +123,7 @@ def meta_of(
         "kinematics": result.kinematics and _kinematics(result.kinematics),
         "setups": [
             {"z": each.setup.tolist(), "kinematics": each.kinematics and _kinematics(each.kinematics)}
-            for each in (result.ready.setups if result.elsewhere else ())
+            for each in (result.ready.setups if result.served_in else ())
         ],
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
