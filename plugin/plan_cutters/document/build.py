@@ -23,21 +23,9 @@ from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, DRILLED, INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts, Witness
+from plan_cutters.plan_file import part_info as schema
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
-from plan_cutters.plan_file.part_info import (
-    CarrierEntry,
-    CoveringBody,
-    FixtureEntry,
-    InsideEntry,
-    OrientationInfo,
-    PartInfo,
-    ReferenceEntry,
-    Scope,
-    SewingInfo,
-    SheetsEntry,
-    UnitEntry,
-)
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, FaceVerdicts
 from plan_cutters.scene.covering import coverings, numbers, sheets
 from plan_cutters.scene.faces import Chosen
@@ -49,7 +37,7 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def fixtures_in(ready: Prepared) -> list[tuple[PlacedFixture, list[int]]]:
     """Placed fixtures of all setups, those of the first one first, each with the setups in which it stands in the same place."""
-    fixtures, known = list[tuple[PlacedFixture, list[int]]](), list[FixtureEntry]()
+    fixtures, known = list[tuple[PlacedFixture, list[int]]](), list[schema.FixtureEntry]()
     for number, conditions in enumerate(ready.setups):
         for fixture in conditions.surroundings.fixtures:
             mine = fixture_entry(fixture)
@@ -61,16 +49,16 @@ def fixtures_in(ready: Prepared) -> list[tuple[PlacedFixture, list[int]]]:
     return fixtures
 
 
-def references(part: Part) -> list[ReferenceEntry]:
+def references(part: Part) -> list[schema.ReferenceEntry]:
     """The files that a part's file refers to."""
-    return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
+    return [schema.ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
 
 
-def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> FixtureEntry:
+def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> schema.FixtureEntry:
     """A fixture where it stands, in some setups."""
     fixture, source, triangles, hold = placed.fixture, placed.source, placed.obstacles.triangles, placed.hold
     return filled(
-        FixtureEntry, placed, file=None if source is None or source.file is None else Path(source.file).name,
+        schema.FixtureEntry, placed, file=None if source is None or source.file is None else Path(source.file).name,
         sha256=None if source is None else source.sha256, references=references(source) if isinstance(source, Part) else [],
         unit=source.unit if isinstance(source, Mesh) else fixture.unit, placement=fixture.placement, triangles=len(triangles),
         chord_error_mm=triangles.chord_error, watertight=placed.body is not None, setups=list(setups),
@@ -165,11 +153,11 @@ def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[
     return AreaShare(**shares, lost_by=by)
 
 
-def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
+def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> schema.InsideEntry:
     """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
     inside, samples, scene = ready.inside_bodies, ready.samples, ready.scene
     if not inside.any():
-        return InsideEntry()
+        return schema.InsideEntry()
     areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], scene.part)
     area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
     within, lying = float(samples.area[inside].sum()), sheets(ready)
@@ -186,14 +174,14 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
         return {"faces": [f"F{n}" for n in np.unique(samples.face[rows]).tolist()], "samples": len(rows), "area_mm2": mine}
 
     bodies = [
-        filled(CoveringBody, each, number=1 + each.index, own_faces=numbers(each.faces).split(","),
+        filled(schema.CoveringBody, each, number=1 + each.index, own_faces=numbers(each.faces).split(","),
                option=f"--ignore {shlex.quote(each.selection)}", **some(each.rows))
         for each in ready.cache.cached("coverings", follows_from, lambda: coverings(ready))
     ]  # fmt: skip
     option = f"--ignore {numbers(ready.conditions.surroundings.on_bodies)}"
-    return InsideEntry(
+    return schema.InsideEntry(
         samples=int(inside.sum()), area_mm2=area, share=min(1.0, area / max(1e-300, sum(areas.values()))), bodies=bodies,
-        sheets=SheetsEntry(**some(lying), option=option) if len(lying) else None,
+        sheets=schema.SheetsEntry(**some(lying), option=option) if len(lying) else None,
     )  # fmt: skip
 
 
@@ -277,7 +265,7 @@ def _witness_entry(
     )  # fmt: skip
 
 
-def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> PartInfo:
+def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> schema.PartInfo:
     """The part, and what is odd about it."""
     part, orientation, sewn = scene.part, scene.orientation, scene.part.sewn
     warnings = list(part.warnings)
@@ -300,11 +288,12 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
     opened = [f.id for f in part.faces if f.number not in closed | excluded]
     of_solids = [name for n in orientation.guessed if n not in excluded and (name := f"F{n}") not in opened]
     return filled(
-        PartInfo, part, file=Path(part.file).name if part.file else None, references=references(part), faces=len(part.faces),
-        orientation=filled(OrientationInfo, orientation), sewing=filled(SewingInfo, sewn) if sewn.faces else None,
-        warnings=warnings, loose_faces=[name for name in opened if int(name[1:]) in sewn.faces] if part.solids else [],
+        schema.PartInfo, part, file=Path(part.file).name if part.file else None, references=references(part),
+        faces=len(part.faces), orientation=filled(schema.OrientationInfo, orientation),
+        sewing=filled(schema.SewingInfo, sewn) if sewn.faces else None, warnings=warnings,
+        loose_faces=[name for name in opened if int(name[1:]) in sewn.faces] if part.solids else [],
         guessed_faces=[] if orientation.confident else [*opened, *of_solids], sheets_doubt=on_shell, void_faces=void_faces,
-        unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],
+        unit_readings=[filled(schema.UnitEntry, each) for each in part.unit_readings],
     )  # fmt: skip
 
 
@@ -334,7 +323,7 @@ def face_entries(
     return result
 
 
-def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | None:
+def carrier_entry(face: FaceInfo, orientation: Orientation) -> schema.CarrierEntry | None:
     """Describe what a face is a part of; the side of the material only where it is sure."""
     carrier = face.carrier
     if carrier is None:
@@ -344,7 +333,9 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
     lengths = {"radius_mm": carrier.radius, "minor_radius_mm": carrier.minor_radius, "half_angle_deg": angle}
     point, direction = (each and vector(np.round(each, _DIGITS) + 0.0) for each in (carrier.point, carrier.direction))
     fields = {name: value and round(value, _DIGITS) for name, value in lengths.items()}
-    return filled(CarrierEntry, carrier, point_mm=point, direction=direction, outward=bool(side > 0) if side else None, **fields)
+    return filled(
+        schema.CarrierEntry, carrier, point_mm=point, direction=direction, outward=bool(side > 0) if side else None, **fields
+    )
 
 
 @cache
@@ -357,11 +348,11 @@ def versions() -> dict[str, str]:
     return {"plan_cutters": __version__, **made, "python": platform.python_version()}
 
 
-def scope_of(faces: Sequence[FaceEntry]) -> Scope:
+def scope_of(faces: Sequence[FaceEntry]) -> schema.Scope:
     """Say which of all faces were judged and which were not, with their areas, mm2."""
     fields = dict[str, Any]()
     others = [f for f in faces if not f.target and not f.ignored]
     for name, each in (("judged", [f for f in faces if f.target]), ("not_judged", others)):
         fields |= {name: len(each), f"{name}_mm2": math.fsum(f.area_mm2 for f in each if math.isfinite(f.area_mm2)),
                    f"{name}_by_kind": dict(sorted(Counter(f.kind for f in each).items()))}  # fmt: skip
-    return Scope(**fields)
+    return schema.Scope(**fields)

@@ -10,18 +10,8 @@ from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.domain.thread import thread_in, tolerance_in
+from plan_cutters.plan_file import holes as schema
 from plan_cutters.plan_file.frozen import filled, vector
-from plan_cutters.plan_file.holes import (
-    CounterboreEntry,
-    CountersinkEntry,
-    DrillingStep,
-    HoleEntry,
-    MissingEntry,
-    StrokeEntry,
-    ThreadEntry,
-    ToleranceEntry,
-    WorkplaneEntry,
-)
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.holes import groups
 from plan_cutters.scene.planes import tilted_plane
@@ -37,7 +27,7 @@ IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 _IN_TURN: tuple[Kind, ...] = ("centre drill", "drill", "reamer", "counterbore", "countersink", "tap")
 
 
-def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[HoleEntry]:
+def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[schema.HoleEntry]:
     """The holes for drills of a part, those of the first group first; `made`: by what tools."""
     number = groups(ready.holes)
     return [_entry(ready.holes[k], number[k], made[k]) for k in np.argsort(number, kind="stable").tolist()]
@@ -64,7 +54,7 @@ def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored],
     return process.model_copy(update={"drilling": drilling, "seconds": sum(times.values()), **times})
 
 
-def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[DrillingStep]:
+def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[schema.DrillingStep]:
     """The steps that drill holes: by setup, kind and diameter; those of one tool follow each other."""
     options, in_order = ready.options, np.argsort(groups(ready.holes), kind="stable").tolist()
     entries_of = [entry for library in options.libraries for entry in library.entries if entry.drill is not None]
@@ -76,16 +66,16 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
     threads = [thread_in(hole.sizes, hole.diameter) for hole in ready.holes]
-    steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
+    steps, turned = list[schema.DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
         thread = threads[in_order[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
-        strokes = [StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
+        strokes = [schema.StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
         steps.append(
-            DrillingStep(
+            schema.DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
                 holes=strokes,
                 setup=use.setup, axis=vector(use.axis + 0.0), **_turned(ready, use.setup, use.axis),
@@ -95,13 +85,13 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
-    together: dict[tuple[int, str], list[DrillingStep]] = {}
+    together: dict[tuple[int, str], list[schema.DrillingStep]] = {}
     for step in steps:
         together.setdefault((step.setup, step.tool), []).append(step)
     return [step for group in together.values() for step in _indexed(ready, group, index_times)]
 
 
-def _indexed(ready: Prepared, steps: Sequence[DrillingStep], index_times: IndexTimes) -> list[DrillingStep]:
+def _indexed(ready: Prepared, steps: Sequence[schema.DrillingStep], index_times: IndexTimes) -> list[schema.DrillingStep]:
     """The steps of one tool in one setup with the seconds of turns: as those of mills they begin with the axes at zero."""
     kinematics, options = ready.setups[steps[0].setup].kinematics, ready.options
     turns = [k for k, step in enumerate(steps) if step.index_seconds]
@@ -132,21 +122,23 @@ def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
     second = other if apart.max(initial=0.0) > _SAME else None
     place, angle = places(ready.options)[setup], both[0, int(taken[0])]
     origin, x, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
-    frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
+    frame = schema.WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
     return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 
-def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
+def _entry(hole: Hole, group: int, made: Bored) -> schema.HoleEntry:
     by, sink, bore = made.by, hole.countersink, hole.counterbore
     thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
-    missing = [filled(MissingEntry, each, **_size(each), angle_deg=each.angle and _degrees(each.angle)) for each in made.missing]
+    missing = [
+        filled(schema.MissingEntry, each, **_size(each), angle_deg=each.angle and _degrees(each.angle)) for each in made.missing
+    ]
     return filled(
-        HoleEntry, hole, faces=[f"F{number}" for number in hole.faces], **_size(hole), cone_deg=hole.cone and _degrees(hole.cone),
-        countersink=sink and CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
-        counterbore=bore and CounterboreEntry(diameter_mm=round(bore[0], _DIGITS), depth_mm=round(bore[1], _DIGITS)),
-        axis=vector(hole.axis + 0.0), place_mm=_rounded(hole.place), group=group,
+        schema.HoleEntry, hole, faces=[f"F{number}" for number in hole.faces], **_size(hole),
+        cone_deg=hole.cone and _degrees(hole.cone), axis=vector(hole.axis + 0.0), place_mm=_rounded(hole.place), group=group,
+        countersink=sink and schema.CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
+        counterbore=bore and schema.CounterboreEntry(diameter_mm=round(bore[0], _DIGITS), depth_mm=round(bore[1], _DIGITS)),
         drilled=by is not None, tool=None if by is None else by.id, missing=missing,
-        thread=thread and filled(ThreadEntry, thread), tolerance=tolerance and filled(ToleranceEntry, tolerance),
+        thread=thread and filled(schema.ThreadEntry, thread), tolerance=tolerance and filled(schema.ToleranceEntry, tolerance),
     )  # fmt: skip
 
 

@@ -10,19 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.build import (
-    counts,
-    degrees,
-    face_entries,
-    fixture_entry,
-    fixtures_in,
-    inside_entry,
-    missing_entries,
-    part_info,
-    scope_of,
-    versions,
-    void_faces,
-)
+from plan_cutters.document import build
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.process import (
     OverSetups,
@@ -44,26 +32,10 @@ from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, NO_REASO
 from plan_cutters.library.raw_tool import Library
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers
+from plan_cutters.plan_file import model as schema
 from plan_cutters.plan_file.answers import Beyond, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.plan_file.frozen import filled, posture, vector
-from plan_cutters.plan_file.model import (
-    ANOTHER_SETUP,
-    NO_TEXT,
-    AreaEntry,
-    CutterEntry,
-    LibraryEntry,
-    MachineEntry,
-    Plan,
-    RotaryEntry,
-    Run,
-    SampleCounts,
-    Selection,
-    SourceEntry,
-    UnusedEntry,
-    leaves,
-    nearest,
-)
 from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SetupEntry, SetupReach, SharpEdgeEntry
 from plan_cutters.plan_file.reasons import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
@@ -126,7 +98,7 @@ def as_requested(options: Options, name: str) -> Any:
     value = getattr(options, re.sub("_(mm|deg|s|mm_min|cm3_min)$", "", name))
     if value is None or not name.endswith("_deg"):
         return value
-    return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
+    return build.degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
 
 
 #: Of a verdict on what lies just beyond an answer.
@@ -171,32 +143,34 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
 
 @reporting(lambda ready: ready.options.reported_unit)
 def plan_of(
-    ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection, started: datetime.datetime,
-    answers: Answers, over: OverSetups, setups: Sequence[SetupEntry], sharp_edges: Sequence[SharpEdgeEntry],
-    inside_radii: Sequence[InsideRadiusEntry], patterns: Sequence[PatternEntry], fitting: Fitting,
-) -> Plan:  # fmt: skip
+    ready: Prepared, entries: Sequence[schema.CutterEntry], selected: str | None, selection: schema.Selection,
+    started: datetime.datetime, answers: Answers, over: OverSetups, setups: Sequence[SetupEntry],
+    sharp_edges: Sequence[SharpEdgeEntry], inside_radii: Sequence[InsideRadiusEntry], patterns: Sequence[PatternEntry],
+    fitting: Fitting,
+) -> schema.Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
-    faces = face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
+    faces = build.face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
     remarks = notes_of(ready, entries)
     # Whether a fixture stands, or a target face is clamped, in any setup.
     held = any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
     absent = {*(() if held else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     absent |= set() if ready.for_drills.any() else {"drilled"}
-    shown, classes = selected or nearest(entries).id, {"convex": CONVEX, "concave": CONCAVE, "saddle": SADDLE}
+    shown, classes = selected or schema.nearest(entries).id, {"convex": CONVEX, "concave": CONCAVE, "saddle": SADDLE}
     rows = {**{name: ready.surface_class == code for name, code in classes.items()}, "unjudged": samples.unjudged >= 0,
             "inside_bodies": ready.inside_bodies, "drilled": ready.for_drills}  # fmt: skip
     counted: dict[str, Any] = {name: int(mine.sum()) for name, mine in rows.items()}
     counted |= {"count": len(samples), "max_gap_mm": samples.max_gap, "regions": len(np.unique(ready.region))}
     counted["exempt"] = 0 if ready.exempt is None else int(ready.exempt.sum())
     process = process_entry(ready, entries, answers, over, shown, fitting)
-    return Plan(
-        text=NO_TEXT, process=process, part=part_info(scene, surroundings, void_faces(ready)), effective=effective(ready),
-        versions=versions(), samples=SampleCounts(**counted), scope=scope_of(faces),
-        inside_other_bodies=inside_entry(ready, entries[0].faces), faces=faces, missing=missing_entries(part, surroundings),
-        reasons=list(REASONS), reason_words={code: WORDS[code].name for code in REASONS}, machine=machine_entry(ready),
-        fixtures=[fixture_entry(fixture, setups) for fixture, setups in fixtures_in(ready)],
+    return schema.Plan(
+        text=schema.NO_TEXT, process=process, part=build.part_info(scene, surroundings, build.void_faces(ready)),
+        effective=effective(ready), versions=build.versions(), samples=schema.SampleCounts(**counted),
+        scope=build.scope_of(faces), inside_other_bodies=build.inside_entry(ready, entries[0].faces), faces=faces,
+        missing=build.missing_entries(part, surroundings), machine=machine_entry(ready),
+        reasons=list(REASONS), reason_words={code: WORDS[code].name for code in REASONS},
+        fixtures=[build.fixture_entry(fixture, setups) for fixture, setups in build.fixtures_in(ready)],
         libraries=[_library_entry(each) for each in options.libraries],
         cutters=list(entries), selected=selected, shown=shown, selection=selection,
         selected_over_setups=None if surroundings.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
@@ -208,37 +182,40 @@ def plan_of(
         not_mended=list(answers.not_mended), notes=[each.text for each in remarks], note_codes=[each.code for each in remarks],
         legend={word: colour for word, colour in PALETTE.items() if word not in absent},
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
-        run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
+        run=schema.Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )  # fmt: skip
 
 
-def _library_entry(library: Library) -> LibraryEntry:
+def _library_entry(library: Library) -> schema.LibraryEntry:
     return filled(
-        LibraryEntry, library, tools=len(library.entries), cutters=len(library), drills=len(library.drills),
+        schema.LibraryEntry, library, tools=len(library.entries), cutters=len(library), drills=len(library.drills),
         holders=[holder.name or holder.id for holder in library.holders],
-        unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
+        unused=[filled(schema.UnusedEntry, each, why=each.unused or "") for each in library.unused],
     )  # fmt: skip
 
 
-def machine_entry(ready: Prepared) -> MachineEntry:
+def machine_entry(ready: Prepared) -> schema.MachineEntry:
     """The machine, its axes in the part's frame."""
     machine, kinematics = ready.options.machine, ready.conditions.kinematics
     rotary = None
     if kinematics is not None:
         rotary = [
             filled(
-                RotaryEntry, axis, direction=vector(direction), limits_deg=None if axis.limits is None else degrees(axis.limits)
+                schema.RotaryEntry,
+                axis,
+                direction=vector(direction),
+                limits_deg=None if axis.limits is None else build.degrees(axis.limits),
             )
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
-    return filled(MachineEntry, machine, tilt_limit_deg=limit, rotary=rotary, linear=linear_entries(ready))
+    return filled(schema.MachineEntry, machine, tilt_limit_deg=limit, rotary=rotary, linear=linear_entries(ready))
 
 
 def completed(
-    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, over: OverSetups, beyond: NDArray[np.bool_],
-    travels: Mapping[str, Travel], between: Mapping[str, AreaEntry],
-) -> list[CutterEntry]:  # fmt: skip
+    entries: Sequence[schema.CutterEntry], ready: Prepared, answers: Answers, over: OverSetups, beyond: NDArray[np.bool_],
+    travels: Mapping[str, Travel], between: Mapping[str, schema.AreaEntry],
+) -> list[schema.CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was found after them."""
     completed_entries, sources, samples, inside = [], ready.options.sources, ready.samples, ready.inside_bodies
     kinematics, frames = ready.conditions.kinematics, [each.kinematics for each in ready.setups]
@@ -250,7 +227,7 @@ def completed(
         more: dict[str, Any] = {
             "beyond_setup": int(beyond.sum()), "area": area, "seen": entry.seen or (area is not None and area.feasible),
             "travel": moved and travel_entry(ready.options.machine, moved, over.each[0][1][name], samples),
-            "sources": [filled(SourceEntry, each, file=file.file) for file, each in sources.get(name, ())],
+            "sources": [filled(schema.SourceEntry, each, file=file.file) for file, each in sources.get(name, ())],
             "least_stick_out": stick_out and stick_out_entry(stick_out, samples, surroundings), "mend": mend and mend.entry,
         }  # fmt: skip
         # How many of the postures found lie near the rotary axis next to the part.
@@ -259,7 +236,9 @@ def completed(
             more["singular"] = int(singular[reach.reached].sum())
         if len(over.each) > 1:
             more["setups"] = [
-                SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
+                SetupReach(
+                    axis=axis, serves=int((serves == k).sum()), **build.counts(verdicts[name].verdict, inside, ready.exempt)
+                )
                 for k, (axis, verdicts) in enumerate(over.each)
             ]
             more["lost_in_all"] = int((reach.not_reached & ready.finished).sum())
@@ -267,21 +246,21 @@ def completed(
     return completed_entries
 
 
-def for_setup(entries: Sequence[CutterEntry]) -> str | None:
+def for_setup(entries: Sequence[schema.CutterEntry]) -> str | None:
     """The first cutter that leaves nothing but what no cutter can reach in this setup, or what stands on its proposed table."""
     for e in entries:
-        done, stood = e.interference_free + e.accessible, e.by_reason.get(ANOTHER_SETUP, 0)
+        done, stood = e.interference_free + e.accessible, e.by_reason.get(schema.ANOTHER_SETUP, 0)
         if done and (e.beyond_setup or stood) and not e.undecided and e.blocked == e.beyond_setup + stood:
             return e.id
     return None
 
 
-def selection(entries: Sequence[CutterEntry], free_form: float) -> tuple[str | None, Selection]:
+def selection(entries: Sequence[schema.CutterEntry], free_form: float) -> tuple[str | None, schema.Selection]:
     """Which cutter wins, of entries from the most wanted down, and why; `free_form`: the share of such faces."""
     feasible = [e for e in entries if e.feasible]
     before = entries[: entries.index(feasible[0])] if feasible else entries
-    selected, runners_up, best = None, feasible, nearest(entries)
-    if stood := next((e for e in before if e.by_reason.get(ANOTHER_SETUP) and not any(leaves(e))), None):
+    selected, runners_up, best = None, feasible, schema.nearest(entries)
+    if stood := next((e for e in before if e.by_reason.get(schema.ANOTHER_SETUP) and not any(schema.leaves(e))), None):
         why = words.stands(stood.id)
     elif feasible:
         selected, runners_up, why = feasible[0].id, feasible[1:], words.why([e.id for e in before])
@@ -291,4 +270,4 @@ def selection(entries: Sequence[CutterEntry], free_form: float) -> tuple[str | N
     else:
         why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
     runner_up = runners_up[0].id if runners_up else None
-    return selected, Selection(rule=words.rule(free_form), free_form=free_form, runner_up=runner_up, why=why)
+    return selected, schema.Selection(rule=words.rule(free_form), free_form=free_form, runner_up=runner_up, why=why)

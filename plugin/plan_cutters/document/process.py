@@ -26,25 +26,9 @@ from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR
 from plan_cutters.judging.limits import AXES, within_limits
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, OperationPlan, Operations, Step
+from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
-from plan_cutters.plan_file.operations import (
-    NOT_PLANNED,
-    OTHER_ORIENTATION,
-    SHORT_STEP,
-    UNJUDGED_CAUSE,
-    FitEntry,
-    HelpEntry,
-    NearestEntry,
-    OperationEntry,
-    OperationPlanEntry,
-    OperationsEntry,
-    OwnStepEntry,
-    PointsEntry,
-    ProcessEntry,
-    ProcessStep,
-    RemainingEntry,
-)
 from plan_cutters.plan_file.part_info import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
 from plan_cutters.plan_file.reasons import operation_colour
 from plan_cutters.plan_file.words.answers import typed_size
@@ -137,7 +121,9 @@ _AGREES, _NORMAL = 0.98, math.cos(math.radians(10.0))
 _SAME = 1e-6
 
 
-def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
+def repeats(
+    ready: Prepared, same: Sequence[schema.OperationEntry], mine: NDArray[np.bool_]
+) -> tuple[int, dict[str, float] | None]:
     """How often a step is done, and by how much one rotary axis turns from one time to the next; None where several turn.
 
     `same` are the operations of the step: images of each other, from the first angle up; `mine` (n,) its samples.
@@ -207,7 +193,9 @@ class Reasons(NamedTuple):
     cutters: list[str]
 
 
-def reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[ProcessStep], done: NDArray[np.bool_]) -> Reasons:
+def reasons(
+    entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[schema.ProcessStep], done: NDArray[np.bool_]
+) -> Reasons:
     """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any."""
     used = {each.cutter for each in steps}
     finest_first = sorted(entries, key=lambda e: (e.id not in used, e.radius, e.corner_radius))
@@ -227,17 +215,17 @@ def remaining(
     requested: float,
     steps: Sequence[Step],
     fitting: Fitting,
-) -> list[RemainingEntry]:
+) -> list[schema.RemainingEntry]:
     """List what is left by cause, the largest area first.
 
     `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand
     in the plan file; `fitting` finds the usual sizes that fit.
     """
-    samples, entries = ready.samples, list[RemainingEntry]()
+    samples, entries = ready.samples, list[schema.RemainingEntry]()
     cutters, left = {cutter.id: cutter for cutter in ready.cutters}, ready.finished & ~done
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
-        cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
+        cause = schema.SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else schema.NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
             rows = np.flatnonzero(mine)
@@ -248,7 +236,7 @@ def remaining(
             fits = fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
             by_size["fits"] = None if fits is None else [
-                FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=share)
+                schema.FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=share)
                 for c, share in fits
             ]  # fmt: skip
         helped = _helped(steps, mine, area)
@@ -256,34 +244,34 @@ def remaining(
     unjudged = samples.unjudged >= 0
     if unjudged.any() or samples.empty:
         empty = [number for number, _ in samples.empty]
-        entries.append(remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested, empty))
+        entries.append(remaining_entry(ready, schema.UNJUDGED_CAUSE, unjudged, area, requested, empty))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
 
 
-def _points(ready: Prepared, rows: Rows, area: Floats) -> PointsEntry | None:
+def _points(ready: Prepared, rows: Rows, area: Floats) -> schema.PointsEntry | None:
     """The inside cones with a point among the faces of some samples (m,)."""
     by_face = {number: rows[ready.samples.face[rows] == number] for number in np.unique(ready.samples.face[rows]).tolist()}
     sizes = {number: float(area[mine].sum()) for number, mine in by_face.items() if ends_in_a_point(ready, number, mine)}
     if not sizes:
         return None
     faces = [f"F{number}" for number in sorted(sizes, key=lambda number: (-sizes[number], number))]
-    return PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, float(area[rows].sum()))))
+    return schema.PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, float(area[rows].sum()))))
 
 
-def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> list[HelpEntry]:
+def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> list[schema.HelpEntry]:
     """How much of some samples (n,) each step frees, the most first."""
-    whole, each = float(area[mine].sum()), list[HelpEntry]()
+    whole, each = float(area[mine].sum()), list[schema.HelpEntry]()
     for k, step in enumerate(steps):
         freed = step.freed[mine[step.freed]]
         share = min(1.0, float(area[freed].sum()) / max(1e-300, whole))
         if share >= _HELPS:
-            each.append(HelpEntry(step=k, share=share))
+            each.append(schema.HelpEntry(step=k, share=share))
     return sorted(each, key=lambda entry: (-entry.share, entry.step))
 
 
 def remaining_entry(
     ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float, empty: Sequence[int] = (), **more: Any
-) -> RemainingEntry:
+) -> schema.RemainingEntry:
     """The entry of some samples (n,) that are left for one cause, and of faces without samples; with more of its fields."""
     samples, missing = ready.samples, float(sum(ready.scene.part.faces[number - 1].area for number in empty))
     whole = float(area[mine].sum()) + (missing if np.isfinite(missing) else 0.0)
@@ -294,7 +282,9 @@ def remaining_entry(
         place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
     share = min(1.0, whole / max(1e-300, requested))
     faces = list(dict.fromkeys([*faces, *(f"F{number}" for number in empty)]))
-    return RemainingEntry(cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place, **more)
+    return schema.RemainingEntry(
+        cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place, **more
+    )
 
 
 def faces_of(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:
@@ -316,7 +306,7 @@ _BELOW = -0.01
 
 def process_entry(
     ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str, fitting: Fitting
-) -> ProcessEntry:
+) -> schema.ProcessEntry:
     """Put together what the given cutters, setups and operations finish.
 
     The plan of operations among the `answers` is the process where there is one, else the fewest runs of cutters and setups.
@@ -349,7 +339,7 @@ def process_entry(
         at_edges = np.where(ready.inside_bodies, 0.0, sampled)
         exempt = remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, at_edges, requested)
     setups, stock = setups_and_stock(ready)
-    return ProcessEntry(
+    return schema.ProcessEntry(
         steps=steps, setups=setups, stock=stock, plan=name, finished_mm2=finished,
         asked_mm2=requested, left=left,
         seconds=seconds, **times,
@@ -357,7 +347,7 @@ def process_entry(
     )  # fmt: skip
 
 
-def in_colours_of_steps(operations: OperationsEntry, process: ProcessEntry) -> OperationsEntry:
+def in_colours_of_steps(operations: schema.OperationsEntry, process: schema.ProcessEntry) -> schema.OperationsEntry:
     """Plans with the operations of the process in the colours of their steps: pages, models and CAD have one legend."""
     step = {name: int(number.partition(".")[0]) for name, number in numbered(operations, process).items()}
     plans = [
@@ -372,7 +362,7 @@ def in_colours_of_steps(operations: OperationsEntry, process: ProcessEntry) -> O
     return operations.model_copy(update={"plans": plans})
 
 
-def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str, Any]:
+def _times(options: Options, plan: schema.OperationPlanEntry, setups: int) -> dict[str, Any]:
     """What the time of a plan is made of, by the fields of the process."""
     clamping = options.setup_time * max(0, setups - 1)
     change = options.change_time * max(0, len({each.cutter for each in plan.operations}) - 1)
@@ -382,7 +372,7 @@ def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str,
     }  # fmt: skip
 
 
-def place_in_shop(step: OperationEntry | ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
+def place_in_shop(step: schema.OperationEntry | schema.ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
     """Give the place of a step in the order of a shop, `size` being those of cutters by their ids, 0 the largest.
 
     Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls, other
@@ -400,7 +390,7 @@ class _Parts:
     area: Floats
     requested: float
 
-    def step(self, mine: NDArray[np.bool_], made: OperationEntry | None, **fields: Any) -> ProcessStep:
+    def step(self, mine: NDArray[np.bool_], made: schema.OperationEntry | None, **fields: Any) -> schema.ProcessStep:
         """A step that finishes some samples (n,): with one axis, or each with that of its posture.
 
         What is not among the `fields` is as in its operation.
@@ -410,20 +400,20 @@ class _Parts:
         axes = self.over.each[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
         below = axes @ ready.setups[setup].setup < _BELOW
         return filled(
-            ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
+            schema.ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
             share=min(1.0, size / max(1e-300, self.requested)), below_mm2=float(self.area[mine][below].sum()),
             operation="" if made is None else made.id, **fields,
         )  # fmt: skip
 
-    def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
+    def planned(self, operations: Operations, plan: OperationPlan, entry: schema.OperationPlanEntry) -> list[schema.ProcessStep]:
         """List the steps that were planned, in the order of a shop."""
         place = partial(place_in_shop, size={cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))})
         # Operations that are images of each other are one step.
-        together = dict[object, list[tuple[int, OperationEntry]]]()
+        together = dict[object, list[tuple[int, schema.OperationEntry]]]()
         for k, each in sorted(enumerate(entry.operations), key=lambda ranked: place(ranked[1])):
             if each.step is None:
                 together.setdefault(each.id if each.orbit is None else each.orbit, []).append((k, each))
-        alone, planned = _alone(operations, plan), list[ProcessStep]()
+        alone, planned = _alone(operations, plan), list[schema.ProcessStep]()
         for images in together.values():
             images.sort(key=lambda ranked: [angle % 360.0 for angle in (ranked[1].angles_deg or {}).values()])
             ranks, same = [k for k, _ in images], [each for _, each in images]
@@ -441,7 +431,7 @@ class _Parts:
         # Those that are images of others count with all of them.
         return sorted(planned, key=place)
 
-    def own(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> Iterator[ProcessStep]:
+    def own(self, operations: Operations, plan: OperationPlan, entry: schema.OperationPlanEntry) -> Iterator[schema.ProcessStep]:
         """The planner's own steps in their order."""
         done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
         all_done = np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
@@ -459,25 +449,25 @@ class _Parts:
                 own=self._own(operations, outcome, all_done), **none,
             )  # fmt: skip
 
-    def _own(self, operations: Operations, outcome: OwnResult, done: Rows) -> OwnStepEntry:
+    def _own(self, operations: Operations, outcome: OwnResult, done: Rows) -> schema.OwnStepEntry:
         """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
 
         `done` (d,) is what all of them do together.
         """
         process, area, near = self.ready.options.process, self.area, outcome.nearest
-        leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
+        leaves, missed = list[schema.RemainingEntry](), np.zeros(len(area), bool)
         missed[outcome.requested] = True
         missed[done] = False
         if process is not None and process.steps[outcome.number - 1].faces is not None:
             verdicts = self.over.each[outcome.setup][1][outcome.cutter.id]
             cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
             for code in np.unique(cause[missed]).tolist():
-                word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
+                word = schema.OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else schema.NOT_PLANNED
                 leaves.append(remaining_entry(self.ready, word, missed & (cause == code), area, self.requested))
-        return OwnStepEntry(
+        return schema.OwnStepEntry(
             number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
             leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)),
-            nearest=None if near is None else NearestEntry(
+            nearest=None if near is None else schema.NearestEntry(
                 angles_deg=_named(operations, near.angle), axis=vector(near.axis), area_mm2=float(area[near.rows].sum())
             ),
         )  # fmt: skip

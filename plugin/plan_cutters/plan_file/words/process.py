@@ -12,21 +12,9 @@ from plan_cutters.domain.clamping import Vise
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import (
-    MARGIN,
-    NOT_PLANNED,
-    OTHER_ORIENTATION,
-    SHORT_STEP,
-    UNJUDGED_CAUSE,
-    NextEntry,
-    ProcessEntry,
-    ProcessSetup,
-    ProcessStep,
-    RemainingEntry,
-    StockEntry,
-)
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
@@ -53,7 +41,7 @@ _SMALLEST = 1.0
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
 _OTHER_CAUSES = {
-    UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "too little for a step"
+    schema.UNJUDGED_CAUSE: "not judged", schema.NOT_PLANNED: "in no step", schema.SHORT_STEP: "too little for a step"
 }  # fmt: skip
 #: Steps of the planner's own whose faults are told.
 _OWN_STEPS = 3
@@ -157,8 +145,8 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     clearance = ""
     if known:
         least, step = min(known)
-        wider = least < MARGIN and plan.effective.holder_clearance_mm < MARGIN
-        advice = f"; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`" if wider else ""
+        wider = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN
+        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
         much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
         clearance = f"Least clearance of neck, shank and holder: {much}{advice}."
     return ProcessStory(
@@ -187,7 +175,7 @@ def with_process_words(plan: Plan) -> Plan:
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
-def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
+def _row(number: int, step: schema.ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
     turned = ""
     if fixed:
         by = step.repeat_deg or {}
@@ -214,11 +202,11 @@ def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool)
     )  # fmt: skip
 
 
-def _took(step: ProcessStep | DrillingStep) -> str:
+def _took(step: schema.ProcessStep | DrillingStep) -> str:
     return duration(None if step.seconds is None else step.seconds + step.link_seconds)
 
 
-def stand_text(plan: Plan, setup: ProcessSetup) -> str:
+def stand_text(plan: Plan, setup: schema.ProcessSetup) -> str:
     """Say which way is up, what holds the part, and what it stands on."""
     along = [f"{sign}{name}" for name, each in zip("XYZ", setup.up, strict=True) for sign in "+-" if each == float(f"{sign}1")]
     up = along[0] if along else axis_words(setup.up)
@@ -247,11 +235,11 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
     return named(plan, f"Setup {setup.number}: {up} up, {how}{soft}.")
 
 
-def _lies(stock: StockEntry) -> bool:
+def _lies(stock: schema.StockEntry) -> bool:
     return stock.word.startswith("cylinder") and stock.size_mm[0] != stock.size_mm[1]
 
 
-def roughing(process: ProcessEntry) -> str:
+def roughing(process: schema.ProcessEntry) -> str:
     """How much of the stock is to be roughed, and in what time if that is known; empty where there is none."""
     stock = process.stock
     if stock is None:
@@ -263,7 +251,7 @@ def roughing(process: ProcessEntry) -> str:
     return f"Roughing: {removed} of {whole} cm³ of stock{took}."
 
 
-def _besides(process: ProcessEntry) -> str:
+def _besides(process: schema.ProcessEntry) -> str:
     """The time between steps, which with theirs makes that of the process, or why that is not known; empty without any."""
     if unknown := [str(k) for k, step in enumerate(process.steps, 1) if step.seconds is None and process.plan == "fastest"]:
         steps = f"step{'s' * (len(unknown) > 1)} {listed(unknown, _FACES)}"
@@ -287,7 +275,7 @@ def _fitting(faces: Sequence[str], width: int) -> str:
     return ""
 
 
-def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[Stays]:
+def _remaining(process: schema.ProcessEntry, plan: Plan) -> Iterator[Stays]:
     listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
@@ -305,26 +293,28 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[Stays]:
         yield Stays("", "", text)
 
 
-def _is_minor(each: RemainingEntry) -> bool:
+def _is_minor(each: schema.RemainingEntry) -> bool:
     """Whether an area is too small for a line, and for advice; what was not judged is none."""
-    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != UNJUDGED_CAUSE
+    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != schema.UNJUDGED_CAUSE
 
 
-def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:
+def _next_entries(
+    plan: Plan, process: schema.ProcessEntry, remaining: Sequence[schema.RemainingEntry]
+) -> Iterator[schema.NextEntry]:
     """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
-    if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
+    if all(each.cause == schema.UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
     sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
     if sharp >= WORTH and plan.effective.sharp_edges == "asked":
         # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
         words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
-        yield NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        yield schema.NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
         if left - sharp < WORTH:
             return
     if advice is None:
         if "mend" not in plan.effective.answers:
-            yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
+            yield schema.NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
         return
     things = [{change.thing for change in step.changes} for step in advice.steps]
     after = dict[int, float]()
@@ -341,10 +331,10 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
         if left - after[k] >= WORTH - _ROUNDING and not alike:
             reported.append((things[k], after[k]))
             option = advice.steps[k].option
-            yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
+            yield schema.NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
 
 
-def _next(each: NextEntry) -> str:
+def _next(each: schema.NextEntry) -> str:
     stays = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
     bracket = f" [`{shlex.join(each.argv)}`]" if each.argv else ""
     return f"Next: {each.words}{stays}{bracket}"
@@ -377,7 +367,7 @@ def _lines(text: str) -> list[str]:
     return textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
 
 
-def own_steps(process: ProcessEntry) -> Iterator[str]:
+def own_steps(process: schema.ProcessEntry) -> Iterator[str]:
     """Sentences on the planner's own steps, first which they are, then what is wrong with each; none where all were planned."""
     own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
     if not own:
@@ -400,7 +390,7 @@ def shortened(sentences: Sequence[str]) -> list[str]:
     return [*sentences[: _OWN_STEPS + 1], *more]
 
 
-def fault(number: int, step: ProcessStep) -> str:
+def fault(number: int, step: schema.ProcessStep) -> str:
     """Say what is wrong with a step; empty where it does what it is asked, and where it was planned."""
     own = step.own
     if own is None:
@@ -411,7 +401,7 @@ def fault(number: int, step: ProcessStep) -> str:
     left = sum(each.area_mm2 for each in own.leaves)
     if left > _MINOR * own.asked_mm2:
         worst = own.leaves[0]
-        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else reason(worst.cause)
+        cause = "it needs another orientation" if worst.cause == schema.OTHER_ORIENTATION else reason(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
     if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
         return f"Step {number} does nothing: steps that share its faces are quicker."
