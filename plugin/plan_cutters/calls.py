@@ -74,19 +74,10 @@ def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **o
 
 @spelled_out(PointOptions, Options)
 def posture_map(
-    part: Any,
-    *,
-    point: Range,
-    cutter: Cutter | str,
-    rotations: float | Range | None = None,
-    tilt: Range | None = None,
-    machine: Machine | str | os.PathLike[str] | None = None,
-    tolerance: float | None = None,
-    x: Heading | None = None,
-    rotations_deg: float | Range | None = None,
-    tilt_deg: Range | None = None,
-    **scene: Unpack[PointOptions],
-) -> "PostureMap":
+    part: Any, *, point: Range, cutter: Cutter | str, rotations: float | Range | None = None, tilt: Range | None = None,
+    machine: Machine | str | os.PathLike[str] | None = None, tolerance: float | None = None, x: Heading | None = None,
+    rotations_deg: float | Range | None = None, tilt_deg: Range | None = None, **scene: Unpack[PointOptions],
+) -> "PostureMap":  # fmt: skip
     """Find the free tilt intervals of a cutter at a point of a part.
 
     Parameters

@@ -131,13 +131,9 @@ _CLAMPED_FOR = 0.005
 
 
 def holdable(
-    samples: SurfaceSamples,
-    cutters: Sequence[Cutter],
-    conditions: Conditions,
-    axis: Floats,
-    table: float | None = None,
+    samples: SurfaceSamples, cutters: Sequence[Cutter], conditions: Conditions, axis: Floats, table: float | None = None,
     rows: Rows | None = None,
-) -> NDArray[np.bool_]:
+) -> NDArray[np.bool_]:  # fmt: skip
     """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
 
     `conditions`: machine and posture range. `axis` (3,) float: unit direction of the part along the spindle. `table`: height

@@ -306,13 +306,10 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: R
     ready, cutter, state = base
     after = candidate.state
     result = option(
-        ready,
-        cutter,
-        cutters=after.cutters,
-        setups=after.axes if after.axes != state.axes else None,
+        ready, cutter, cutters=after.cutters, setups=after.axes if after.axes != state.axes else None,
         conditions=after.ready.conditions,
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
-    )
+    )  # fmt: skip
     freed = np.setdiff1d(open_rows, rows, assume_unique=True)
     words = [each.why for each in candidate.moves]
     alike = len(words) > 1 and all(each.endswith(_REST) for each in words)

@@ -72,13 +72,9 @@ class Command(click.Command):
     """
 
     def __init__(
-        self,
-        *words: Any,
-        subcommands: Callable[[], Sequence[tuple[str, str]]] = tuple,
-        examples: Sequence[tuple[str, str]] = (),
-        codes: Sequence[tuple[str, str]] = (),
-        **more: Any,
-    ) -> None:
+        self, *words: Any, subcommands: Callable[[], Sequence[tuple[str, str]]] = tuple,
+        examples: Sequence[tuple[str, str]] = (), codes: Sequence[tuple[str, str]] = (), **more: Any,
+    ) -> None:  # fmt: skip
         more["context_settings"] = {"help_option_names": ["-h", "--help"]}
         super().__init__(*words, **more)
         click.version_option(__version__, prog_name="plan-cutters")(self)

@@ -208,14 +208,9 @@ def reasons(
 
 
 def remaining(
-    ready: Prepared,
-    done: NDArray[np.bool_],
-    why: Reasons,
-    area: Floats,
-    requested: float,
-    steps: Sequence[Step],
+    ready: Prepared, done: NDArray[np.bool_], why: Reasons, area: Floats, requested: float, steps: Sequence[Step],
     fitting: Fitting,
-) -> list[schema.RemainingEntry]:
+) -> list[schema.RemainingEntry]:  # fmt: skip
     """List what is left by cause, the largest area first.
 
     `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand

@@ -56,11 +56,6 @@ class VerdictCounts(Frozen):
         """Samples of the finished part's surface that are not reached."""
         return self.blocked + self.undecided
 
-    @property
-    def lost(self) -> int:
-        """The former name of `not_reached`."""
-        return self.not_reached
-
     def of(self, verdict: str) -> int:
         """Samples of the finished part's surface with a verdict."""
         return self.blocked if verdict == "inaccessible" else int(getattr(self, verdict))

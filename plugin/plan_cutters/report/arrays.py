@@ -346,26 +346,14 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
         '<?xml version="1.0"?>',
         '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
         'compressor="vtkZLibDataCompressor">',
-        "<PolyData>",
-        "<FieldData>",
-        *(_texts(name, lines) for name, lines in about.items()),
-        "</FieldData>",
+        "<PolyData>", "<FieldData>", *(_texts(name, lines) for name, lines in about.items()), "</FieldData>",
         f'<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">',
         '<PointData Scalars="verdict" Vectors="axis" Normals="normal">',
         *(_array(name, values) for name, values in arrays.items()),
-        "</PointData>",
-        "<CellData></CellData>",
-        "<Points>",
-        _array("Points", point),
-        "</Points>",
-        "<Verts>",
-        _array("connectivity", np.arange(n, dtype=np.int64)),
-        _array("offsets", np.arange(1, n + 1, dtype=np.int64)),
-        "</Verts>",
-        "</Piece>",
-        "</PolyData>",
-        "</VTKFile>",
-    ]
+        "</PointData>", "<CellData></CellData>", "<Points>", _array("Points", point), "</Points>",
+        "<Verts>", _array("connectivity", np.arange(n, dtype=np.int64)), _array("offsets", np.arange(1, n + 1, dtype=np.int64)),
+        "</Verts>", "</Piece>", "</PolyData>", "</VTKFile>",
+    ]  # fmt: skip
     path.write_text("\n".join(text) + "\n", encoding="ascii", errors="xmlcharrefreplace")
 
 

@@ -6,25 +6,10 @@ from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, listed, reporting, sentence
 from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
+from plan_cutters.plan_file.words import headline as first
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
-from plan_cutters.plan_file.words.headline import (
-    Headline,
-    could_not,
-    headline,
-    in_summary,
-    inside,
-    inside_radii,
-    not_judged,
-    not_seen,
-    patterns,
-    proposal,
-    sharp_edges,
-    shown_cutter,
-    undecided,
-    unseen,
-)
 from plan_cutters.plan_file.words.holes import holes
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names, typed
 from plan_cutters.plan_file.words.notes import repeated_warnings
@@ -47,7 +32,7 @@ class Story:
     taken: str | None
     shown: str
     inside: tuple[str, ...]
-    headline: Headline
+    headline: first.Headline
     process: ProcessStory
     proposal: tuple[str, ...]
     in_short: tuple[str, ...]
@@ -68,22 +53,22 @@ class Story:
 @reporting(lambda plan: plan.effective.units)
 def story_of(plan: Plan) -> Story:
     """Tell a plan."""
-    names, best = short_names(plan), shown_cutter(plan)
+    names, best = short_names(plan), first.shown_cutter(plan)
     cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
     finished = plan.selected or plan.selected_over_setups
     pair = "" if finished else together(plan)
     scope = (
-        *undecided(plan, names), *holes(plan), *sharp_edges(plan, names), *inside_radii(plan, names), *not_judged(plan),
-        *not_seen(plan, names), *([sentence(named(plan, pair))] if pair else []),
+        *first.undecided(plan, names), *holes(plan), *first.sharp_edges(plan, names), *first.inside_radii(plan, names),
+        *first.not_judged(plan), *first.not_seen(plan, names), *([sentence(named(plan, pair))] if pair else []),
     )  # fmt: skip
     return Story(
         names=names, taken=finished or plan.selected_for_setup, shown=best.id,
-        inside=tuple(named(plan, line) for line in inside(plan)), headline=headline(plan, names),
-        process=process_story(plan, names), proposal=proposal(plan), in_short=tuple(in_short(plan)), scope=scope,
+        inside=tuple(named(plan, line) for line in first.inside(plan)), headline=first.headline(plan, names),
+        process=process_story(plan, names), proposal=first.proposal(plan), in_short=tuple(in_short(plan)), scope=scope,
         between=tuple(each.between for each in cutters if each.between), cutters=cutters,
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)), operations=tuple(operations(plan)),
         answers=tuple(answers(plan)), doubts=notes.unsure(plan),
-        notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
+        notes=(notes.side(plan), *map(Line, first.patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
     )  # fmt: skip
 
 
@@ -109,7 +94,7 @@ _WHERE_JUDGED, _IN_PART = Chip("unsure", "!", "Feasible where judged"), Chip("pa
 def chip(plan: Plan, story: Story) -> Chip:
     """The verdict on the part. Feasible without more words is only what the exit code calls so, too."""
     good = story.headline.good
-    if good and (could_not(plan) or unseen(plan)):
+    if good and (first.could_not(plan) or first.unseen(plan)):
         return _WHERE_JUDGED
     if good is None and not plan.process.finished and any(c.blocked for c in plan.cutters):
         return _IN_PART
@@ -140,7 +125,7 @@ def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines."""
     story = story_of(plan)
     # As of the part: feasible without more words only where all was judged and seen.
-    default, judged = plan.effective.sampled_by == "default", not could_not(plan)
+    default, judged = plan.effective.sampled_by == "default", not first.could_not(plan)
     unsure = {c.id: bool(c.feasible) and not (judged and (c.seen or not default)) for c in plan.cutters}
     chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
@@ -180,8 +165,8 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each([f"Inside other bodies: {text}" for text in story.inside[:1]], _LEFT, 1)
     yield from each([" ".join(story.inside[1:])], 5)
     yield from each(_doubts(plan, story)[:_DOUBTS], 1, 1)
-    yield from each([" ".join(filter(None, (story.headline.about, *not_judged(plan))))], 3, 1)
-    yield from each([in_summary(plan)], 2, 1)
+    yield from each([" ".join(filter(None, (story.headline.about, *first.not_judged(plan))))], 3, 1)
+    yield from each([first.in_summary(plan)], 2, 1)
     yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
     yield from each(holes(plan), 2, 1)
     if plan.process.plan == "fewest":
@@ -193,7 +178,8 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each(process.next[:1], 3, 0)
     yield from each(process.next[1:], 3)
     yield from each(stays[process.much :], _LEFT)
-    yield from each([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
+    unseen = first.not_seen(plan, story.names) if first.unseen(plan) else []
+    yield from each([*first.undecided(plan, story.names), *unseen], 2, 1)
     yield from each([process.clearance], 1, 1)
     yield from each(_alone(story), _ALONE)
     yield from each([story.headline.why], 2)

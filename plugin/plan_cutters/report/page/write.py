@@ -89,13 +89,9 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
     script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
     script = with_three(script)
     return _TEMPLATE.render(
-        policy=policy(script, style, "data: blob:"),
-        script=Markup(script),
-        style=Markup(style),
-        meta=Markup(embedded(meta)),
-        data=Markup(data),
-        **shown,
-    ).encode()
+        policy=policy(script, style, "data: blob:"), script=Markup(script), style=Markup(style), meta=Markup(embedded(meta)),
+        data=Markup(data), **shown,
+    ).encode()  # fmt: skip
 
 
 _TEMPLATE = template(_HERE / "page.html.jinja")
