@@ -173,7 +173,7 @@ def _options(request: MapRequest) -> "Options":
 
 
 def _text(values: Iterable[float]) -> str:
-    return ", ".join(f"{x + 0.0:.6g}" for x in values)
+    return ", ".join(f"{round(float(x), 9) + 0.0:.6g}" for x in values)
 
 
 def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
@@ -193,8 +193,8 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
     title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
     moved = f"; the requested point is {mm(off)} off" if off > 1e-3 else ""
     lines = [
-        f"{title} at ({_text(_round(result.point))}) on {face} of {printable(Path(request.part).name, 80)}",
-        f"Normal ({_text(_round(result.normal))}), rotation 0 towards ({_text(_round(result.direction_max))}); curvatures "
+        f"{title} at ({_text(result.point)}) on {face} of {printable(Path(request.part).name, 80)}",
+        f"Normal ({_text(result.normal)}), rotation 0 towards ({_text(result.direction_max)}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
         f"Machine {printable(Path(request.machine).name, 40)}, setup {printable(Path(request.setup).name, 40)}; {proved}; "
         f"{apart}.",
@@ -211,12 +211,8 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         away = mm(math.hypot(*result.under_flat.tolist()))
         lines.append(f"Upright the tool is free with the point under its flat, {away} from its axis.")
     if result.lies_along:
-        lines.append(f"With the axis ({_text(_round(result.flank_axis))}) the tool is free, its flank along the surface.")
+        lines.append(f"With the axis ({_text(result.flank_axis)}) the tool is free, its flank along the surface.")
     return lines
-
-
-def _round(vector: Iterable[float]) -> list[float]:
-    return [round(float(x), 9) for x in vector]
 
 
 def _degrees(intervals: "Floats") -> list[list[float]]:

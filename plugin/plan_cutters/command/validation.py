@@ -4,6 +4,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -68,11 +69,8 @@ class Faces(Words):
         return None if any(":" in value or "!" in value for value in values) else super().added(values)
 
 
-class File(Words):
-    """A path, completed as a file."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(name, files=True)
+#: A path, completed as a file.
+File = partial(Words, files=True)
 
 
 class Folder(Words):

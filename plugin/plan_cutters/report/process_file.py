@@ -11,6 +11,7 @@ from plan_cutters.files.content import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep
 from plan_cutters.plan_file.part_info import ProposedSetup
+from plan_cutters.plan_file.words.operations import images_of
 from plan_cutters.report.protocol import Judged
 
 
@@ -42,19 +43,15 @@ def process_toml(plan: Plan) -> str:
 
 def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
     """A step as often as it is done: each time has angles of its own, which the file writes out."""
-    plans = [] if plan.operations is None else plan.operations.plans
-    operations = [each for one in plans if one.name == plan.process.plan for each in one.operations]
-    orbit = next((each.orbit for each in operations if each.id == step.operation), None)
-    if step.repeat == 1 or orbit is None:
-        return [step]
+    images = [] if step.repeat == 1 or plan.operations is None else images_of(plan.operations, plan.process, step)
     return [
         step.model_copy(update={
             "angles_deg": each.angles_deg, "axis": each.axis, "faces": [face.face for face in each.faces],
             "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds, "link_seconds": each.link_seconds,
         })
-        for each in operations
-        if each.orbit == orbit
-    ]  # fmt: skip
+        for each in images
+        if each.orbit is not None
+    ] or [step]  # fmt: skip
 
 
 def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:

@@ -46,7 +46,7 @@ def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, st
     """The numbers of `operation_names`."""
     names = dict[str, str]()
     for number, step in enumerate(process.steps, 1):
-        images = _images(operations, process, step)
+        images = images_of(operations, process, step)
         for k, each in enumerate(images, 1):
             names[each.id] = f"{number}.{k}" if len(images) > 1 else str(number)
     return names
@@ -57,7 +57,7 @@ def of_process(operations: OperationsEntry, process: ProcessEntry) -> list[Opera
     return [each for one in operations.plans if one.name == process.plan for each in one.operations]
 
 
-def _images(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
+def images_of(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
     """The operations that a step consists of: images of each other."""
     entries = of_process(operations, process)
     made = next((each for each in entries if each.id == step.operation), None)
@@ -70,7 +70,7 @@ def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
     """
     if step.repeat < 2 or step.repeat_deg or plan.operations is None:
         return ""
-    images = _images(plan.operations, plan.process, step)
+    images = images_of(plan.operations, plan.process, step)
     every = sorted((each.angles_deg or {} for each in images), key=lambda angles: [angle % 360.0 for angle in angles.values()])
     for shown in range(len(every), 1, -1):
         words = list[str]()
