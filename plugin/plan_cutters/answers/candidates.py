@@ -25,16 +25,12 @@ _ONE = float(np.cos(np.radians(0.1)))
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Candidates(Record):
-    """Directions of the part along the spindle that are compared.
+    """Directions of the part along the spindle that are compared."""
 
-    `axis` (m, 3) float: unit directions. `stands_on`: for each the numbers of the planar faces that lie on the table. `lowest`
-    (m,) float: height along each of the part's lowest point, mm. `tall` (m,) float: how high the part stands along each, mm.
-    """
-
-    axis: Floats
-    stands_on: tuple[tuple[int, ...], ...]
-    lowest: Floats
-    tall: Floats
+    axis: Floats  #: (m, 3) float: unit directions.
+    stands_on: tuple[tuple[int, ...], ...]  #: For each the numbers of the planar faces that lie on the table.
+    lowest: Floats  #: (m,) float: height along each of the part's lowest point, mm.
+    tall: Floats  #: (m,) float: how high the part stands along each, mm.
     bearing: tuple[Bearing, ...]  #: How the part stands on these planes.
 
     @classmethod

@@ -220,15 +220,11 @@ def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
 
 @dataclass(slots=True)
 class Judgements:
-    """Keep all that was judged so far, so that nothing is judged twice.
+    """Keep all that was judged so far, so that nothing is judged twice."""
 
-    `looked`, `missed`: by key: samples (n,) that were judged, and those of them that are not reached. `tell`: called whenever a
-    case was judged.
-    """
-
-    looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
-    missed: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
-    tell: Callable[[], None] = lambda: None
+    looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)  #: By key: samples (n,) that were judged.
+    missed: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)  #: Those of them that are not reached.
+    tell: Callable[[], None] = lambda: None  #: Called whenever a case was judged.
 
     @classmethod
     def of(cls, ready: Prepared, everywhere: Everywhere) -> "Judgements":
@@ -286,16 +282,12 @@ def move_of(thing: str, now: Value, tried: Value, why: str) -> MoveEntry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
-    """A step that may be worth judging.
-
-    `state`: after it. `estimate`: share of the finished area that it may leave. `nested`: whether it surely reaches all that is
-    reached now.
-    """
+    """A step that may be worth judging."""
 
     moves: tuple[MoveEntry, ...]
-    state: State
-    estimate: float
-    nested: bool
+    state: State  #: After it.
+    estimate: float  #: Share of the finished area that it may leave.
+    nested: bool  #: Whether it surely reaches all that is reached now.
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -276,7 +276,9 @@ def _fitting(faces: Sequence[str], width: int) -> str:
 
 
 def _remaining(process: schema.ProcessEntry, plan: Plan) -> Iterator[Stays]:
-    listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
+    # Too small for a line, and for advice; what was not judged is none.
+    minor = [e for e in process.left[1:] if e.area_mm2 < _SMALLEST and e.share < WORTH and e.cause != schema.UNJUDGED_CAUSE]
+    listed_causes = [each for each in process.left if each not in minor][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
@@ -291,11 +293,6 @@ def _remaining(process: schema.ProcessEntry, plan: Plan) -> Iterator[Stays]:
         where = listed(process.exempt.faces, _FACES)
         text = f"Not required (`--sharp-edges left`): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
         yield Stays("", "", text)
-
-
-def _is_minor(each: schema.RemainingEntry) -> bool:
-    """Whether an area is too small for a line, and for advice; what was not judged is none."""
-    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != schema.UNJUDGED_CAUSE
 
 
 def _next_entries(
