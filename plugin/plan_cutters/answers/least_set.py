@@ -98,8 +98,6 @@ def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int])
     rank, 0 for the most wanted. Of covers with as few runs that in the fewest setups is taken, and of these the one with the
     least sum of ranks. Returns `chosen`: ascending; `proven`: whether no fewer do.
 
-    Examples
-    --------
     >>> cover(np.array([[1, 0, 1], [0, 1, 1], [1, 1, 0]], bool), [0, 0, 0], [0, 1, 2])
     ([0, 1], True)
     >>> cover(np.zeros((3, 2), bool), [0, 0], [0, 1])

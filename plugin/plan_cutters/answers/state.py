@@ -47,8 +47,7 @@ class Case:
 
     ready: Prepared
     cutter: Cutter
-    #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
-    above: float | None = None
+    above: float | None = None  #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
 
     @property
     def setups(self) -> Iterator[Prepared]:
@@ -125,15 +124,12 @@ class SetupOf(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Cutters that share a part: what counts is what none of them reaches in any of its setups.
-
-    `cutters`: the one that is mended, or what became of it, first. `tables`: what setups that are not planned yet see, by axis
-    and tolerance, those that were looked at last.
-    """
+    """Cutters that share a part: what counts is what none of them reaches in any of its setups."""
 
     ready: Prepared
-    cutters: tuple[Cutter, ...]
+    cutters: tuple[Cutter, ...]  #: The one that is mended, or what became of it, first.
     setups: tuple[SetupOf, ...]
+    #: What setups that are not planned yet see, by axis and tolerance, those that were looked at last.
     tables: dict[tuple[Axis, float], Prepared] = field(default_factory=dict)
 
     @classmethod

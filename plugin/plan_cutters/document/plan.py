@@ -200,12 +200,7 @@ def machine_entry(ready: Prepared) -> schema.MachineEntry:
     rotary = None
     if kinematics is not None:
         rotary = [
-            filled(
-                schema.RotaryEntry,
-                axis,
-                direction=vector(direction),
-                limits_deg=None if axis.limits is None else build.degrees(axis.limits),
-            )
+            filled(schema.RotaryEntry, axis, direction=vector(direction), limits_deg=axis.limits and build.degrees(axis.limits))
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)

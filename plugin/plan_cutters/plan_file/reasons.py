@@ -60,20 +60,17 @@ def parts(colour: str) -> tuple[float, float, float]:
 
 
 class Reason(NamedTuple):
-    """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here.
-
-    `name` is a label, `tries` are the things to try first (they are not computed), each with the changes of an answer
-    (`domain.answers.MEANS`) that are this: none where no answer tries it. `colour` is sRGB; `pattern`, on the page, and `hatch`,
-    on sheets as matplotlib writes it, show the same without colour.
-    """
+    """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here."""
 
     code: str
-    name: str
+    name: str  #: A label.
     sentence: str
+    #: The things to try first (they are not computed), each with the changes of an answer (`domain.answers.MEANS`) that are this:
+    #: none where no answer tries it.
     tries: tuple[tuple[str, tuple[str, ...]], ...]
-    colour: str
-    pattern: str
-    hatch: str
+    colour: str  #: sRGB.
+    pattern: str  #: On the page; it shows the same without colour.
+    hatch: str  #: The same on sheets, as matplotlib writes it.
 
     @property
     def hint(self) -> str:

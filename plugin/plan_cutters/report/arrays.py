@@ -221,15 +221,12 @@ _MM, _DEG, _UNIT = 6, 6, 9
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column, or three of a vector: values (n,) or (n, 3), and digits behind the point and words of codes, for text.
-
-    A name has its unit at the end where it has one: `tilt_deg`.
-    """
+    """One column, or three of a vector. A name has its unit at the end where it has one: `tilt_deg`."""
 
     name: str
-    values: NDArray[Any]
-    digits: int = 0
-    words: dict[int, str] | None = None
+    values: NDArray[Any]  #: (n,) or (n, 3).
+    digits: int = 0  #: Behind the point, for text.
+    words: dict[int, str] | None = None  #: Of codes, for text.
 
     @property
     def names(self) -> list[str]:

@@ -23,42 +23,35 @@ FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
 @dataclass(frozen=True, slots=True)
 class WorstFace:
-    """A face on which a cutter loses samples: how much of it (mm2, percent), by which reason mostly, and how much too deep (mm)
-    the deepest witness there is in what; both may be empty."""
+    """A face on which a cutter loses samples."""
 
     id: str
     name: str
-    area: str
-    share: str
-    reason: str
-    depth: str
-    obstacle: str
+    area: str  #: How much of it, mm2.
+    share: str  #: The same in percent.
+    reason: str  #: By which mostly.
+    depth: str  #: How much too deep the deepest witness there is, mm; may be empty.
+    obstacle: str  #: In what; may be empty.
 
 
 @dataclass(frozen=True, slots=True)
 class CutterStory:
-    """A cutter's story has these texts; a text is empty where there is nothing to say.
-
-    `name` is that of all texts, `tool` its kind and how far it stands out of which holder; `reached` and `shares` are percent of
-    the area, in all and by verdict; `reason` is that of most of what is not reached, `hint` the thing to try first against it.
-    `sentence` says how much it reaches, or what it leaves (`left`), `next` the next step, `between` how much is known between its
-    samples. `faces` are the worst ones, of `failing` in all.
-    """
+    """A cutter's story has these texts; a text is empty where there is nothing to say."""
 
     id: str
-    name: str
-    tool: str
+    name: str  #: That of all texts.
+    tool: str  #: Its kind, and how far it stands out of which holder.
     feasible: bool | None
-    reached: str
-    shares: dict[str, str]
-    reason: str
-    hint: str
-    sentence: str
-    next: str
-    left: str
-    between: str
-    faces: tuple[WorstFace, ...]
-    failing: int
+    reached: str  #: Percent of the area.
+    shares: dict[str, str]  #: The same by verdict.
+    reason: str  #: That of most of what is not reached.
+    hint: str  #: The thing to try first against it.
+    sentence: str  #: How much it reaches, or `left`.
+    next: str  #: The next step.
+    left: str  #: What it leaves.
+    between: str  #: How much is known between its samples.
+    faces: tuple[WorstFace, ...]  #: The worst ones.
+    failing: int  #: How many there are in all.
 
 
 def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:

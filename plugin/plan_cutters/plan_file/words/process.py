@@ -50,11 +50,7 @@ _MINOR = 0.001
 
 
 class StepRow(NamedTuple):
-    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
-
-    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, `at` its
-    setup, counted from 0, and `holes` how many it drills, 0 for a mill.
-    """
+    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known."""
 
     number: str
     setup: str
@@ -62,11 +58,11 @@ class StepRow(NamedTuple):
     cutter: str
     share: str
     took: str
-    at: int
+    at: int  #: Its setup, counted from 0.
     faces: Sequence[str] = ()
-    alone: str = ""
-    operation: str = ""
-    holes: int = 0
+    alone: str = ""  #: What is gone if it is left out; empty where that is not known.
+    operation: str = ""  #: The id of its operation.
+    holes: int = 0  #: How many it drills, 0 for a mill.
 
 
 class Stays(NamedTuple):
@@ -165,13 +161,8 @@ def with_process_words(plan: Plan) -> Plan:
         for k, step in enumerate(plan.process.steps, 1)
     ]
     setups = [each.model_copy(update={"text": stand_text(plan, each)}) for each in plan.process.setups]
-    words = {
-        "steps": steps,
-        "setups": setups,
-        "left": needed,
-        "doubts": doubts(plan),
-        "next": list(_next_entries(plan, plan.process, needed)),
-    }
+    following = list(_next_entries(plan, plan.process, needed))
+    words = {"steps": steps, "setups": setups, "left": needed, "doubts": doubts(plan), "next": following}
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 

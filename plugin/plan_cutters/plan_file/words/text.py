@@ -19,30 +19,23 @@ from plan_cutters.plan_file.words.process import ProcessStory, process_story, sh
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A story puts a plan into words, in the order in which people read them.
+    """A story puts a plan into words, in the order in which people read them."""
 
-    `names` are those of cutters in the texts, by id; `taken` and `shown` the ids of the cutter that the headline says to take,
-    if any, and of the one that the models show. `inside` is surface that does not belong to the finished part, which comes
-    first; `scope` what is undecided, which faces were not judged or not seen, and how much the cutters reach together;
-    `between` how much is known between the samples; `in_short` what the plan of operations leaves, and how many orientations it
-    needs; `doubts` causes that make verdicts unsure, by their kind in the plural.
-    """
-
-    names: Mapping[str, str]
-    taken: str | None
-    shown: str
-    inside: tuple[str, ...]
+    names: Mapping[str, str]  #: Those of cutters in the texts, by id.
+    taken: str | None  #: Id of the cutter that the headline says to take, if any.
+    shown: str  #: Id of the one that the models show.
+    inside: tuple[str, ...]  #: Surface that does not belong to the finished part, which comes first.
     headline: first.Headline
     process: ProcessStory
     proposal: tuple[str, ...]
-    in_short: tuple[str, ...]
-    scope: tuple[str, ...]
-    between: tuple[str, ...]
+    in_short: tuple[str, ...]  #: What the plan of operations leaves, and how many orientations it needs.
+    scope: tuple[str, ...]  #: What is undecided, which faces were not judged or not seen, what the cutters reach together.
+    between: tuple[str, ...]  #: How much is known between the samples.
     cutters: tuple[CutterStory, ...]
     setups: tuple[Line, ...]
     operations: tuple[Line, ...]
     answers: tuple[Line, ...]
-    doubts: Mapping[str, tuple[Line, ...]]
+    doubts: Mapping[str, tuple[Line, ...]]  #: Causes that make verdicts unsure, by their kind in the plural.
     notes: tuple[Line, ...]
 
     def cutter(self, name: str) -> CutterStory:
@@ -129,13 +122,10 @@ def text_of(plan: Plan) -> TextEntry:
     unsure = {c.id: bool(c.feasible) and not (judged and (c.seen or not default)) for c in plan.cutters}
     chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
-        headline=f"{story.headline.title}.",
-        tone=chip(plan, story).tone,
-        lines=process_lines(plan, story),
-        cutters={each.id: each.sentence for each in story.cutters},
+        headline=f"{story.headline.title}.", tone=chip(plan, story).tone, lines=process_lines(plan, story),
+        cutters={each.id: each.sentence for each in story.cutters}, shares={each.id: each.shares for each in story.cutters},
         verdicts={name: VerdictText(tone=each.tone, word=each.word) for name, each in chips.items()},
-        shares={each.id: each.shares for each in story.cutters},
-    )
+    )  # fmt: skip
 
 
 def process_lines(plan: Plan, story: Story, write: Callable[[str], str] = as_fields, most: int = MOST) -> list[str]:

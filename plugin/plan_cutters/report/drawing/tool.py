@@ -86,14 +86,10 @@ class Sheet:
 
     def finished(self, width: float, height: float, **data: str) -> str:
         """The sheet as text, of a size, framed."""
-        self.root.attrib |= {
-            "width": f"{_mm(width)}mm",
-            "height": f"{_mm(height)}mm",
-            "viewBox": f"0 0 {_mm(width)} {_mm(height)}",
-        }
+        wide, high = _mm(width), _mm(height)
+        self.root.attrib |= {"width": f"{wide}mm", "height": f"{high}mm", "viewBox": f"0 0 {wide} {high}"}
         self.root.attrib |= {f"data-{word}": value for word, value in data.items()}
-        paper = ET.Element("rect", {"width": _mm(width), "height": _mm(height), "fill": "#fff"})
-        self._lines.insert(0, paper)
+        self._lines.insert(0, ET.Element("rect", {"width": wide, "height": high, "fill": "#fff"}))
         return ET.tostring(self.root, encoding="unicode") + "\n"
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:

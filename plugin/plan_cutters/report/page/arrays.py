@@ -228,12 +228,10 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Atlas:
-    """All sheets, by face number, side by side: `index` (height, width) is the row of the sample, -1 where no sheet lies;
-    `corner` the row and column at which a sheet begins.
-    """
+    """All sheets, by face number, side by side."""
 
-    index: Ints
-    corner: Mapping[int, tuple[int, int]]
+    index: Ints  #: (height, width): the row of the sample, -1 where no sheet lies.
+    corner: Mapping[int, tuple[int, int]]  #: Row and column at which a sheet begins.
     sheets: Mapping[int, Sheet]
 
 
