@@ -302,7 +302,7 @@ def _put(
 def _axes(case: Case, result: Result, operation: Any, rows: Ints) -> Floats:
     """The tool axis at samples: by the written angles or, where it is simultaneous, as each was found."""
     if operation.mode != "fixed":
-        found = (result.here, *(each for _, each in result.elsewhere))[operation.setup]
+        found = result.over_setups.each[operation.setup][1]
         return np.asarray(found[operation.cutter].axis[rows])
     angles = np.radians(list(operation.angles_deg.values()))
     axis = np.array(AXES[case.machine](*angles)) @ frame(case.setups[operation.setup][0])

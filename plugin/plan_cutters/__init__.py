@@ -5,33 +5,24 @@ Names are handed on lazily: importing the package loads neither the CAD kernel n
 
 __version__ = "0.1.0"
 
-#: The module of each name, behind `plan_cutters`.
-_HOME = {
-    "Cutter": ".domain.cutter",
-    "Holder": ".domain.holder",
-    "Segment": ".domain.holder",
-    "Stage": ".domain.holder",  # its former name
-    "Machine": ".domain.machine",
-    "Axis": ".domain.machine",
-    "Placement": ".domain.placement",
-    "Fixture": ".domain.fixture",
-    "Options": ".options",
-    "Scene": ".scene.scene",
-    "PostureRange": ".domain.posture",
-    "plan": ".calls",
-    "plan_many": "_batch.run",  # a package of its own
-    "Result": ".result",
-    "posture_map": ".calls",
-    "PostureMap": ".judging.posture_maps",
-    "PostureMaps": ".judging.posture_maps",
-    "Plan": ".plan_file.model",
-    "PlanError": ".errors",
-    "CutterError": ".errors",
-    "MachineError": ".errors",
-    "FixtureError": ".errors",
-    "LibraryError": ".errors",
-    "OptionError": ".errors",
+#: The names of each module, behind `plan_cutters`.
+_NAMES = {
+    ".calls": "plan posture_map",
+    ".domain.cutter": "Cutter",
+    ".domain.fixture": "Fixture",
+    ".domain.holder": "Holder Segment Stage",  # the last one is its former name
+    ".domain.machine": "Axis Machine",
+    ".domain.placement": "Placement",
+    ".domain.posture": "PostureRange",
+    ".errors": "CutterError FixtureError LibraryError MachineError OptionError PlanError",
+    ".judging.posture_maps": "PostureMap PostureMaps",
+    ".options": "Options",
+    ".plan_file.model": "Plan",
+    ".result": "Result",
+    ".scene.scene": "Scene",
+    "_batch.run": "plan_many",  # a package of its own
 }
+_HOME = {name: module for module, names in _NAMES.items() for name in names.split()}
 __all__ = ["__version__", *sorted(_HOME)]
 
 

@@ -5,17 +5,15 @@ from dataclasses import replace
 
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
-from plan_cutters.judged_part import JudgedPart, assembled, worded
+from plan_cutters.judged_part import Describe, Described, JudgedPart, assembled, worded
 from plan_cutters.judging.judge import FirstLook, first_look, worth_a_look
 from plan_cutters.outcome import Answers, Operations
-from plan_cutters.plan_file.model import AreaEntry, Plan
+from plan_cutters.plan_file.model import AreaEntry
 from plan_cutters.plan_file.words.headline import first_looked
 from plan_cutters.plan_file.words.names import called
 from plan_cutters.plan_file.words.notes import later_stages, run_unfinished
 from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
-
-Describe = Callable[[Plan], Plan]
 
 
 class Interim:
@@ -34,12 +32,12 @@ class Interim:
     ) -> None:  # fmt: skip
         self.answers, self.between = Answers(), dict[str, AreaEntry]()
         self._clock, self._stands, self._begins, self._looks = clock, stands, begins, looks
-        self._made: Callable[[], tuple[JudgedPart, Describe]] | None = None
+        self._made: Callable[[], Described] | None = None
         self._unanswered: Sequence[str] | None = None
         self._looked = self._planned = False
         self._absent: list[str] | None = None
 
-    def prepared(self, ready: Prepared, made: Callable[[FirstLook], tuple[JudgedPart, Describe]]) -> None:
+    def prepared(self, ready: Prepared, made: Callable[[FirstLook], Described]) -> None:
         """A part is ready to be judged; setups may still be compared.
 
         `made`: makes a part of a first look at it, as for `verdicts`: that stands until these do.
@@ -53,7 +51,7 @@ class Interim:
             looks(first_looked(ready.scene.setup, look.samples, look.of, shares, look.together))
         self.verdicts(lambda: made(look or first_look(ready)))
 
-    def verdicts(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
+    def verdicts(self, made: Callable[[], Described]) -> None:
         """The verdicts stand: what makes the part of them, with the reasons that were found by then, and describes its plan."""
         begins, self._begins = self._begins, None
         self._made = made
@@ -101,17 +99,12 @@ class Interim:
     def _missing(self, part: JudgedPart) -> list[str]:
         options = part.ready.options
         each = later_stages(
-            setups=part.later,
-            proposal=part.proposing,
-            samples=part.few,
-            reasons=part.unexplained,
-            witnesses=not part.witnessed,
-            area=part.looks_between and not self._looked,
+            setups=part.later, proposal=part.proposing, samples=part.few, reasons=part.unexplained,
+            witnesses=not part.witnessed, area=part.looks_between and not self._looked,
             answers=options.answers if self._unanswered is None else self._unanswered,
-            operations=None if self._planned else options.operations,
-            maps=options.posture_maps,
+            operations=None if self._planned else options.operations, maps=options.posture_maps,
             process=options.process is not None and not self._planned,
-        )
+        )  # fmt: skip
         return [name for name in each if name]
 
     def _result(self, part: JudgedPart, describe: Describe, absent: Sequence[str], work: str = "") -> Result:

@@ -18,7 +18,7 @@ from plan_cutters.document.features import inside_radius_entries, pattern_entrie
 from plan_cutters.document.holes import hole_entries, with_drilling
 from plan_cutters.document.notes import noted
 from plan_cutters.document.plan import completed, plan_of, selection
-from plan_cutters.document.process import OtherSetup, OverSetups, setup_table
+from plan_cutters.document.process import OverSetups, setup_table
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import notation
 from plan_cutters.domain.standard_tools import Fit
@@ -34,7 +34,8 @@ from plan_cutters.judging.witness import witnesses
 from plan_cutters.operations.orientations import index_times
 from plan_cutters.option_table import EFFORT
 from plan_cutters.outcome import Answers
-from plan_cutters.plan_file.model import AreaEntry, CutterEntry, nearest
+from plan_cutters.plan_file.frozen import filled
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
 from plan_cutters.plan_file.words.notes import note
 from plan_cutters.plan_file.words.text import with_text
@@ -69,7 +70,7 @@ class JudgedPart:
 
     ready: Prepared
     cutters: Mapping[Cutter, JudgedCutter]  #: What is known of each cutter.
-    other_setups: Sequence[OtherSetup]  #: Of each other setup its axis, and what each cutter reaches there by its id.
+    other_setups: Sequence[Mapping[Cutter, Verdicts]]  #: What each cutter reaches in each setup but the first.
     travels: dict[str, Travel]  #: Cutter id -> where the linear axes stand; empty where that is not judged.
     searched: Work  #: The work of all searches, which bounds that between the samples unless a budget was requested.
     started: datetime.datetime  #: When the work began.
@@ -84,7 +85,7 @@ class JudgedPart:
 
     @classmethod
     def of(
-        cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
+        cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[Mapping[Cutter, Verdicts]],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
         carried: NDArray[np.int64], by_cutter: "dict[Cutter, ExplainedIn]", *, explain: bool = True,
     ) -> "JudgedPart":  # fmt: skip
@@ -100,7 +101,7 @@ class JudgedPart:
             for k, (cutter, mine) in enumerate(here.items()):
                 if cutter in by_cutter:
                     continue
-                over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
+                over, which = over_setups([mine, *(there[cutter] for there in other_setups)])
                 if explain:
                     by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
                     continue
@@ -116,15 +117,11 @@ class JudgedPart:
             at_edge, verdicts = at_edges[cutter], reaches[cutter]
             with clock.stage(cutter.id, shown=False):
                 context, part = Context.of(cutter, ready.conditions), ready.scene.part
-                witness_list = (
-                    []
-                    if not explain
-                    else ready.cache.cached(
-                        "witnesses",
-                        (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
-                        partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
-                    )
-                )
+                ground = grounds.of(ready) if explain and ready.cache is not NO_CACHE else b""
+                witness_list = ready.cache.cached(
+                    "witnesses", (ground, part.key, replace(cutter, name=""), verdicts),
+                    partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                ) if explain else []  # fmt: skip
                 marched = march_differs(samples, convex, ready.region, mine.interference_free)
                 entry = cutter_entry(
                     cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
@@ -140,17 +137,16 @@ class JudgedPart:
         """The verdicts in the first setup by cutter."""
         return {cutter: each.here for cutter, each in self.cutters.items()}
 
-    def everywhere(self) -> list[dict[Cutter, Verdicts]]:
+    def everywhere(self) -> list[Mapping[Cutter, Verdicts]]:
         """The verdicts by cutter in each setup, the first one first."""
-        return [self.here, *({c: verdicts_there[c.id] for c in self.cutters} for _, verdicts_there in self.other_setups)]
+        return [self.here, *self.other_setups]
 
     def over_setups(self) -> OverSetups:
         """The verdicts of all cutters by their ids, over all setups and in each."""
-        reaches = {cutter.id: each.verdicts for cutter, each in self.cutters.items()}
-        here = {cutter.id: each.here for cutter, each in self.cutters.items()}
-        served_in = {cutter.id: each.which for cutter, each in self.cutters.items()}
-        there = tuple((axis, dict(each)) for axis, each in self.other_setups)
-        return OverSetups(reaches, here, served_in, self.ready.scene.setup, there)
+        by_id = {cutter.id: each for cutter, each in self.cutters.items()}
+        reaches, served_in = ({name: getattr(each, word) for name, each in by_id.items()} for word in ("verdicts", "which"))
+        each = ({cutter.id: verdicts for cutter, verdicts in there.items()} for there in self.everywhere())
+        return OverSetups(reaches, served_in, tuple(zip((axis for axis, _ in self.ready.axes), each, strict=True)))
 
     @property
     def looks_between(self) -> bool:
@@ -184,6 +180,11 @@ class JudgedPart:
                 (_grounds(ready), ready.scene.part.key, replace(cutter, name=""), judged.verdicts, judged.which, budget, most),
                 partial(_area, ready, cutter, judged, budget, most, tell),
             )}  # fmt: skip
+
+
+#: Adds to a plan how its setups came about.
+Describe = Callable[[Plan], Plan]
+Described = tuple[JudgedPart, Describe]
 
 
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
@@ -271,5 +272,4 @@ def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, mo
     which = np.minimum(judged.which, len(contexts) - 1)
     served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
                      budget=budget, most=most, covered_samples=ready.not_required, progress=tell)  # fmt: skip
-    return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
-                     short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+    return filled(AreaEntry, served, left_out=[f"F{n}" for n in served.unknown])

@@ -32,26 +32,20 @@ _ANSWER = _literal([*(each.word for each in KINDS), "all"])
 class Option(NamedTuple):
     """An option of a plan."""
 
-    #: The attribute of `Options`.
-    word: str
+    word: str  #: The attribute of `Options`.
     kind: type | Literal["range"]
-    #: As the command line has it: angles in degrees.
-    default: Any
+    default: Any  #: As the command line has it: angles in degrees.
     help: str
     #: Its line in the short help, which leaves out options that have none; True: the same as in the whole one.
     brief: str | bool = False
-    #: Of a number: mm, deg, s and so on.
-    unit: str = ""
+    unit: str = ""  #: Of a number: mm, deg, s and so on.
     #: The least and the largest value, and what is said of one beyond them where more is to be said than both.
     limits: tuple[float, float] | tuple[float, float, str] | None = None
     choices: tuple[str, ...] = ()
-    #: What help calls a value, where it is not the unit.
-    metavar: str | None = None
-    #: Its word of the command line, where that is another one.
-    typed: str = ""
+    metavar: str | None = None  #: What help calls a value, where it is not the unit.
+    typed: str = ""  #: Its word of the command line, where that is another one.
     several: bool = False
-    #: Whether it is about one posture already, as in a posture map.
-    of_a_point: bool = False
+    of_a_point: bool = False  #: Whether it is about one posture already, as in a posture map.
     #: Its type as callers give it, and as `Options` keeps it, where they are not those of `kind`, `choices` and `default`.
     takes: str = ""
     keeps: str = ""

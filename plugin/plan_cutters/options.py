@@ -163,13 +163,8 @@ class Options(OptionValues):
         What the first setup grips, in the words of the command line, with all its numbers. `part` unless it is given, or a vise
         may be proposed.
 
-    Raises
-    ------
-    OptionError
-        A value has no meaning.
+    An OptionError where a value has no meaning.
 
-    Examples
-    --------
     >>> Options(cutters="R6L80", setup=(0, 0, 5)).setup
     (0.0, 0.0, 1.0)
     >>> [cutter.id for cutter in Options().judged][:3]

@@ -27,8 +27,7 @@ class Operation:
     cutter: Cutter
     setup: int  #: 0 for the first.
     axis: Floats | None  #: (3,) float: unit, part coordinates; None where it is simultaneous.
-    #: (k,) float: positions of the rotary axes, deg, and those of the other solution, where there is one.
-    angle: Floats | None
+    angle: Floats | None  #: (k,) float: positions of the rotary axes, deg, and those of the other solution, where there is one.
     other_angle: Floats | None
     rows: NDArray[np.int64]  #: (r,) int64: samples that go with it.
     step: int = 0  #: Its number in the planner's own process; 0: it was planned.

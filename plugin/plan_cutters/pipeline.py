@@ -17,18 +17,17 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.process import OtherSetup
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import handed, order, wanted
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.interim import Describe, Interim
-from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
+from plan_cutters.interim import Interim
+from plan_cutters.judged_part import Describe, Described, ExplainedIn, JudgedPart, assembled, with_maps, worded
 from plan_cutters.judging.judge import CachedJudge, FirstLook, Judge, JudgeOnce, in_setup, judge
 from plan_cutters.judging.phases import classify, regions
+from plan_cutters.option_table import OF_A_SCENE
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, LeastSet, Operations
-from plan_cutters.plan_file.model import Plan
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
@@ -61,7 +60,8 @@ _PLANNING = 7200.0
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None,
-    interim: Interim | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
+    interim: Interim | None = None, folder: str = "", cache: StageCache | None = None,
+    remark: Describe = lambda plan: plan,
 ) -> Result:  # fmt: skip
     """`calls.plan` with its options gathered.
 
@@ -73,14 +73,8 @@ def run(
     """
     judged: Judge = judge if cache is None else CachedJudge()
     made = RunCache(cache or NO_CACHE)
-    stages = Run(
-        clock, interim or Interim(clock), remark or _as_it_is, folder, compiling, judged, read_timeout, at, excluded, made
-    )
+    stages = Run(clock, interim or Interim(clock), remark, folder, compiling, judged, read_timeout, at, excluded, made)
     return stages.plan(part, options)
-
-
-def _as_it_is(plan: Plan) -> Plan:
-    return plan
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,10 +94,13 @@ class Run:
 
     def plan(self, part: Any, options: Options) -> Result:
         """Prepare the part, judge all cutters, and do what follows the verdicts; without a setup, propose some first."""
-        if not options.propose:
-            return self.complete(self.judge(part, options, self._stands), self.remark)
-        proposal = judged_proposed(self, part, options, self.folder, self._stands_proposed)
-        return self.complete(proposal[0], self._remarked(proposal[1]))
+        if options.propose:
+            return self.complete(*judged_proposed(self, part, options, self.folder, self.interim.verdicts))
+
+        def stand(made: Callable[[], JudgedPart]) -> None:
+            self.interim.verdicts(lambda: (made(), self.remark))
+
+        return self.complete(self.judge(part, options, stand), self.remark)
 
     def prepare(self, part: Any, options: Options) -> Prepared:
         """Read, sample, classify and surround with obstacles."""
@@ -117,7 +114,7 @@ class Run:
         started, alone = datetime.datetime.now(datetime.UTC), _first_setup(ready)
         carried = np.zeros((_motions(ready), 3), np.int64)
 
-        def made(look: FirstLook) -> tuple[JudgedPart, Describe]:
+        def made(look: FirstLook) -> Described:
             few = None if look.samples == look.of else (look.samples, look.of)
             part = JudgedPart.of(look.ready, look.verdicts, [], dict.fromkeys(look.verdicts, 0.0), self.clock, Work(), started,
                                  carried, {}, explain=False)  # fmt: skip
@@ -146,7 +143,9 @@ class Run:
                 )
                 seconds[cutter] = time.perf_counter() - began
 
-        def combined(of: Prepared, others: list[OtherSetup], by_cutter: dict[Cutter, ExplainedIn], explain: bool) -> JudgedPart:
+        def combined(
+            of: Prepared, others: list[dict[Cutter, Verdicts]], by_cutter: dict[Cutter, ExplainedIn], explain: bool
+        ) -> JudgedPart:
             return JudgedPart.of(of, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
 
         if options.other_setups:
@@ -160,7 +159,7 @@ class Run:
     def complete(self, part: JudgedPart, describe: Describe) -> Result:
         """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
         clock, interim, options = self.clock, self.interim, part.ready.options
-        least = least_set(part.ready, part.here, part.other_setups)
+        least = least_set(part.ready, part.everywhere())
         interim.judged(part, describe, Answers(least_set=least))
         interim.looked(part.between(clock, self.compiling))
         interim.planned(self._answered(part, least))
@@ -178,10 +177,8 @@ class Run:
             lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both
         ) as side:
             try:
-                ask(
-                    part.ready, part.here, clock.stage, part.other_setups, searched=part.searched.looked, least=least,
-                    answered=interim.answered,
-                )  # fmt: skip
+                ask(part.ready, part.everywhere(), clock.stage, searched=part.searched.looked, least=least,
+                    answered=interim.answered)  # fmt: skip
             except KeyboardInterrupt:
                 if (planned_by_now := side.ended()) is not None:
                     interim.planned(planned_by_now[0])
@@ -196,25 +193,8 @@ class Run:
             clock.boxes |= boxes
             return operations
 
-    def _stands(self, made: Callable[[], JudgedPart]) -> None:
-        """The verdicts stand in the setups that were named."""
-        self.interim.verdicts(lambda: (made(), self.remark))
-
-    def _stands_proposed(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
-        """The verdicts stand in setups that are proposed, which say so in the plan."""
-
-        def described() -> tuple[JudgedPart, Describe]:
-            part, proposed = made()
-            return part, self._remarked(proposed)
-
-        self.interim.verdicts(described)
-
-    def _remarked(self, proposed: Describe) -> Describe:
-        return proposed if self.remark is _as_it_is else lambda plan: self.remark(proposed(plan))
-
 
 def _motions(ready: Prepared) -> int:
-    """How many motions of the whole part there are."""
     return sum(len(each.motions) for each in ready.patterns if each.whole)
 
 
@@ -237,41 +217,41 @@ def _operations(
     return operations, clock.seconds, clock.boxes
 
 
-def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:
+def _in_other_setups(
+    ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge
+) -> list[dict[Cutter, Verdicts]]:
     """Find the verdicts of each cutter in each other setup."""
-    axes, others = ready.options.other_setups, list[OtherSetup]()
+    number = len(ready.options.other_setups)
     with clock.stage("setups") as tell:
-        for k, axis in enumerate(axes):
-            done = partial(part_of, tell, parts=len(axes) * len(here))
-            by_cutter = {
-                cutter.id: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
+        done = partial(part_of, tell, parts=number * len(here))
+        return [
+            {
+                cutter: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
                 for n, (cutter, verdicts) in enumerate(here.items())
             }
-            others.append((axis, by_cutter))
-    return others
+            for k in range(number)
+        ]
 
 
 def prepare(
-    part: Any,
-    options: Options,
-    clock: Clock | None = None,
-    *,
-    read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None,
-    compiling: Callable[[str], None] = lambda entry: None,
-    excluded: Mapping[int, str] | None = None,
-    cache: Cache | None = None,
-) -> Prepared:
+    part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
+    at: At = lambda whose, face: None, compiling: Callable[[str], None] = lambda entry: None,
+    excluded: Mapping[int, str] | None = None, cache: Cache = NO_CACHE,
+) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     if options.propose:
         raise OptionError("setup auto is for a whole plan: name the setup")
-    clock = clock or Clock()
+    clock, stages = clock or Clock(), cache
     with clock.stage("read"):
-        stands = _read(part, options, read_timeout, cache or NO_CACHE)
+        read = part.part if isinstance(part, Scene) else part
+        if isinstance(read, Part) and options.unit is not None:
+            raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
+        stands = part
+        if not isinstance(part, Part | Scene):
+            stands = read_part(part, unit=options.unit, timeout=read_timeout, cache=cache)
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
-    whole = stands.part if isinstance(stands, Scene) else stands
-    stages = NO_CACHE if cache is None else cache
+    whole: Part = stands.part if isinstance(stands, Scene) else stands
     with clock.stage("measure"):
         whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"), jobs=options.jobs)))
     with clock.stage("sew"):
@@ -283,14 +263,7 @@ def prepare(
             )
         whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
     with clock.stage("orient"):
-        scene = Scene.of(
-            stands,
-            setup=options.setup,
-            flip=options.flip,
-            tolerance=options.tolerance,
-            ignore=options.ignore,
-            fixtures=options.fixtures,
-        )
+        scene = Scene.of(stands, **{word: getattr(options, word) for word in OF_A_SCENE})
     refuse_unholdable(scene, options)
     if scene.fixtures:
         with clock.stage("fixtures"):
@@ -329,40 +302,14 @@ def prepare(
         compiling("search.search.search_rows")
         warm(contacts_of(samples), Context.of(cutters[0], conditions))
     with clock.stage("bodies"):
-        within = stages.cached(
-            "bodies",
-            (
-                whole.key,
-                scene.ignored,
-                samples.point,
-                samples.normal,
-                scene.orientation.sign,
-                surroundings.certain.triangles.vertex,
-                conditions.tolerance,
-            ),
-            lambda: inside_material(
-                samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
-            ),
-        )
+        among = surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
+        follows_from = (whole.key, scene.ignored, samples.point, samples.normal, scene.orientation.sign,
+                        surroundings.certain.triangles.vertex, conditions.tolerance)  # fmt: skip
+        within = stages.cached("bodies", follows_from, lambda: inside_material(samples, scene.orientation, *among))
         inside = inside_bodies(within, surroundings.bodies, scene.orientation)
-        ready = with_setups(
-            Prepared(
-                scene,
-                options,
-                chosen,
-                spacing,
-                samples,
-                surface_class,
-                region,
-                within,
-                inside,
-                conditions,
-                cutters,
-                coarser,
-                cache=stages,
-            ),
-            each,
-        )
+        ready = Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, inside, conditions, cutters,
+                         coarser, cache=stages)  # fmt: skip
+        ready = with_setups(ready, each)
     with clock.stage("holes", shown=False):
         ready = with_holes(ready)
     if options.patterns:
@@ -371,24 +318,11 @@ def prepare(
             key = (whole.key, doubles)
             equal = stages.cached("patterns", key, lambda: patterns(whole, partial(at, "kernel"), doubles))
             ready = with_copies(ready, equal)
-    if ready.for_drills.any() and not ready.finished.any():
-        raise UnjudgeableError(
-            "every target sample is in a hole for drills: give --drill-below 0 to mill it, or choose other faces with --faces",
-            file=whole.file,
-        )
     if not ready.finished.any():
-        raise UnjudgeableError(
-            "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "
-            "--ignore, or choose other faces with --faces",
-            file=whole.file,
+        why = (
+            "is in a hole for drills: give --drill-below 0 to mill it"
+            if ready.for_drills.any()
+            else "lies inside another body of the part, so there is no surface to finish: leave a body out with --ignore"
         )
+        raise UnjudgeableError(f"every target sample {why}, or choose other faces with --faces", file=whole.file)
     return ready
-
-
-def _read(part: Any, options: Options, timeout: float, cache: Cache) -> Part | Scene:
-    read = part.part if isinstance(part, Scene) else part
-    if isinstance(read, Part) and options.unit is not None:
-        raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
-    if isinstance(part, Part | Scene):
-        return part
-    return read_part(part, unit=options.unit, timeout=timeout, cache=cache)

@@ -19,8 +19,9 @@ from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.stock import PART, Stock
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.judged_part import JudgedPart
+from plan_cutters.judged_part import Describe, Described, JudgedPart
 from plan_cutters.options import Options
+from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.part_info import HiddenFaces, ProposedSetup, SetupProposal
 from plan_cutters.plan_file.words.headline import stands_in
@@ -47,6 +48,8 @@ class Stages(Protocol):
 
     @property
     def clock(self) -> Clock: ...
+    @property
+    def remark(self) -> Describe: ...
 
     def prepare(self, part: Any, options: Options) -> Prepared: ...
 
@@ -56,37 +59,17 @@ class Stages(Protocol):
 
 
 def judged_proposed(
-    stages: Stages,
-    part: Any,
-    options: Options,
-    folder: str = "",
-    stand: Stand[tuple[JudgedPart, Callable[[Plan], Plan]]] = lambda made: None,
-) -> tuple[JudgedPart, Callable[[Plan], Plan]]:
+    stages: Stages, part: Any, options: Options, folder: str = "", stand: Stand[Described] = lambda made: None
+) -> Described:
     """Propose setups, the fewest of up to three that serve nearly all, and judge them.
 
-    Parameters
-    ----------
-    stages : Stages
-    part : anything that `plan` takes
-    options : Options
-        With `propose`.
-    folder : str
-        Where the setups will be written; empty where they will not be.
-    stand : callable, optional
-        Called with what gives such a pair of the verdicts alone, as soon as those of the first proposal stand, in its first setup
-        and in all.
+    `part` is anything that `plan` takes; `options` have `propose`; `folder` is where the setups will be written, empty where they
+    will not be. `stand` is called with what gives such a pair of the verdicts alone, as soon as those of the first proposal
+    stand, in its first setup and in all.
 
-    Returns
-    -------
-    part : JudgedPart
-        In the first proposal that holds what it promised; where none of three does, in that which reaches most.
-    describe : callable
-        Gives a plan of it with its proposal, which says so.
-
-    Raises
-    ------
-    OptionError
-        In no direction is anything within the limits or reached, or no proposal can be planned.
+    Returns the part in the first proposal that holds what it promised, or, where none of three does, in that which reaches most;
+    and what gives a plan of it with its proposal. An OptionError where in no direction anything is within the limits or reached,
+    or no proposal can be planned.
     """
     words = _words(options)
     unproposed, stock = replace(options, propose=False, fixtures=(), stock=PART), Stock.of(options.stock)
@@ -95,7 +78,7 @@ def judged_proposed(
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with stages.clock.stage("proposal") as tell:
         ranking, chosen = proposed(ready, MOST_PROPOSED, words, stock if stock.solid else None, tell)
-    best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
+    best: tuple[float, JudgedPart, Describe] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
         if failed:
@@ -104,7 +87,7 @@ def judged_proposed(
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
-        outcome = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried)
+        outcome = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried, stages=stages)
         try:
             judged = stages.judge(
                 ready.scene.turned_to(_axis(ranking, chosen[0])),
@@ -133,8 +116,8 @@ def judged_proposed(
 
 
 def _proposed(
-    part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...], tried: int
-) -> tuple[tuple[float, float, int], Callable[[Plan], Plan]]:
+    part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...], tried: int, stages: Stages
+) -> tuple[tuple[float, float, int], Describe]:
     """What a part in proposed setups reaches, as `_compared`, and what gives its plan with the proposal.
 
     The first setup is judged first, and may stand alone.
@@ -142,19 +125,16 @@ def _proposed(
     chosen = chosen[: len(chosen) - len(part.later)]
     reached_share, held_share, worst = _compared(part, ranking, chosen)
     left = _in_other_setups(part, ranking, chosen)
-    shares = reached_share, held_share, tried
-    describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=shares)
-    return (reached_share, held_share, worst), describe
+    described = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=(reached_share, held_share, tried))
+    return (reached_share, held_share, worst), lambda plan: stages.remark(described(plan))
 
 
 def _stand(
-    stand: Stand[tuple[JudgedPart, Callable[[Plan], Plan]]],
-    proposed: Callable[[JudgedPart], tuple[object, Callable[[Plan], Plan]]],
-    made: Callable[[], JudgedPart],
+    stand: Stand[Described], proposed: Callable[[JudgedPart], tuple[object, Describe]], made: Callable[[], JudgedPart]
 ) -> None:
     """Tell how the verdicts of proposed setups become a part, and how its plan is described."""
 
-    def pair() -> tuple[JudgedPart, Callable[[Plan], Plan]]:
+    def pair() -> Described:
         part = made()
         return part, proposed(part)[1]
 
@@ -173,7 +153,6 @@ def _words(options: Options) -> tuple[str, ...]:
 
 
 def _among(words: tuple[str, ...]) -> str:
-    """What holds the part, in words."""
     return "over a table" if words[0] == TABLE else f"held by {words[0]}"
 
 
@@ -192,9 +171,8 @@ def _named(faces: Collection[int]) -> tuple[str, ...]:
     return tuple(f"F{n}" for n in sorted(faces))
 
 
-def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
-    x, y, z = ranking.candidates.axis[k].tolist()
-    return x, y, z
+def _axis(ranking: Ranking, k: int) -> Vector:
+    return vector(ranking.candidates.axis[k])
 
 
 def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder: str) -> Options:
@@ -250,33 +228,18 @@ def _in_other_setups(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]
         mine = np.isin(face, [int(name[1:]) for name in (*_rests_on(ranking, k), *_named(_held(ranking, k).grips))])
         others = [other for other in range(len(chosen)) if other != own]
         served = {other: mine & np.logical_or.reduce([each.which == other for each in part.cutters.values()]) for other in others}
-        result.append(
-            [
-                HiddenFaces(setup=other, faces=list(_named(np.unique(face[rows]).tolist())))
-                for other, rows in served.items()
-                if rows.any()
-            ]
-        )
+        left = {other: _named(np.unique(face[rows]).tolist()) for other, rows in served.items() if rows.any()}
+        result.append([HiddenFaces(setup=other, faces=list(faces)) for other, faces in left.items()])
     return result
 
 
 def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -> ProposedSetup:
-    """The entry of a proposed setup."""
     held = _held(ranking, k)
-    return ProposedSetup(
-        axis=_axis(ranking, k),
-        x=held.x,
-        stands_on=[] if held.stock else list(_rests_on(ranking, k)),
-        clamping=held.kind,
-        grips=list(_named(held.grips)),
-        hidden_mm2=held.hidden,
-        how_held=held.words,
+    return filled(
+        ProposedSetup, held, axis=_axis(ranking, k), stands_on=[] if held.stock else _rests_on(ranking, k), clamping=held.kind,
+        grips=_named(held.grips), how_held=held.words, why_held=held.why, left_for=left, promised=promised,
         fixtures=[each.text for each in (held.stock, held.fixture) if each is not None],
-        soft=held.soft,
-        why_held=held.why,
-        left_for=left,
-        promised=promised,
-    )
+    )  # fmt: skip
 
 
 def _described(
@@ -299,9 +262,7 @@ def _described(
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
-    process = plan.process
-    if process is not None:
-        # Where it was placed by the search, the plan knows the jaws, and not why they are soft.
-        stands = [s.model_copy(update={"soft": each.soft}) for s, each in zip(process.setups, setups, strict=False)]
-        process = process.model_copy(update={"setups": stands})
+    # Where it was placed by the search, the plan knows the jaws, and not why they are soft.
+    stands = [s.model_copy(update={"soft": each.soft}) for s, each in zip(plan.process.setups, setups, strict=False)]
+    process = plan.process.model_copy(update={"setups": stands})
     return noted(plan, setup_proposed(where, why), setup_proposal=entry, process=process)

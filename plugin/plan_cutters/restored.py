@@ -22,13 +22,13 @@ from plan_cutters.options import cores
 from plan_cutters.outcome import Answers, Operation, OperationPlan, Operations
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.operations import OperationPlanEntry
 from plan_cutters.report.folder import file_name, sha256
 from plan_cutters.report.question import Question, read_question
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import rotations_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters_base.stage_cache import StageCache
+from plan_cutters_base.stage_cache import NO_CACHE, StageCache
 
 Arrays = Mapping[str, NDArray[Any]]
 _AGAIN = "plan the part again"
@@ -60,21 +60,24 @@ def restored(
 ) -> Result:
     """The result of a plan as its folder has it.
 
-    Raises
-    ------
-    CadIoError
-        The part cannot be read.
-    PlanError
-        The arrays are missing or not those of the plan, the part or a fixture has changed, or it was another version.
+    A CadIoError where the part cannot be read; a PlanError where the arrays are missing or not those of the plan, the part or a
+    fixture has changed, or it was another version.
     """
     arrays = _arrays(plan, folder, "npz")
     question = read_question(arrays["question"]) if "question" in arrays else None
     if question is None:
         raise PlanError(f"made by another version, or of objects of a script: {_AGAIN}", file=file_name("npz"))
-    ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache))
+    ready = _prepared(plan, arrays, question, partial(prepare, part, clock=clock, at=at, cache=cache or NO_CACHE))
     over = _over_setups(plan, arrays, ready)
+    travels = {
+        each.id: Travel(
+            arrays[f"travel_{each.id}"], arrays[f"rotary_taken_{each.id}"], np.zeros_like(arrays[f"travel_{each.id}"])
+        )
+        for each in plan.cutters
+        if f"travel_{each.id}" in arrays
+    }
     operations = _operations(plan, folder, ready) if plan.operations is not None else None
-    return Result(plan, ready, over, _travels(plan, arrays), Answers(radius_maps=_radii(plan, arrays), operations=operations))
+    return Result(plan, ready, over, travels, Answers(radius_maps=_radii(plan, arrays), operations=operations))
 
 
 def _arrays(plan: Plan, folder: Path, form: str) -> dict[str, NDArray[Any]]:
@@ -108,9 +111,9 @@ def _over_setups(plan: Plan, arrays: Arrays, ready: Prepared) -> OverSetups:
         raise PlanError(f"its cutters are not those of plan.json: {_AGAIN}", file=file_name("npz"))
     reaches = {name: _verdicts(arrays, name, ready) for name in ids}
     # What each setup reaches alone is no part of a model.
-    others = tuple((axis, dict(reaches)) for axis in ready.options.other_setups)
-    served = {name: arrays[f"setup_{name}"] for name in ids} if others else {}
-    return OverSetups(reaches, dict(reaches), served, ready.scene.setup, others)
+    each = tuple((axis, dict(reaches)) for axis, _ in ready.axes)
+    served = {name: arrays[f"setup_{name}"] for name in ids} if len(each) > 1 else {}
+    return OverSetups(reaches, served, each)
 
 
 def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:
@@ -123,16 +126,6 @@ def _verdicts(arrays: Arrays, name: str, ready: Prepared) -> Verdicts:
     nearest = np.abs(np.angle(np.exp(1j * (np.where(known, turn, 0.0)[:, None] - ends)))).argmin(axis=1) if len(ends) else 0
     rotation = np.where(known, nearest, -1).astype(np.int32)
     return Verdicts(arrays[f"verdict_{name}"], axis, tilted, np.arctan2(across, along), rotation, shift, arrays[f"reason_{name}"])
-
-
-def _travels(plan: Plan, arrays: Arrays) -> dict[str, Travel]:
-    return {
-        each.id: Travel(
-            arrays[f"travel_{each.id}"], arrays[f"rotary_taken_{each.id}"], np.zeros_like(arrays[f"travel_{each.id}"])
-        )
-        for each in plan.cutters
-        if f"travel_{each.id}" in arrays
-    }
 
 
 def _radii(plan: Plan, arrays: Arrays) -> tuple[RadiusMap, ...]:
@@ -164,16 +157,15 @@ def _plan(entry: OperationPlanEntry, number: int, arrays: Arrays, ready: Prepare
         for word in ("operation", "strip_mm", "path_mm", "seconds", "exclusive", "lean", "strategy", "contact", "link_s")
     )
     label, n = label.astype(np.int32), len(label)
-    operations = tuple(_operation(each, np.flatnonzero(label == k), ready) for k, each in enumerate(entry.operations))
+    cutter = {each.id: each for each in ready.cutters}
+    operations = tuple(
+        Operation(each.id, each.mode, cutter[each.cutter], each.setup, None if each.axis is None else np.array(each.axis), None,
+                  None, np.flatnonzero(label == k))
+        for k, each in enumerate(entry.operations)
+    )  # fmt: skip
     serves = np.zeros((n, len(operations)), bool)
     rows = np.flatnonzero(alone)
     serves[rows, label[rows]] = True
     none = np.full(n, -1, np.int32)
     return OperationPlan(entry.name, operations, label, serves, strip, length, seconds, none, tilted, strategy, contact, link,
                          float(np.nan), float(np.nan), float(np.nan), np.empty(0, np.int64))  # fmt: skip
-
-
-def _operation(entry: OperationEntry, rows: NDArray[np.int64], ready: Prepared) -> Operation:
-    cutter = next(each for each in ready.cutters if each.id == entry.cutter)
-    axis = None if entry.axis is None else np.array(entry.axis)
-    return Operation(entry.id, entry.mode, cutter, entry.setup, axis, None, None, rows)

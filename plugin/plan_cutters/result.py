@@ -37,53 +37,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OnFace:
-    """The results of one cutter on one face: its verdicts, the reasons, the worst place and the least stick-out.
+    """The results of one cutter on one face: its verdicts, the reasons, the worst place and the least stick-out."""
 
-    Attributes
-    ----------
-    id, name, component : str
-        Of the face: `F12`, its name in the file, the component that it belongs to.
-    target : bool
-    cutter : str
-        Id of the cutter that this is about.
-    area : float
-        Of the face, mm2.
-    samples : int
-    verdicts : Verdicts
-        Counts of samples.
-    shares : dict
-        Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what
-        lies inside other bodies of the part does not count.
-    reasons : dict
-        Reason -> share of the face's area that is not reached for it, the largest first.
-    worst : WitnessEntry, optional
-        Of the samples not reached that the plan looked at more closely, the one with the deepest collision; None where all is
-        reached.
-    least_stick_out : float, optional
-        With which the cutter in its holder still reaches all that it reaches of this face, mm; None: `why_no_stick_out`.
-    why_no_stick_out : str
-        Empty where it is known.
-    doubtful : bool
-        Obstacles are missing, which might be in the way of more.
-    why_unjudged : str
-        Why the face, or some of its samples, has no verdict; else empty.
-    """
-
-    id: str
-    name: str
-    component: str
+    id: str  #: Of the face: `F12`.
+    name: str  #: Its name in the file.
+    component: str  #: The component that it belongs to.
     target: bool
-    cutter: str
-    area: float
+    cutter: str  #: Id of the cutter that this is about.
+    area: float  #: Of the face, mm2.
     samples: int
-    verdicts: VerdictCounts
+    verdicts: VerdictCounts  #: Counts of samples.
+    #: Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what lies
+    #: inside other bodies of the part does not count.
     shares: dict[str, float] = field(default_factory=dict)
+    #: Reason -> share of the face's area that is not reached for it, the largest first.
     reasons: dict[str, float] = field(default_factory=dict)
+    #: Of the samples not reached that the plan looked at more closely, that of the deepest collision; None where all is reached.
     worst: WitnessEntry | None = None
+    #: With which the cutter in its holder still reaches all that it reaches of this face, mm; None: `why_no_stick_out`.
     least_stick_out: float | None = None
-    why_no_stick_out: str = ""
-    doubtful: bool = False
-    why_unjudged: str = ""
+    why_no_stick_out: str = ""  #: Empty where it is known.
+    doubtful: bool = False  #: Obstacles are missing, which might be in the way of more.
+    why_unjudged: str = ""  #: Why the face, or some of its samples, has no verdict; else empty.
 
     @property
     def number(self) -> int:
@@ -116,26 +91,21 @@ def on_face(
     verdicts = counts(reach.verdict[whole_face], inside[whole_face])
     mine = whole_face & ~inside & (reach.verdict != DRILLED)
     area, verdict = samples.area[mine], reach.verdict[mine]
-    shares, reasons = {}, {}
-    whole = float(area.sum())
+    shares, reasons, whole = {}, {}, float(area.sum())
     if whole > 0.0:
-        for code, word in _words(verdict):
-            shares[word] = float(area[verdict == code].sum()) / whole
+        shares = {WORDS[code]: float(area[verdict == code].sum()) / whole for code in np.unique(verdict).tolist()}
         why = reach.reason[mine]
         not_reached = {REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])}
         reasons = dict(sorted(not_reached.items(), key=lambda each: (-each[1], each[0])))
     deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
+    unjudged = "" if entry.target else "it is a check face: not judged, an obstacle only"
+    unjudged = "it is ignored: neither a target nor an obstacle" if entry.ignored else unjudged or entry.unjudged or ""
     return OnFace(
         entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()),
         VerdictCounts(**verdicts), shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
-        doubtful, _unjudged(entry),
+        doubtful, unjudged,
     )  # fmt: skip
-
-
-def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
-    """Codes and words of the verdicts that occur."""
-    return [(code, WORDS[code]) for code in np.unique(verdict).tolist()]
 
 
 def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out: StickOut | None) -> tuple[float | None, str]:
@@ -151,40 +121,16 @@ def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out
     return float(stick_out.least), ""
 
 
-def _unjudged(entry: FaceEntry) -> str:
-    if entry.ignored:
-        return "it is ignored: neither a target nor an obstacle"
-    if not entry.target:
-        return "it is a check face: not judged, an obstacle only"
-    return entry.unjudged or ""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """A plan with the arrays behind it.
+    """A plan with the arrays behind it."""
 
-    Attributes
-    ----------
-    plan : Plan
-        What is written as `plan.json`.
-    ready : Prepared
-        The scene and the samples that the cutters were judged on: for further questions.
-    over_setups : OverSetups
-        The verdicts of all cutters.
-    travels : dict
-        Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
-    answers : Answers
-        The answers that were requested after the plan: `stick_outs`, `radius_maps`, `mends`.
-    maps : PostureMaps, optional
-        Every free tilt, for the cutter `shown`, where that was requested.
-    """
-
-    plan: Plan
-    ready: Prepared
-    over_setups: OverSetups
-    travels: dict[str, Travel]
-    answers: Answers
-    maps: PostureMaps | None = None
+    plan: Plan  #: What is written as `plan.json`.
+    ready: Prepared  #: The scene and the samples that the cutters were judged on: for further questions.
+    over_setups: OverSetups  #: The verdicts of all cutters.
+    travels: dict[str, Travel]  #: Cutter id -> where the linear axes stand; empty where that is not judged.
+    answers: Answers  #: The answers that were requested after the plan: `stick_outs`, `radius_maps`, `mends`.
+    maps: PostureMaps | None = None  #: Every free tilt, for the cutter `shown`, where that was requested.
 
     def __getstate__(self) -> dict[str, Any]:
         # Options may hold objects of a CAD host: words and numbers stand for them.
@@ -243,22 +189,12 @@ class Result:
         return self.over_setups.reaches
 
     @property
-    def here(self) -> dict[str, Verdicts]:
-        """Verdicts by cutter id, in the first setup alone."""
-        return self.over_setups.here
-
-    @property
-    def elsewhere(self) -> tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...]:
-        """The axis of each other setup, and the verdicts there by cutter id."""
-        return self.over_setups.elsewhere
-
-    @property
     def served_in(self) -> dict[str, Ints]:
         """The setup (n,) whose posture a sample has, by cutter id: counted from 0 as in `plan.cutters[].setups`, -1 for none.
 
         It is empty where there is one setup.
         """
-        return self.over_setups.served_in if self.elsewhere else {}
+        return self.over_setups.served_in if len(self.over_setups.each) > 1 else {}
 
     @property
     def cutters(self) -> list[CutterEntry]:
@@ -300,12 +236,7 @@ class Result:
         """Positions of the rotary axes at the postures of a cutter, rad, both solutions, and which of them is to be taken.
 
         Each in the setup that serves its sample; arrays as `Kinematics.positions` gives them, (n, 2, axes) and (n,), and where
-        linear travel is judged as that takes them.
-
-        Raises
-        ------
-        ValueError
-            The machine has no rotary axes (`kinematics` is None).
+        linear travel is judged as that takes them. A ValueError where the machine has none (`kinematics` is None).
         """
         if self.kinematics is None:
             raise ValueError("rotary positions need a machine of rotary axes")
@@ -322,13 +253,7 @@ class Result:
         return self.answers.operations
 
     def judged(self, cutter: str | None = None) -> Cutter:
-        """The cutter of an id as it was judged, holder and all; default the one `shown`.
-
-        Raises
-        ------
-        OptionError
-            No cutter of the plan is called so.
-        """
+        """The cutter of an id as it was judged, holder and all; default the one `shown`. An OptionError for any other word."""
         wanted = self.shown if cutter is None else cutter
         match = next((each for each in self.ready.cutters if each.id == wanted), None)
         if match is None:
@@ -338,22 +263,10 @@ class Result:
     def face(self, which: Any, cutter: str | None = None, *, stick_out: bool = False) -> OnFace:
         """Tell how much of one face a cutter reaches, why not the rest, and where the worst place is.
 
-        Parameters
-        ----------
-        which : int, str or object
-            A number, `F12`, the face's name, or a face of the kernel, CadQuery or build123d.
-        cutter : str, optional
-            Id; default the one `shown`.
-        stick_out : bool
-            Look for the least stick-out for this face, too, where it was not requested with the plan.
+        `which`: a number, `F12`, the face's name, or a face of the kernel, CadQuery or build123d. `cutter`: its id; default the
+        one `shown`. `stick_out`: look for the least stick-out for this face, too, where it was not requested with the plan. An
+        OptionError for what is no face of the part, or more than one.
 
-        Raises
-        ------
-        OptionError
-            It is no face of the part, or more than one.
-
-        Examples
-        --------
         >>> from plan_cutters import plan
         >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
         >>> result.face("F1", "R6L80").reached
@@ -371,10 +284,7 @@ class Result:
 
         `which` is given in the words of `Options.faces`, as numbers, or as objects of the kernel or a CAD host.
         """
-        if which is None:
-            numbers = tuple(int(each.id[1:]) for each in self.plan.faces if each.target)
-        else:
-            numbers = face_numbers(self.part, which)
+        numbers = self.ready.chosen.targets if which is None else face_numbers(self.part, which)
         return tuple(self._on_face(number, cutter, stick_out) for number in numbers)
 
     def _on_face(self, number: int, cutter: str | None, stick_out: bool) -> OnFace:
@@ -401,8 +311,6 @@ class Result:
         It says which cutter to take, or that none finishes; a line for each cutter; what is not reached and why; what makes it
         unsure.
 
-        Examples
-        --------
         >>> from plan_cutters import plan
         >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
         >>> print(result.summary().splitlines()[0])
@@ -415,19 +323,9 @@ class Result:
     def show(self, *, height: int = 640, card: Literal["full", "small"] = "full") -> Path | None:
         """Show the review page: in a notebook below the cell, `height` pixels high, else in a browser.
 
-        `card="small"` shows in a notebook headline, table and a small picture, at most 50 kB.
-
-        Returns
-        -------
-        Path or None
-            The file that the browser shows, in the folder for temporary files, where it stays; None in a notebook.
-
-        Raises
-        ------
-        CadIoError
-            The kernel cannot mesh the part.
-        PlanError
-            No browser is found; the message names the file.
+        `card="small"` shows in a notebook headline, table and a small picture, at most 50 kB. Returns the file that the browser
+        shows, in the folder for temporary files, where it stays; None in a notebook. A CadIoError where the kernel cannot mesh
+        the part; a PlanError, which names the file, where no browser is found.
         """
         from plan_cutters.report.notebook import show
 
@@ -442,20 +340,10 @@ class Result:
     def to_dataframe(self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None) -> "DataFrame":
         """A table of pandas, with units at the end of names; what is not known is nan or None.
 
-        Parameters
-        ----------
-        of : str
-            `samples`: the columns of `axes.csv`, a row for each sample. `faces`: a row for each face of the part, with counts and
-            shares of area by verdict, the main reason and the deepest collision. `cutters`: a row for each cutter.
-        cutter : str, optional
-            Id of the cutter that samples and faces are about; default the one `shown`.
-
-        Raises
-        ------
-        OptionError
-            There is no such table or cutter.
-        PlanError
-            Pandas is not installed.
+        `samples`: the columns of `axes.csv`, a row for each sample. `faces`: a row for each face of the part, with counts and
+        shares of area by verdict, the main reason and the deepest collision. `cutters`: a row for each cutter. `cutter`: the id
+        of the one that samples and faces are about; default the one `shown`. An OptionError where there is no such table or
+        cutter, a PlanError where pandas is not installed.
         """
         from plan_cutters.report.arrays import frame
 
@@ -475,22 +363,12 @@ class Result:
         What cannot be written behind these is named in the plan's `not_written`; the other files are there. Files that an
         earlier run wrote there are removed if its plan lists them as they are.
 
-        Parameters
-        ----------
-        out : path-like
-        formats : sequence of str
-            Of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands of
-            faces), `png` (the part with its verdicts, four views), and `csv`, `vtk` and `regions` (tool axes for CAM:
-            `docs/cam_outputs.md`).
-        step_schema : str
-            Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
-
-        Returns
-        -------
-        Plan
-            The plan as written, with its `files`, `split` and `not_written`.
+        `formats`: of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands
+        of faces), `png` (the part with its verdicts, four views), and `csv` and `vtk` (tool axes for CAM: `docs/cam_outputs.md`).
+        `step_schema`: application protocol of the STEP file, `ap242`, `ap214` or `ap203`. Returns the plan as written, with its
+        `files`, `split` and `not_written`.
         """
-        from plan_cutters.report import write_all
+        from plan_cutters.report.folder import write_all
 
         chosen = formats.split(",") if isinstance(formats, str) else formats
         return write_all(self, Path(out), chosen, step_schema=step_schema)

@@ -29,7 +29,7 @@ def asked(part, cutter, **options):
     ready = prepare(part, Options(**options))
     (cutter,) = ready.cutters
     reach = judge(ready, cutter)
-    found = mend(ready, cutter, reach, {cutter: reach})
+    found = mend(ready, cutter, [{cutter: reach}])
     return found, {each.entry.changes[0].thing: each for each in found.steps[::-1] if len(each.entry.changes) == 1}, ready
 
 
@@ -115,7 +115,7 @@ def finely(part, cutter, options):
     ready = prepare(part, Options(cutters=(cutter,), area_budget=0, **options))
     (cutter,) = ready.cutters
     reaches = {cutter: judge(ready, cutter)}
-    state, known, rows = State.of(ready, cutter), Judgements.of(ready, reaches), np.flatnonzero(ready.finished)
+    state, known, rows = State.of(ready, cutter), Judgements.of(ready, [reaches]), np.flatnonzero(ready.finished)
     left = known.left(state, rows)
     assert len(left)
     return [*tolerance(Scan.of(state, left, Finished.of(ready), known, (cutter,)))]
@@ -190,7 +190,7 @@ def test_a_budget_that_is_spent_leaves_what_promises_most():
     ready = prepare(part, Options(cutters=(cutter,), grid=5, area_budget=0, faces="F1", **UPRIGHT))
     (cutter,) = ready.cutters
     reach = judge(ready, cutter)
-    every, none, some = (mend(ready, cutter, reach, {cutter: reach}, budget=each) for each in (None, Budget(0.0), Budget(1e12)))
+    every, none, some = (mend(ready, cutter, [{cutter: reach}], budget=each) for each in (None, Budget(0.0), Budget(1e12)))
     changes = [step for step in every.steps if len(step.entry.changes) == 1 and step.entry.changes[0].thing != "area"]
     assert len(changes) > 1
     assert (every.entry.uncompared, some.entry.uncompared) == (0, 0)
@@ -207,7 +207,7 @@ def test_it_tells_how_far_it_is_and_can_be_interrupted():
     ready = prepare(inclined(40.05), Options(cutters=("R3L40",), grid=5, area_budget=0, machine="tilt:30", **UPRIGHT))
     (cutter,) = ready.cutters
     reach, told = judge(ready, cutter), []
-    mend(ready, cutter, reach, {cutter: reach}, progress=lambda done, total: told.append((done, total)))
+    mend(ready, cutter, [{cutter: reach}], progress=lambda done, total: told.append((done, total)))
     assert told
     assert told == sorted(told)
     assert all(done <= total for done, total in told)
@@ -216,4 +216,4 @@ def test_it_tells_how_far_it_is_and_can_be_interrupted():
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        mend(ready, cutter, reach, {cutter: reach}, progress=stop)
+        mend(ready, cutter, [{cutter: reach}], progress=stop)

@@ -77,7 +77,7 @@ def test_a_cutter_of_the_same_kind_still_takes_what_it_reaches_of_it():
     long = Cutter.parse("R1L80rc1")
     found = on_table(("F1",), (BALL, long, BIT))
     assert {step.cutter for step in found.plan.process.steps} == {BALL.id, long.id}
-    runs = least_set(found.ready, {c: found.reaches[c.id] for c in found.ready.cutters}).runs
+    runs = least_set(found.ready, [{c: found.reaches[c.id] for c in found.ready.cutters}]).runs
     assert {run.cutter for run in runs} == {BALL, long}
 
 

@@ -66,7 +66,7 @@ def test_two_setups_along_one_axis_are_two():
     top = name_of(part, (0, 0, 1))
     found = plan(part, setup=Placement(UP, clamped=(top,)), other_setups=[Placement(UP)], answers="mend", **HOW)
     (name,) = found.reaches
-    assert not found.here[name].reached[found.samples.face == int(top[1:])].any()
+    assert not found.over_setups.each[0][1][name].reached[found.samples.face == int(top[1:])].any()
     assert found.cutters[0].feasible
     assert found.cutters[0].mend is None
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from plan_cutters.report import Staging
+from plan_cutters.report.folder import Staging
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run, start
 from tests.support.places import ROOT, SAMPLES

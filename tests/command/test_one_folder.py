@@ -17,7 +17,7 @@ import pytest
 
 from plan_cutters import PlanError, plan
 from plan_cutters.files.lock import Lock, lock_of
-from plan_cutters.report import Staging
+from plan_cutters.report.folder import Staging
 from plan_cutters_base.whole import sweep
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES

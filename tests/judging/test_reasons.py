@@ -219,7 +219,7 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert said.startswith(f"{head}, {size(both.plan.part.size_mm)}, in 2 setups")
     assert "over 2 setups" in said
     below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
-    assert not below.here["R3L30"].reached.any()
+    assert not below.over_setups.each[0][1]["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
     part = f"the part, {size(below.plan.part.size_mm)}"

@@ -149,7 +149,7 @@ def test_what_the_surface_itself_gouges_is_no_sharp_edge():
     shape = grooved(math.radians(90))
     part = Part(shape)
     result = plan(part, cutters=["R2L60rc2"], faces="4,5", spacing=1.0, **HOW)
-    reach, edges = result.here["R2L60rc2"], inside_edges(part, orient(part))
+    reach, edges = result.over_setups.each[0][1]["R2L60rc2"], inside_edges(part, orient(part))
     cutter = Cutter.parse("R2L60rc2")
     gouged = replace(reach, reason=np.where(reach.not_reached, LOCAL_GOUGE, reach.reason).astype(np.uint8))
     assert (strips(result.samples, gouged, cutter, edges) == -1).all()

@@ -177,7 +177,7 @@ def test_several_setups_reach_more_together(tmp_path):
 def test_another_setup_finds_what_a_plan_with_it_finds(machine):
     """Postures that are handed over are held there, and none is missed."""
     found = plan("samples/blade.step", cutters=CUTTER, machine=machine, other_setups=[(0, 1, 0.2)], grid=13, area_budget=0)
-    ((axis, reaches),) = found.elsewhere
+    ((axis, reaches),) = found.over_setups.each[1:]
     alone = plan("samples/blade.step", cutters=CUTTER, machine=machine, setup=(0, 1, 0.2), grid=13, area_budget=0)
     assert (reaches[CUTTER.id].reached == alone.reaches[CUTTER.id].reached).all()
     reach, machine = reaches[CUTTER.id], Machine.of(machine)

@@ -15,7 +15,7 @@ import trimesh
 from cad_io import read_part
 from plan_cutters import Cutter, plan
 from plan_cutters.plan_file.reasons import PALETTE, rgb
-from plan_cutters.report import DEFAULT_FORMATS
+from plan_cutters.report.folder import DEFAULT_FORMATS
 from plan_cutters.report.models import split_result
 from tests.support.places import ROOT, SAMPLES
 

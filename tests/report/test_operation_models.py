@@ -22,7 +22,8 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations.orientations import MOST, Indexing, Orientations, index_times
 from plan_cutters.plan_file.reasons import parts, rgb
-from plan_cutters.report import DEFAULT_FORMATS, models
+from plan_cutters.report import models
+from plan_cutters.report.folder import DEFAULT_FORMATS
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.distances import clearances
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at

@@ -169,17 +169,9 @@ def test_a_drawing_speaks_to_who_sees_none():
 
 def test_parts_are_told_apart_without_colour_and_named():
     root = read(draw(TOOLS["bull"]))
-    paints = {p.get("class"): p.get("fill") for p in root.iter(f"{SVG}path") if "part" in (p.get("class") or "")}
-    patterns = {f"url(#{p.get('id')})": p for p in root.iter(f"{SVG}pattern")}
-    assert len(paints) == len(set(paints.values())) == 4
-    looks = []
-    for paint in paints.values():
-        strokes = [(each.get("d"),) for each in patterns[paint].iter(f"{SVG}path")]
-        looks.append((patterns[paint].get("patternTransform"), patterns[paint].get("width"), *strokes))
-    assert len(set(looks)) == 4, "their hatchings differ"
-    legend = [p.get("fill") for p in root.iter(f"{SVG}path") if p.get("class") == "legend"]
-    assert legend == list(paints.values())
-    assert {"flutes", "neck", "shank", "holder"} <= set(words(root))
+    paints = [p.get("fill") for p in root.iter(f"{SVG}path") if "part" in (p.get("class") or "")]
+    assert len(paints) == len(set(paints)) == 4
+    assert {"flutes", "neck", "shank", "holder"} <= {text.split()[0] for text in words(root)}
 
 
 HOSTILE = (
@@ -200,7 +192,7 @@ def test_names_from_files_are_words_and_no_more(name):
     svg = draw(cutter)
     root = read(svg.encode("utf-8"))
     tags = {each.tag.removeprefix(SVG) for each in root.iter()}
-    assert tags <= {"svg", "title", "desc", "defs", "pattern", "rect", "path", "g", "text", "circle", "clipPath"}
+    assert tags <= {"svg", "title", "desc", "rect", "path", "g", "text", "circle"}
     assert not [key for each in root.iter() for key in each.attrib if key.startswith("on") or "href" in key]
     assert not re.search("[\x00-\x09\x0b-\x1f\u202a-\u202e\u2066-\u2069\ufffe]", svg)
     # A lone surrogate is none of a cutter's name any more.
@@ -232,17 +224,6 @@ def test_what_does_not_fit_is_reduced_to_the_next_standard_scale():
 
     assert [scale(f"R5L{high}") for high in (100, 200, 300, 440, 1000, 2000, 4000)] == [1, 1, 2, 2, 5, 10, 20]
     assert [scale(f"R{wide}L50") for wide in (20, 40, 100, 200)] == [1, 1, 2, 5]
-
-
-def test_small_cutting_ends_are_drawn_again_enlarged():
-    root = read(draw(TOOLS["small ball"]))
-    assert "A (50:1)" in words(root)
-    assert "A" in words(root)
-    assert "R0.5" in words(root)
-    (path,) = (p for p in root.iter(f"{SVG}path") if p.get("class") == "detail flutes")
-    assert "A25 25 " in path.get("d")
-    assert path.get("clip-path")
-    assert not [text for text in words(read(draw(TOOLS["bare"]))) if text.startswith("A (")]
 
 
 def test_two_drawings_in_one_page_share_no_id():

@@ -25,7 +25,7 @@ def test_each_setup_is_what_a_plan_of_it_alone_finds(machine):
     for k, (axis, jaws, shut) in enumerate([(UP, LOWER, (0, 0, -1)), (DOWN, UPPER, (0, 0, 1))]):
         alone = plan(part, setup=Placement(axis, fixtures=(*jaws, Fixture.parse("table"))), machine=machine, **HOW)
         assert np.array_equal(alone.samples.point, both.samples.point)
-        mine = both.here[name] if k == 0 else both.elsewhere[0][1][name]
+        mine = both.over_setups.each[k][1][name]
         held = both.samples.face == faces_at(both)[shut]
         assert np.array_equal(mine.reached[~held], alone.reaches[name].reached[~held])
         assert (mine.verdict[held] == INACCESSIBLE).all()
@@ -42,7 +42,7 @@ def test_a_face_that_is_held_in_one_setup_alone_is_a_target_and_lost_there_to_wh
     both = two(part)
     (name,) = both.reaches
     bottom = both.samples.face == faces_at(both)[0, 0, -1]
-    assert (both.here[name].reason[bottom] == FIXTURE).all()
+    assert (both.over_setups.each[0][1][name].reason[bottom] == FIXTURE).all()
     assert (both.served_in[name][bottom] == 1).all()
     assert len(both.plan.effective.target_faces) == 6
     assert both.plan.note_codes.count("faces_clamped_there") == 2
@@ -86,7 +86,7 @@ def test_held_without_a_fixture_is_lost_to_what_holds_it_and_has_a_plain_witness
     found = plan(part, setup=Placement(UP, clamped=(top,)), other_setups=[DOWN], machine="tilt:20", **how)
     (name,) = found.reaches
     mine = found.samples.face == int(top[1:])
-    assert (found.here[name].reason[mine] == FIXTURE).all()
+    assert (found.over_setups.each[0][1][name].reason[mine] == FIXTURE).all()
     assert not found.reaches[name].reached[mine].any()
     assert set(found.reaches[name].reason[mine].tolist()) == {REASONS.index("axis_limit")}
     alone = plan(part, setup=Placement(UP, clamped=(top,)), other_setups=[DOWN], **how)
@@ -115,8 +115,8 @@ def test_a_setup_without_fixtures_beside_one_with_some_is_told():
     found = plan(box(), setup=Placement(UP, fixtures=LOWER), other_setups=[DOWN], **HOW)
     assert found.plan.note_codes.count("setup_without_fixtures") == 1
     (name,) = found.reaches
-    assert found.elsewhere[0][1][name].reached.all()
-    assert not found.here[name].reached.all()
+    assert found.over_setups.each[1][1][name].reached.all()
+    assert not found.over_setups.each[0][1][name].reached.all()
 
 
 def test_clearances_are_among_the_obstacles_of_the_setup_that_serves():

@@ -247,7 +247,7 @@ def test_other_setups_have_an_x_of_their_own():
     turned = Placement(z=(0, 1, 1), x=(-1, 0, 0))
     both = plan("samples/blade.step", setup=Z, other_setups=[turned], **words)
     alone = plan("samples/blade.step", setup=turned, **words)
-    ((_, found),) = both.elsewhere
+    ((_, found),) = both.over_setups.each[1:]
     assert (found[CUTTER.id].reached == alone.reaches[CUTTER.id].reached).all()
     assert both.plan.effective.other_placements[0].x == (-1.0, 0.0, 0.0)
 

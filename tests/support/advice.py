@@ -44,7 +44,7 @@ def left(result, step):
     finished = Finished.of(result.ready)
     not_reached = finished.wanted.copy()
     here = {(0, result.ready.scene.setup): result.reaches}
-    here |= {(k, axis): found for k, (axis, found) in enumerate(result.elsewhere, 1)}
+    here |= {(k, axis): found for k, (axis, found) in enumerate(result.over_setups.each[1:], 1)}
     used = [found for (_, axis), found in here.items() if any(np.allclose(axis, each, atol=1e-5) for each in step.setups)]
     assert len(used) == len(step.setups)
     for found in used:

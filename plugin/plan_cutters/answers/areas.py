@@ -20,16 +20,12 @@ _WAYS = 200
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Finished(Record):
-    """The areas and shares of the finished surface that the samples stand for; one value belongs to each sample.
+    """The areas and shares of the finished surface that the samples stand for; one value belongs to each sample."""
 
-    `area` (n,) float: mm2 of the finished surface; 0 of samples inside another body. `share` (n,) float: the same of all target
-    area that is no inside of a body, faces without samples included, as a plan counts it. `wanted` (n,) bool: samples of the
-    finished surface that are judged.
-    """
-
-    area: Floats
+    area: Floats  #: (n,) float: mm2 of the finished surface; 0 of samples inside another body.
+    #: (n,) float: the same of all target area that is no inside of a body, faces without samples included, as a plan counts it.
     share: Floats
-    wanted: NDArray[np.bool_]
+    wanted: NDArray[np.bool_]  #: (n,) bool: samples of the finished surface that are judged.
 
     @classmethod
     def of(cls, ready: Prepared) -> "Finished":

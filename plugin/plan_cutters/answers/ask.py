@@ -2,7 +2,7 @@
 next with cutters that do not finish the part, or why no change is sought.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from typing import Any, Literal
@@ -12,7 +12,7 @@ import numpy as np
 from cad_io.arrays import Ints
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.largest_radius import largest_radius
-from plan_cutters.answers.state import OtherSetups
+from plan_cutters.answers.state import Everywhere
 from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.domain.answers import RadiusMap, Shape
@@ -93,23 +93,16 @@ def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
 
 
 def mend(
-    ready: Prepared,
-    cutter: Cutter,
-    over: Verdicts,
-    reaches: Mapping[Cutter, Verdicts],
-    other_setups: OtherSetups = (),
-    *,
-    progress: Progress | None = None,
-    budget: Budget | None = None,
+    ready: Prepared, cutter: Cutter, everywhere: Everywhere, *, progress: Progress | None = None, budget: Budget | None = None
 ) -> Advice:
     """Find what to do next with one cutter.
 
     It has no steps where none was looked for: `why` says why.
 
-    `cutter`: one of `reaches`. `over`: what it reaches, of all samples, in all setups together. `reaches`: what each given cutter
-    reaches in the plan's first setup.
-    `budget`: as for `steps`.
+    `cutter`: one of those given. `everywhere`: what each of them reaches in each setup, the first one first. `budget`: as for
+    `steps`.
     """
+    over = over_setups([there[cutter] for there in everywhere])[0]
     finished, missed = Finished.of(ready), over.not_reached
     unfinished = np.flatnonzero(missed & ready.finished)
     within, share = int((ready.inside_bodies & missed).sum()), finished.of_rows(unfinished)
@@ -119,7 +112,7 @@ def mend(
     found = Advice(MendEntry(lost=len(unfinished) + within, buried=within, why=why, lost_share=share))
     if why or not len(unfinished):
         return found
-    return steps(ready, found, cutter, reaches, other_setups, progress=progress, budget=budget)
+    return steps(ready, found, cutter, everywhere, progress=progress, budget=budget)
 
 
 def _why_nothing(ready: Prepared, within: int) -> str:
@@ -142,32 +135,20 @@ _WORK_LEAST, _WORK_SHARE = 1e7, 0.15
 
 @reporting(lambda ready: ready.options.reported_unit)
 def ask(
-    ready: Prepared,
-    reaches: Mapping[Cutter, Verdicts],
-    stage: Callable[[str], AbstractContextManager[Progress]],
-    other_setups: OtherSetups = (),
-    *,
-    searched: int = 0,
-    least: LeastSet | None = None,
-    answered: Callable[[Answers, Sequence[str]], None] = lambda answers, unanswered: None,
-) -> Answers:
+    ready: Prepared, everywhere: Everywhere, stage: Callable[[str], AbstractContextManager[Progress]], *, searched: int = 0,
+    least: LeastSet | None = None, answered: Callable[[Answers, Sequence[str]], None] = lambda answers, unanswered: None,
+) -> Answers:  # fmt: skip
     """Answer what is asked.
 
-    `reaches`: what each cutter reaches.
+    `everywhere`: what each cutter reaches in each setup, the first one first.
     `stage`: opens a stage of work by its name; what it gives is told how much of how much is done.
-    `other_setups`: of each other setup its axis, and what each cutter reaches there by its id.
     `searched`: boxes that the searches for verdicts looked at: the work of advice is bounded by a share of them.
     `least`: the fewest runs, as they are known already: one of the answers.
     `answered`: called with the answers so far and the words of those that are missing, whenever one is found.
     """
-    requested = ready.options.answers
-    setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
-    together = {cutter: over_setups(each) for cutter, each in setups.items()}
-    stick_outs, mends = dict[str, StickOut](), dict[str, Advice]()
-    radius_maps: list[RadiusMap] = []
-    near: list[Cutter] = []
-    failing: list[Cutter] = []
-    unanswered = tuple(requested)
+    requested = unanswered = tuple(ready.options.answers)
+    stick_outs, mends, radius_maps = dict[str, StickOut](), dict[str, Advice](), list[RadiusMap]()
+    near, failing = list[Cutter](), list[Cutter]()
 
     def so_far(*done: str) -> Answers:
         nonlocal unanswered
@@ -180,8 +161,8 @@ def ask(
     if "stick-out" in requested:
         with stage("stick-out") as tell:
             for k, cutter in enumerate(ready.cutters):
-                mine = part_of(tell, k, len(ready.cutters))
-                stick_outs[cutter.id] = stick_out_in_each(ready, cutter, setups[cutter], together[cutter][1], progress=mine)
+                verdicts, mine = [there[cutter] for there in everywhere], part_of(tell, k, len(ready.cutters))
+                stick_outs[cutter.id] = stick_out_in_each(ready, cutter, verdicts, over_setups(verdicts)[1], progress=mine)
                 so_far()
         so_far("stick-out")
     if "radius" in requested:
@@ -190,26 +171,23 @@ def ask(
             radius_maps = [radius_in_any(ready, shape, ratio=ratio, tell=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)]
         so_far("radius")
     if "mend" in requested:
-        failing = nearest(ready, reaches, other_setups)
+        failing = nearest(ready, everywhere)
         near = failing[:NEAREST]
         with stage("mend") as tell:
             whole = Budget(EFFORT[ready.options.effort] * (_WORK_LEAST + _WORK_SHARE * searched))
             for k, cutter in enumerate(near):
-                mends[cutter.id] = mend(
-                    ready, cutter, together[cutter][0], reaches, other_setups, progress=part_of(tell, k, len(near)),
-                    budget=Budget(whole.left / (len(near) - k)),
-                )  # fmt: skip
+                mine, budget = part_of(tell, k, len(near)), Budget(whole.left / (len(near) - k))
+                mends[cutter.id] = mend(ready, cutter, everywhere, progress=mine, budget=budget)
                 so_far()
     return so_far(*unanswered)
 
 
-def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups) -> list[Cutter]:
+def nearest(ready: Prepared, everywhere: Everywhere) -> list[Cutter]:
     """Cutters that do not finish the part in all setups together, the one that leaves least first, then by rank."""
     finished, missing = Finished.of(ready), ready.conditions.surroundings.doubtful
     unreached = {}
     for cutter in ready.cutters:
-        each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
-        not_reached = np.logical_and.reduce([verdicts.not_reached for verdicts in each]) & finished.wanted
+        not_reached = np.logical_and.reduce([there[cutter].not_reached for there in everywhere]) & finished.wanted
         if not_reached.any() or missing:
             unreached[cutter] = finished.of_rows(np.flatnonzero(not_reached))
     return sorted(unreached, key=lambda cutter: round(unreached[cutter], 9))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,16 +25,12 @@ SAME = float(np.cos(np.radians(0.1)))
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Candidates(Record):
-    """Directions of the part along the spindle that are compared.
+    """Directions of the part along the spindle that are compared."""
 
-    `axis` (m, 3) float: unit directions. `stands_on`: for each the numbers of the planar faces that lie on the table. `lowest`
-    (m,) float: height along each of the part's lowest point, mm. `tall` (m,) float: how high the part stands along each, mm.
-    """
-
-    axis: Floats
-    stands_on: tuple[tuple[int, ...], ...]
-    lowest: Floats
-    tall: Floats
+    axis: Floats  #: (m, 3) float: unit directions.
+    stands_on: tuple[tuple[int, ...], ...]  #: For each the numbers of the planar faces that lie on the table.
+    lowest: Floats  #: (m,) float: height along each of the part's lowest point, mm.
+    tall: Floats  #: (m,) float: how high the part stands along each, mm.
     bearing: tuple[Bearing, ...]  #: How the part stands on these planes.
 
     @classmethod
@@ -42,8 +39,8 @@ class Candidates(Record):
         triangles, planar = _of_part(ready)
         vertex, sign = triangles.vertex, ready.scene.orientation.sign[triangles.face - 1]
         axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
-        reach = _Reach.of(triangles, axis)
-        stands_on, tall = reach.stood_on(ready, planar), reach.high.max(axis=0) - reach.lowest
+        heights = _Heights.of(ready, axis)
+        stands_on, tall = heights.stood_on(planar), heights.high.max(axis=0) - heights.lowest
         corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)
         _, centre = enclosed(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
         try:
@@ -55,7 +52,7 @@ class Candidates(Record):
             across = frame_of(axis[k])[:2].T
             below = np.concatenate([np.zeros((0, 3)), *(vertex[rows[n]].reshape(-1, 3) for n in faces)])
             bearing.append(Bearing.of(outline @ across, below @ across, centre @ across, float(tall[k])))
-        return cls(axis, stands_on, reach.lowest, tall, tuple(bearing))
+        return cls(axis, stands_on, heights.lowest, tall, tuple(bearing))
 
     def preferred(self, every: Sequence[int]) -> list[int]:
         """Some of them in the order in which one would stand the part: firmly, on a large plane, low, along its own axes."""
@@ -70,53 +67,38 @@ class Candidates(Record):
         return sorted(every, key=place)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reach:
-    """How far faces reach along axes.
-
-    face : (f,) int
-        Their numbers.
-    low, high : (f, m) float
-        Heights of their lowest and highest corners along each axis, mm.
-    near : float
-        Heights that differ by less are one.
+class _Heights(NamedTuple):
+    """How far faces (f,) reach along axes: heights (f, m) of their lowest and highest corners, and of the lowest of all (m,), mm.
+    What is below `bottom` (m,) lies at the bottom: heights that differ by less are one.
     """
 
     face: NDArray[np.int64]
     low: Floats
     high: Floats
-    near: float
+    lowest: Floats
+    bottom: Floats
 
     @classmethod
-    def of(cls, triangles: Triangles, axis: Floats) -> "_Reach":
+    def of(cls, ready: Prepared, axis: Floats) -> "_Heights":
         """Of all faces that have triangles, face by face: all heights at once would take gigabytes."""
+        triangles = _of_part(ready)[0]
         faces = rows_by_face(triangles.face)
         low, high = np.full((len(faces), len(axis)), np.inf), np.full((len(faces), len(axis)), -np.inf)
         for k, rows in enumerate(faces.values()):
             for part in np.array_split(rows, 1 + len(rows) // _AT_ONCE):
                 height = triangles.vertex[part].reshape(-1, 3) @ axis.T
                 low[k], high[k] = np.minimum(low[k], height.min(axis=0)), np.maximum(high[k], height.max(axis=0))
-        return cls(np.array(list(faces), np.int64), low, high, triangles.chord_error)
+        lowest = low.min(axis=0)
+        near = triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
+        return cls(np.array(list(faces), np.int64), low, high, lowest, lowest + near)
 
-    @property
-    def lowest(self) -> Floats:
-        """Of all, along each axis (m,)."""
-        return np.asarray(self.low.min(axis=0))
-
-    def stood_on(self, ready: Prepared, planar: Sequence[int]) -> tuple[tuple[int, ...], ...]:
-        """Of each axis the planes that lie at the bottom."""
-        stands = np.isin(self.face, planar)[:, None] & (self.high <= self.lowest + self._flat(ready))
-        return self._named(stands)
-
-    def touching(self, ready: Prepared) -> tuple[tuple[int, ...], ...]:
-        """Of each axis the faces of the part that come down to the bottom."""
-        return self._named((self.face > 0)[:, None] & (self.low <= self.lowest + self._flat(ready)))
-
-    def _flat(self, ready: Prepared) -> float:
-        return self.near + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
-
-    def _named(self, which: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+    def named(self, which: NDArray[np.bool_]) -> tuple[tuple[int, ...], ...]:
+        """Of each axis the numbers of some faces (f, m)."""
         return tuple(tuple(sorted(self.face[mine].tolist())) for mine in which.T)
+
+    def stood_on(self, planar: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+        """Of each axis the planes that lie at the bottom."""
+        return self.named(np.isin(self.face, planar)[:, None] & (self.high <= self.bottom))
 
 
 def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
@@ -128,13 +110,13 @@ def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
 
 def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
     """On which planes a part stands along some axes (m, 3), by their numbers."""
-    triangles, planar = _of_part(ready)
-    return _Reach.of(triangles, axis).stood_on(ready, planar)
+    return _Heights.of(ready, axis).stood_on(_of_part(ready)[1])
 
 
 def touching(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
     """Faces with which a part touches the plane below it, by their numbers, along some axes (m, 3)."""
-    return _Reach.of(_of_part(ready)[0], axis).touching(ready)
+    heights = _Heights.of(ready, axis)
+    return heights.named((heights.face > 0)[:, None] & (heights.low <= heights.bottom))
 
 
 def cube() -> Floats:

@@ -52,12 +52,8 @@ def drilled(ready: Prepared, done: NDArray[np.bool_], used: Sequence[int] = ()) 
     A drill of its diameter does, the nearest, of equal ones the shortest; else a reamer behind a drill; before a drill comes a
     centre drill where there is one. Countersinks and counterbores are made by tools of their own.
 
-    Parameters
-    ----------
-    done : (n,) bool
-        Samples that mills reach: the bottom of a hole may be among them.
-    used : sequence of int
-        Setups that are there anyway, which come first.
+    `done` (n,): samples that mills reach: the bottom of a hole may be among them. `used`: setups that are there anyway, which
+    come first.
     """
     maker = _Maker(ready, sorted(made_of(ready.options.libraries), key=lambda each: each.body.length), done, used)
     return [maker.bored(hole) for hole in ready.holes]
@@ -67,6 +63,9 @@ class _Maker:
     def __init__(self, ready: Prepared, drills: Sequence[Drill], done: NDArray[np.bool_], used: Sequence[int]) -> None:
         self.ready, self.drills, self.done = ready, drills, done
         self.order = sorted(range(len(ready.setups)), key=lambda setup: (setup not in used, setup))
+
+    def _nearest(self, diameter: float) -> list[Drill]:
+        return sorted(self.drills, key=lambda each: round(abs(each.diameter - diameter), 6))
 
     def bored(self, hole: Hole) -> Bored:
         """The tools of a hole."""
@@ -87,9 +86,8 @@ class _Maker:
             taps = [drill for drill in self.drills if drill.taps(thread)]
             cut = next((use for tap in taps for use in self._tapped(hole, thread, tap, uses)), None)
             uses += [] if cut is None else [cut]
-            missing += [] if cut is not None else [
-                Missing("thread", thread.diameter, name=thread.name, why="in_the_way" if taps and uses else "")
-            ]  # fmt: skip
+            why: Why = "in_the_way" if taps and uses else ""
+            missing += [] if cut is not None else [Missing("thread", thread.diameter, name=thread.name, why=why)]
         elif uses and not any(use.drill.kind == "reamer" for use in uses):
             tolerance = tolerance_in(hole.sizes, hole.diameter)
             missing += [] if tolerance is None or not tolerance.reamed else [Missing("reamer", hole.diameter, name=tolerance.fit)]
@@ -104,8 +102,7 @@ class _Maker:
             mine = [step.inner for step in hole.steps if thread.is_whole(step.diameter) and not step.far]
             deep = max(mine, default=deep) if first.axis @ hole.axis > 0.0 else deep
             task = _Task(tap, tap.in_hole(min(hole.diameter, tap.diameter)), deep, thread.diameter)
-            use = self._use(task, _Way(first.setup, first.axis, first.mouth))
-            if use is not None:
+            if (use := self._use(task, _Way(first.setup, first.axis, first.mouth))) is not None:
                 yield use
 
     def _why(self, hole: Hole) -> Why:
@@ -143,7 +140,7 @@ class _Maker:
         if thread is not None:
             yield from self._before_a_tap(hole, thread)
             return
-        near = sorted(self.drills, key=lambda each: round(abs(each.diameter - hole.diameter), 6))
+        near = self._nearest(hole.diameter)
         alone = [
             [_down(drill, hole, hole.diameter, main=True)]
             for drill in near if drill.kind == "drill" and drill.wide_as(hole.diameter) and _ends(drill, hole)
@@ -155,16 +152,16 @@ class _Maker:
 
     def _before_a_tap(self, hole: Hole, thread: Thread) -> Iterator[list[_Task]]:
         """The drill of a hole that is tapped: models have it as wide as that drill, as the nut's inside, or as the thread."""
-        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - thread.core), 6)):
+        for drill in self._nearest(thread.core):
             if drill.kind == "drill" and thread.is_core(drill.diameter) and _ends(drill, hole):
                 same = drill.wide_as(hole.diameter)
                 task = _down(drill, hole, min(hole.diameter, drill.diameter), main=True)
                 yield [task._replace(diameter=hole.diameter if same else drill.diameter)]
 
     def _reamed(self, hole: Hole, near: Sequence[Drill]) -> Iterator[list[_Task]]:
-        for reamer in near:
-            if reamer.kind != "reamer" or not reamer.wide_as(hole.diameter) or hole.bottom not in ("open", "cone"):
-                continue
+        if hole.bottom not in ("open", "cone"):
+            return
+        for reamer in (each for each in near if each.kind == "reamer" and each.wide_as(hole.diameter)):
             # The largest drill comes first: it leaves the least.
             for drill in sorted(self.drills, key=lambda each: -each.diameter):
                 if drill.kind == "drill" and drill.comes_before(reamer) and _ends(drill, hole):
@@ -172,7 +169,7 @@ class _Maker:
 
     def _centre(self, hole: Hole, way: _Way) -> Drilled | None:
         """A centre drill makes a cone no wider than the hole before the drill, if the libraries have one."""
-        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - hole.diameter), 6)):
+        for drill in self._nearest(hole.diameter):
             if drill.kind == "centre drill" and drill.point is not None:
                 wide = min(drill.diameter, hole.diameter)
                 task = _Task(drill, drill.as_cone(drill.point), 0.5 * wide / math.tan(0.5 * drill.point), wide)
@@ -183,17 +180,16 @@ class _Maker:
     def _widened(self, hole: Hole, step: Step) -> Drilled | None:
         """The tool that makes a countersink or counterbore."""
         deep = abs(step.inner - step.outer)
-        for drill in sorted(self.drills, key=lambda each: round(abs(each.diameter - step.diameter), 6)):
+        for drill in self._nearest(step.diameter):
             if step.kind == "countersink" and step.angle is not None and drill.sinks(step.diameter, step.angle):
                 task = _Task(drill, drill.as_cone(step.angle), 0.5 * step.diameter / math.tan(0.5 * step.angle), step.diameter)
             elif step.kind == "counterbore" and drill.wide_as(step.diameter) and _floors(drill, step) and drill.reach >= deep:
                 task = _Task(drill, drill.in_hole(step.diameter), deep, step.diameter)
             else:
                 continue
+            axis, mouth = -hole.axis if step.far else hole.axis, hole.place - step.outer * hole.axis
             for setup in self.order:
-                axis = -hole.axis if step.far else hole.axis
-                use = self._use(task, _Way(setup, axis, hole.place - step.outer * hole.axis))
-                if use is not None:
+                if (use := self._use(task, _Way(setup, axis, mouth))) is not None:
                     return use
         return None
 

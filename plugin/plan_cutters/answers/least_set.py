@@ -12,29 +12,25 @@ from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.outcome import LeastSet, Run
 from plan_cutters.plan_file.answers import LeastSetEntry, RunEntry
-from plan_cutters.scene.preparation import Axis, Prepared, stood_on
+from plan_cutters.scene.preparation import Prepared, stood_on
 
 #: Seconds that the proof may take; then the best set found so far is told as such.
 _SECONDS = 10.0
 
 
-def least_set(
-    ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
-) -> LeastSet | None:
+def least_set(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]]) -> LeastSet | None:
     """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
 
-    `reaches`: what each cutter reaches in the plan's first setup. `other_setups`: of each other setup its axis, and what each
-    cutter reaches there by its id. None where one cutter was judged in one setup. What stands on the table of a proposed setup
-    chooses no kind of cutter that comes later: it is left for another setup.
+    `everywhere`: what each cutter reaches in each setup, the first one first. None where one cutter was judged in one setup. What
+    stands on the table of a proposed setup chooses no kind of cutter that comes later: it is left for another setup.
     """
-    setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *other_setups]
-    cutters = [cutter for cutter in ready.cutters if cutter in reaches]
-    if len(cutters) * len(setups) < 2:
+    cutters = [cutter for cutter in ready.cutters if cutter in everywhere[0]]
+    if len(cutters) * len(everywhere) < 2:
         return None
     finished = Finished.of(ready)
-    columns = [(s, c) for s in range(len(setups)) for c in range(len(cutters))]
-    reached = np.stack([setups[s][1][cutters[c].id].reached & finished.wanted for s, c in columns], axis=1)
-    open_ = _on_a_proposed_table(ready, [[verdicts[cutter.id] for _, verdicts in setups] for cutter in cutters])
+    columns = [(s, c) for s in range(len(everywhere)) for c in range(len(cutters))]
+    reached = np.stack([everywhere[s][cutters[c]].reached & finished.wanted for s, c in columns], axis=1)
+    open_ = _on_a_proposed_table(ready, [[verdicts[cutter] for verdicts in everywhere] for cutter in cutters])
     chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters, ready.chosen.free_form)
     if open_.any() and chosen:
         # What is left goes with more runs, of cutters of kinds no less wanted.
@@ -51,7 +47,7 @@ def least_set(
         mine = np.flatnonzero(reached[:, column] & ~done)
         done[mine] = True
         entries.append(RunEntry(
-            cutter=cutters[c].id, setup=setups[s][0], samples=len(mine), area_mm2=float(finished.area[mine].sum()),
+            cutter=cutters[c].id, setup=ready.axes[s][0], samples=len(mine), area_mm2=float(finished.area[mine].sum()),
             share=finished.of_rows(mine), faces=[f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()],
             alone=int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
         ))  # fmt: skip
@@ -102,8 +98,6 @@ def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int])
     rank, 0 for the most wanted. Of covers with as few runs that in the fewest setups is taken, and of these the one with the
     least sum of ranks. Returns `chosen`: ascending; `proven`: whether no fewer do.
 
-    Examples
-    --------
     >>> cover(np.array([[1, 0, 1], [0, 1, 1], [1, 1, 0]], bool), [0, 0, 0], [0, 1, 2])
     ([0, 1], True)
     >>> cover(np.zeros((3, 2), bool), [0, 0], [0, 1])
@@ -134,19 +128,12 @@ def _cover(rows: list[list[int]], setup: Sequence[int], rank: Sequence[int]) -> 
         # A run needs its setup.
         held[len(rows) + k, k], held[len(rows) + k, m + places.index(setup[k])] = -1.0, 1.0
     low = np.concatenate([np.ones(len(rows)), np.zeros(m)])
-    solution = milp(
-        cost,
-        integrality=np.ones(len(cost)),
-        bounds=Bounds(0, 1),
-        options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
-        constraints=LinearConstraint(held.tocsr(), low, np.inf),
-    )
-    if solution.x is None:
-        return _greedy(rows, rank), False
-    chosen = np.flatnonzero(solution.x[:m] > 0.5).tolist()
-    if not all(set(row) & set(chosen) for row in rows):
-        return _greedy(rows, rank), False
-    return chosen, solution.status == 0
+    solution = milp(cost, integrality=np.ones(len(cost)), bounds=Bounds(0, 1),
+                    options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
+                    constraints=LinearConstraint(held.tocsr(), low, np.inf))  # fmt: skip
+    chosen = [] if solution.x is None else np.flatnonzero(solution.x[:m] > 0.5).tolist()
+    covers = all(set(row) & set(chosen) for row in rows)
+    return (chosen, solution.status == 0) if covers else (_greedy(rows, rank), False)
 
 
 def _greedy(rows: list[list[int]], rank: Sequence[int]) -> list[int]:

@@ -50,25 +50,16 @@ def vector(direction: Floats) -> Axis:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Held:
-    """How a part is held in a direction that was searched.
+    """How a part is held in a direction that was searched."""
 
-    `fixture`: in its place.
-    `served` (r,) bool: where a posture was found among it.
-    `grips`, `rests_on`: faces that jaws touch, and planar ones with which the part rests in them; none for a table.
-    `hidden`: area of the target faces that jaws touch, mm2.
-    `words`: what it is and what it grips; empty for a table.
-    `why`: why it was taken; empty where only one was tried.
-    `soft`: why the part needs soft jaws or a nest; empty where it stands, or is gripped, as it is.
-    """
-
-    fixture: Fixture
-    served: NDArray[np.bool_]
-    grips: tuple[int, ...] = ()
-    rests_on: tuple[int, ...] = ()
-    hidden: float = 0.0
-    words: str = ""
-    why: str = ""
-    soft: str = ""
+    fixture: Fixture  #: In its place.
+    served: NDArray[np.bool_]  #: (r,) bool: where a posture was found among it.
+    grips: tuple[int, ...] = ()  #: Faces that jaws touch.
+    rests_on: tuple[int, ...] = ()  #: Planar faces with which the part rests in jaws; none for a table.
+    hidden: float = 0.0  #: Area of the target faces that jaws touch, mm2.
+    words: str = ""  #: What it is and what it grips; empty for a table.
+    why: str = ""  #: Why it was taken; empty where only one was tried.
+    soft: str = ""  #: Why the part needs soft jaws or a nest; empty where it stands, or is gripped, as it is.
     stock: Fixture | None = None  #: What is gripped, if that is stock.
     x: Axis | None = None  #: Direction of the part along the machine's X; None: any.
 
@@ -142,13 +133,9 @@ _ACROSS = 1e-6
 
 
 def holdable(
-    samples: SurfaceSamples,
-    cutters: Sequence[Cutter],
-    conditions: Conditions,
-    axis: Floats,
-    table: float | None = None,
+    samples: SurfaceSamples, cutters: Sequence[Cutter], conditions: Conditions, axis: Floats, table: float | None = None,
     rows: Rows | None = None,
-) -> NDArray[np.bool_]:
+) -> NDArray[np.bool_]:  # fmt: skip
     """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
 
     `conditions`: machine and posture range. `axis` (3,) float: unit direction of the part along the spindle. `table`: height
@@ -181,31 +168,25 @@ def _untold(done: int, total: int) -> None:
 
 @dataclass(slots=True)
 class Ranking:
-    """The ranking keeps what is known of each direction; it grows as directions are searched.
+    """The ranking keeps what is known of each direction; it grows as directions are searched."""
 
-    `ready`: in any setup, without fixtures.
-    `rows` (r,) int64: samples on which directions are compared.
-    `free` (r,) bool: where a posture was found without table and machine: what the part itself is in the way of is not searched
-        again in each direction.
-    `bound` (r, m) bool: those of them where the machine holds an axis over the table at all, and the face is not stood on.
-    `words`: what may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
-    `held`: by candidate that was searched, how it is held; None where it cannot be.
-    `settled`: candidates for which all words were tried; of the others over a table it is not known yet where that lies.
-    `refused`: why nothing holds it in directions that were searched, the first cause first.
-    `usual` (r,) bool: where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form
-        cutter makes a setup look better than it is.
-    """
-
-    ready: Prepared
+    ready: Prepared  #: In any setup, without fixtures.
     candidates: Candidates
-    rows: Rows
+    rows: Rows  #: (r,) int64: samples on which directions are compared.
+    #: (r,) bool: where a posture was found without table and machine: what the part itself is in the way of is not searched again
+    #: in each direction.
     free: NDArray[np.bool_]
+    #: (r, m) bool: those of them where the machine holds an axis over the table at all, and the face is not stood on.
     bound: Table
+    #: (r,) bool: where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter
+    #: makes a setup look better than it is.
     usual: NDArray[np.bool_]
+    #: What may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
     words: tuple[str, ...] = (TABLE,)
-    held: dict[int, Held | None] = field(default_factory=dict)
+    held: dict[int, Held | None] = field(default_factory=dict)  #: By candidate that was searched; None where it cannot be held.
+    #: Candidates for which all words were tried; of the others over a table it is not known yet where that lies.
     settled: set[int] = field(default_factory=set)
-    refused: dict[str, None] = field(default_factory=dict)
+    refused: dict[str, None] = field(default_factory=dict)  #: Why nothing holds it in directions searched, the first cause first.
     stock: Stock | None = None  #: What the first setup grips; None: the part.
     stocked: dict[int, Held | None] = field(default_factory=dict)  #: By candidate whose stock is gripped: how it was searched.
     gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.

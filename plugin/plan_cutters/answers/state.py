@@ -47,8 +47,7 @@ class Case:
 
     ready: Prepared
     cutter: Cutter
-    #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
-    above: float | None = None
+    above: float | None = None  #: Nothing of the tool may be lower along the setup axis, mm: a table that is only a plane.
 
     @property
     def setups(self) -> Iterator[Prepared]:
@@ -108,8 +107,8 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: fl
     return verdicts.freeze()
 
 
-#: Of each setup beside the first its axis, and what each cutter reaches there by its id.
-OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
+#: What each cutter reaches in each setup, the first one first.
+Everywhere = Sequence[Mapping[Cutter, Verdicts]]
 #: What looks down at the table so squarely lies on it.
 _SQUARE = 1e-6
 #: Setups that are not planned yet of which what stands around the part is kept, at most.
@@ -117,12 +116,7 @@ _TABLES = 3
 
 
 class SetupOf(NamedTuple):
-    """A setup of a state.
-
-    axis : (float, float, float)
-    number : int or None
-        Its place among those of the plan, from 0; None of one that is not planned yet.
-    """
+    """A setup of a state; `number` is its place among those of the plan, from 0, None of one that is not planned yet."""
 
     axis: Axis
     number: int | None = None
@@ -130,15 +124,12 @@ class SetupOf(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Cutters that share a part: what counts is what none of them reaches in any of its setups.
-
-    `cutters`: the one that is mended, or what became of it, first. `tables`: what setups that are not planned yet see, by axis
-    and tolerance, those that were looked at last.
-    """
+    """Cutters that share a part: what counts is what none of them reaches in any of its setups."""
 
     ready: Prepared
-    cutters: tuple[Cutter, ...]
+    cutters: tuple[Cutter, ...]  #: The one that is mended, or what became of it, first.
     setups: tuple[SetupOf, ...]
+    #: What setups that are not planned yet see, by axis and tolerance, those that were looked at last.
     tables: dict[tuple[Axis, float], Prepared] = field(default_factory=dict)
 
     @classmethod
@@ -225,25 +216,20 @@ def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
 
 @dataclass(slots=True)
 class Judgements:
-    """Keep all that was judged so far, so that nothing is judged twice.
+    """Keep all that was judged so far, so that nothing is judged twice."""
 
-    `looked`, `missed`: by key: samples (n,) that were judged, and those of them that are not reached. `tell`: called whenever a
-    case was judged.
-    """
-
-    looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
-    missed: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
-    tell: Callable[[], None] = lambda: None
+    looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)  #: By key: samples (n,) that were judged.
+    missed: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)  #: Those of them that are not reached.
+    tell: Callable[[], None] = lambda: None  #: Called whenever a case was judged.
 
     @classmethod
-    def of(cls, ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups = ()) -> "Judgements":
+    def of(cls, ready: Prepared, everywhere: Everywhere) -> "Judgements":
         """Those of a plan."""
         judgements, wanted = cls(), ready.finished
-        for k, ((axis, _), each) in enumerate(zip(ready.axes, (None, *(there for _, there in other_setups)), strict=False)):
-            for cutter, verdicts in reaches.items():
-                mine = verdicts if each is None else each[cutter.id]
+        for k, ((axis, _), there) in enumerate(zip(ready.axes, everywhere, strict=False)):
+            for cutter, verdicts in there.items():
                 name = key(ready, cutter, SetupOf(axis, k))
-                judgements.looked[name], judgements.missed[name] = wanted.copy(), mine.not_reached & wanted
+                judgements.looked[name], judgements.missed[name] = wanted.copy(), verdicts.not_reached & wanted
         return judgements
 
     def left(self, state: State, rows: Rows) -> Rows:
@@ -292,39 +278,24 @@ def move_of(thing: str, now: Value, tried: Value, why: str) -> MoveEntry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
-    """A step that may be worth judging.
-
-    `state`: after it. `estimate`: share of the finished area that it may leave. `nested`: whether it surely reaches all that is
-    reached now.
-    """
+    """A step that may be worth judging."""
 
     moves: tuple[MoveEntry, ...]
-    state: State
-    estimate: float
-    nested: bool
+    state: State  #: After it.
+    estimate: float  #: Share of the finished area that it may leave.
+    nested: bool  #: Whether it surely reaches all that is reached now.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
-    """The samples that are not reached now, and a few of them that are looked at first.
-
-    state : State
-    left : (m,) int64
-        Samples that it leaves.
-    few : int64
-        Some of them.
-    finished : Finished
-    known : Judgements
-    given : tuple of Cutter
-        All that the plan judged.
-    """
+    """The samples that are not reached now, and a few of them that are looked at first."""
 
     state: State
-    left: Rows
-    few: Rows
+    left: Rows  #: Samples (m,) that it leaves.
+    few: Rows  #: Some of them.
     finished: Finished
     known: Judgements
-    given: tuple[Cutter, ...]
+    given: tuple[Cutter, ...]  #: All that the plan judged.
 
     @classmethod
     def of(cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]) -> "Scan":

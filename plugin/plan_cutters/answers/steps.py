@@ -12,14 +12,13 @@ import numpy as np
 
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
-from plan_cutters.answers.state import Candidate, Judgements, OtherSetups, Scan, State, move_of
+from plan_cutters.answers.state import Candidate, Everywhere, Judgements, Scan, State, move_of
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.answers import MEANS
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.standard_tools import USUAL, slenderness
-from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.outcome import Advice, Step
@@ -82,7 +81,6 @@ def _files(ready: Prepared) -> list[str]:
 
 
 def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
-    """Name the proposed setups, what holds the part there, and the faces to be finished."""
     part = ready.scene.part
     words = [word for file in _files(ready) for word in ("--setup", shlex.quote(file))]
     if not words:
@@ -161,15 +159,9 @@ _APART = {
 
 
 def steps(
-    ready: Prepared,
-    advice: Advice,
-    cutter: Cutter,
-    reaches: Mapping[Cutter, Verdicts],
-    other_setups: OtherSetups = (),
-    *,
-    progress: Progress | None = None,
+    ready: Prepared, advice: Advice, cutter: Cutter, everywhere: Everywhere, *, progress: Progress | None = None,
     budget: Budget | None = None,
-) -> Advice:
+) -> Advice:  # fmt: skip
     """Find what to do next, and what it gains.
 
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
@@ -177,11 +169,11 @@ def steps(
 
     It has `share`, `steps` and `areas` then.
 
-    `advice`: what was found of the cutter so far. `cutter`: one of `reaches`. `reaches`: what each given cutter reaches in the
-    plan's first setup. `other_setups`: of each other setup its axis, and what each cutter reaches there by its id. `budget`: the
-    work that it may take; what promises most is judged in any case. None: as much as it takes.
+    `advice`: what was found of the cutter so far. `cutter`: one of those given. `everywhere`: what each of them reaches in each
+    setup, the first one first. `budget`: the work that it may take; what promises most is judged in any case. None: as much as
+    it takes.
     """
-    finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
+    finished, known = Finished.of(ready), Judgements.of(ready, everywhere)
     state = State.of(ready, cutter)
     open_rows = known.left(state, np.flatnonzero(finished.wanted))
     if not len(open_rows):
@@ -196,7 +188,7 @@ def steps(
 
     known.tell = tell
     areas = patches(ready.samples, finished, open_rows)
-    scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in reaches))
+    scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in everywhere[0]))
     # What other given cutters reach is known.
     budget = budget or Budget(math.inf)
     listed, uncompared = candidates(scan, budget)
@@ -314,13 +306,10 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: R
     ready, cutter, state = base
     after = candidate.state
     result = option(
-        ready,
-        cutter,
-        cutters=after.cutters,
-        setups=after.axes if after.axes != state.axes else None,
+        ready, cutter, cutters=after.cutters, setups=after.axes if after.axes != state.axes else None,
         conditions=after.ready.conditions,
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
-    )
+    )  # fmt: skip
     freed = np.setdiff1d(open_rows, rows, assume_unique=True)
     words = [each.why for each in candidate.moves]
     alike = len(words) > 1 and all(each.endswith(_REST) for each in words)

@@ -116,15 +116,11 @@ def command(request: PlanRequest) -> int:
     if request.check_operations is not None:
         checked = module_of(f"{_SELF} check").checked
         return int(checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout))
-    codes = []
-    cases = _part_cases(request)
-    outs = folders(request)
+    codes, cases = list[int](), _part_cases(request)
+    outs: list[Path | None] = [*folders(request)] or [None] * len(parts)
     since: float | None = began()
     done, excluded = assignment().done, assignment().excluded
-    for i, part in enumerate(parts):
-        if i < done:
-            continue
-        out = outs[i] if outs else None
+    for part, out in list(zip(parts, outs, strict=True))[done:]:
         code, line = guarded(partial(one_part, part, out, requested, request, since, excluded, cases), request.debug)
         since, excluded = None, {}
         codes.append(code)
@@ -207,10 +203,11 @@ def _watched(words: list[str], name: str) -> int:
             request = PlanRequest(**context.params)
     except click.exceptions.Exit as done:
         return done.exit_code
+    cases = _part_cases(request)
     try:
         requested, faults = check(request)
     except CadIoError as unread:
-        if (cases := _part_cases(request)) is not None:
+        if cases is not None:
             cases.write(str(unread))
         raise
     if not can_supervise():
@@ -224,7 +221,7 @@ def _watched(words: list[str], name: str) -> int:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
-    display.part_cases = cases = _part_cases(request)
+    display.part_cases = cases
 
     def give_prompt_back(code: int, out: Path) -> None:
         """Models are written behind the prompt."""

@@ -127,25 +127,23 @@ def guarded(work: Callable[[], tuple[int, str]], debug: bool) -> tuple[int, str]
     except (Exception, KeyboardInterrupt) as error:
         if debug:
             terminal.emit(traceback.format_exc())
+        code, line = UNREADABLE, str(error)
         match error:
             case _ if is_interrupt(error):
-                return INTERRUPTED, "plan-cutters: interrupted; no file is half-written"
+                code, line = INTERRUPTED, "interrupted; no file is half-written"
             case terminal.ReaderGone():
                 return READER_GONE, ""
-            case Supervised():
-                return UNREADABLE, f"plan-cutters: {error}"
             case MemoryError():
-                return UNREADABLE, "plan-cutters: out of memory; sample more coarsely (--spacing), or give --memory"
-            case UnjudgeableError():
-                return UNREADABLE, f"plan-cutters: {error}"
+                line = "out of memory; sample more coarsely (--spacing), or give --memory"
+            case Supervised() | UnjudgeableError():
+                pass
             case WriteError() | PlanError():
-                return USAGE, f"plan-cutters: {error}"
-            case CadIoError():
-                return UNREADABLE, f"plan-cutters: {error}"
+                code = USAGE
             case click.ClickException():
-                return USAGE, f"plan-cutters: {error.format_message()}"
-            case _:
-                return (UNREADABLE, f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where")
+                code, line = USAGE, error.format_message()
+            case _ if not isinstance(error, CadIoError):
+                line = f"internal error ({type(error).__name__}: {error}); --debug shows where"
+        return code, f"plan-cutters: {line}"
 
 
 def faults(names: Sequence[str], work: Callable[[str], None], debug: bool) -> list[str]:

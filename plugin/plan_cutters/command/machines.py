@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -93,8 +93,6 @@ def command(request: MachinesRequest) -> int:
 
 
 def _angles(text: str) -> dict[str, float]:
-    """Angles, rad, by the names of the axes."""
-
     angles: dict[str, float] = {}
     for word in text.split(","):
         name, _, value = word.partition("=")
@@ -119,29 +117,20 @@ def _facts(
 
     held, near = share(machine)
     cone = singular(machine)
+
+    def degrees(angles: Mapping[str, float]) -> dict[str, float]:
+        return {key: math.degrees(angle) for key, angle in angles.items()}
+
     facts: dict[str, Any] = {
-        "given": name,
-        "format": form or "built in",
-        "machine": plain(machine),
-        "share_of_directions": held,
-        "singular_cone_deg": None if cone is None else math.degrees(cone),
-        "singular_share": near,
-    }
+        "given": name, "format": form or "built in", "machine": plain(machine), "share_of_directions": held,
+        "singular_cone_deg": None if cone is None else math.degrees(cone), "singular_share": near,
+    }  # fmt: skip
     if axis is not None:
-        facts["angles"] = {
-            "tool_axis": list(axis),
-            "solutions": [
-                {"deg": {key: math.degrees(angle) for key, angle in each.angles.items()}, "taken": each.taken}
-                for each in solutions(machine, np.array(axis))
-            ],
-        }
+        each = [{"deg": degrees(each.angles), "taken": each.taken} for each in solutions(machine, np.array(axis))]
+        facts["angles"] = {"tool_axis": list(axis), "solutions": each}
     if turned is not None:
         held_axis, beyond = tool_axis(machine, turned)
-        facts["axis"] = {
-            "deg": {key: math.degrees(angle) for key, angle in turned.items()},
-            "tool_axis": [float(value) for value in held_axis],
-            "beyond_limits": beyond,
-        }
+        facts["axis"] = {"deg": degrees(turned), "tool_axis": [float(value) for value in held_axis], "beyond_limits": beyond}
     return facts
 
 
@@ -162,7 +151,6 @@ def _list(machines: "Sequence[Machine]", console: "Console") -> None:
 
 
 def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> None:
-    """A machine for people."""
     from rich.table import Table
 
     from plan_cutters.machines.explain import limits_text, summary, vector_text
@@ -177,36 +165,32 @@ def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> N
     if machine.axes:
         table = Table("From the part", "Carries", "Moves", "Limits", "Through (mm)", "Speed")
         for axis in machine.axes:
-            rotary = axis.kind == "rotary"
-            rate = (
-                ""
-                if axis.rate is None
-                else f"{math.degrees(axis.rate) if rotary else axis.rate:.6g} {'deg' if rotary else 'mm'}/s"
-            )
-            moves = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}"
-            table.add_row(
-                clean(axis.name), axis.carries, moves, limits_text(axis), vector_text(axis.point) if rotary else "", rate
-            )
+            rotary, rate = axis.kind == "rotary", ""
+            if axis.rate is not None:
+                rate = f"{math.degrees(axis.rate) if rotary else axis.rate:.6g} {'deg' if rotary else 'mm'}/s"
+            moves, through = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}", vector_text(axis.point)
+            table.add_row(clean(axis.name), axis.carries, moves, limits_text(axis), through if rotary else "", rate)
         console.print(table)
         say("  Directions are those of the tool relative to the part (ISO 841), at zero positions.")
     if machine.turns:
         say(f"  At zero positions the tool axis is {vector_text(machine.tool_axis)}, from the tip to the spindle.")
     for note in machine.notes:
         say(f"  note: {note}")
+
+    def at(angles: dict[str, float]) -> str:
+        return ", ".join(f"{name} {exact_angle(angle)}" for name, angle in angles.items())
+
     if "angles" in facts:
-        _solutions(facts["angles"], say)
+        held = facts["angles"]["solutions"]
+        wanted = f"({', '.join(f'{value:g}' for value in facts['angles']['tool_axis'])})"
+        if not held:
+            say(f"  No position within the limits holds the tool axis {wanted}.")
+        for each in held:
+            taken = " (taken: the smaller turns)" if each["taken"] and len(held) > 1 else ""
+            where = f" at {at(each['deg'])}" if each["deg"] else ""
+            say(f"  The tool axis {wanted} is held{where}{taken}.")
     if "axis" in facts:
-        axis_text = facts["axis"]
-        at = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in axis_text["deg"].items())
-        beyond = f"; beyond the limits: {', '.join(axis_text['beyond_limits'])}" if axis_text["beyond_limits"] else ""
-        say(f"  At {at} the tool axis is ({', '.join(f'{value:.9g}' for value in axis_text['tool_axis'])}){beyond}.")
-
-
-def _solutions(axis_facts: dict[str, Any], say: Any) -> None:
-    axis = f"({', '.join(f'{value:g}' for value in axis_facts['tool_axis'])})"
-    if not axis_facts["solutions"]:
-        say(f"  No position within the limits holds the tool axis {axis}.")
-    for each in axis_facts["solutions"]:
-        angles = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in each["deg"].items())
-        taken = " (taken: the smaller turns)" if each["taken"] and len(axis_facts["solutions"]) > 1 else ""
-        say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
+        turned = facts["axis"]
+        beyond = f"; beyond the limits: {', '.join(turned['beyond_limits'])}" if turned["beyond_limits"] else ""
+        direction = ", ".join(f"{value:.9g}" for value in turned["tool_axis"])
+        say(f"  At {at(turned['deg'])} the tool axis is ({direction}){beyond}.")

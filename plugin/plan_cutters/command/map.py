@@ -18,7 +18,7 @@ from plan_cutters.command.request import MapRequest, posture_options, read_tools
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.validation import File, Setup, Words, cutter_ids, three
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.option_table import LEAST_TOLERANCE, OPTIONS
+from plan_cutters.option_table import LEAST_TOLERANCE, OF_A_SCENE, OPTIONS
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import refusal, whole
 from plan_cutters_base.workers.child import began, can_supervise, is_child, report
@@ -120,15 +120,9 @@ def command(request: MapRequest) -> int:
     from plan_cutters.calls import posture_map
     from plan_cutters.scene.scene import Scene
 
-    tolerance = {"tolerance": request.tolerance} if request.tolerance > 0 else {}
-    scene = Scene.of(
-        read_part(part, unit=options.unit, guarded=hasattr(os, "fork")),
-        setup=options.setup,
-        flip=options.flip,
-        ignore=options.ignore,
-        fixtures=options.fixtures,
-        **tolerance,
-    )
+    words: dict[str, Any] = {word: getattr(options, word) for word in OF_A_SCENE if word != "tolerance"}
+    words |= {"tolerance": request.tolerance} if request.tolerance > 0 else {}
+    scene = Scene.of(read_part(part, unit=options.unit, guarded=hasattr(os, "fork")), **words)
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
     if off > request.within:
         raise OptionError(
@@ -140,12 +134,12 @@ def command(request: MapRequest) -> int:
         scene, point=foot.tolist(), cutter=cutter, rotations=options.postures.rotations, tilt=options.tilt, machine=machine,
         tolerance=request.tolerance, x=None if placement is None else placement.x,
     )  # fmt: skip
-    face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
-    about = _about(result, f"F{face}", off, cutter, request)
+    face = f"F{locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0]}"
+    about = _about(result, face, off, cutter, request)
     if outs:
         _draw(result, options.tilt, about, outs)
     if request.json_out == "-":
-        hand_out(json.dumps(_facts(result, f"F{face}", off, cutter, request, options.tilt), indent=2) + "\n")
+        hand_out(json.dumps(_facts(result, face, off, cutter, request, options.tilt), indent=2) + "\n")
     elif not request.quiet:
         with paper(80) as console:
             _table(result, about, outs, console)
@@ -158,9 +152,7 @@ def _options(request: MapRequest) -> "Options":
     """The options of a plan of one cutter, which is inline or of a library."""
     from plan_cutters.options import Options
 
-    library = request.libraries
-    setup = Setup().convert(request.setup, None, None)
-    options = posture_options(request)
+    library, options = request.libraries, posture_options(request)
     if library:
         tools = read_tools((), (library,), request.holder, skip_bad=True)
         cutters = tuple(each for each in tools.libraries[0] if request.cutters in (None, each.id, each.name))
@@ -175,12 +167,13 @@ def _options(request: MapRequest) -> "Options":
         cutters = tools.cutters
     # A map may be requested with a smaller one, and with none.
     tolerance = max(request.tolerance, LEAST_TOLERANCE)
-    words: dict[str, Any] = {**options, "cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance}
+    words: dict[str, Any] = {**options, "cutters": cutters, "holder": tools.holder, "tolerance": tolerance,
+                             "setup": Setup().convert(request.setup, None, None)}  # fmt: skip
     return Options(**words)
 
 
 def _text(values: Iterable[float]) -> str:
-    return ", ".join(f"{x + 0.0:.6g}" for x in values)
+    return ", ".join(f"{round(float(x), 9) + 0.0:.6g}" for x in values)
 
 
 def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
@@ -200,8 +193,8 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
     title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
     moved = f"; the requested point is {mm(off)} off" if off > 1e-3 else ""
     lines = [
-        f"{title} at ({_text(_round(result.point))}) on {face} of {printable(Path(request.part).name, 80)}",
-        f"Normal ({_text(_round(result.normal))}), rotation 0 towards ({_text(_round(result.direction_max))}); curvatures "
+        f"{title} at ({_text(result.point)}) on {face} of {printable(Path(request.part).name, 80)}",
+        f"Normal ({_text(result.normal)}), rotation 0 towards ({_text(result.direction_max)}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
         f"Machine {printable(Path(request.machine).name, 40)}, setup {printable(Path(request.setup).name, 40)}; {proved}; "
         f"{apart}.",
@@ -218,13 +211,8 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         away = mm(math.hypot(*result.under_flat.tolist()))
         lines.append(f"Upright the tool is free with the point under its flat, {away} from its axis.")
     if result.lies_along:
-        lines.append(f"With the axis ({_text(_round(result.flank_axis))}) the tool is free, its flank along the surface.")
+        lines.append(f"With the axis ({_text(result.flank_axis)}) the tool is free, its flank along the surface.")
     return lines
-
-
-def _round(vector: Iterable[float]) -> list[float]:
-    """Coordinates without the noise of rounding."""
-    return [round(float(x), 9) for x in vector]
 
 
 def _degrees(intervals: "Floats") -> list[list[float]]:
@@ -272,7 +260,6 @@ def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], out
 
 
 def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
-    """The free intervals for people."""
     from rich.table import Table
 
     from plan_cutters.files.pictures import NO_PICTURES

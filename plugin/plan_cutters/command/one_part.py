@@ -5,7 +5,6 @@ import gc
 import pickle
 import signal
 import time
-import traceback
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -15,7 +14,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.background_compile import begin as background_compile
 from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_interrupt
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
-from plan_cutters.command.progress import Display, Teller
+from plan_cutters.command.progress import Display, ModelsListener, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.cutters import others
 from plan_cutters.plan_file.words.names import called
@@ -30,14 +29,9 @@ if TYPE_CHECKING:
 
 
 def one_part(
-    part: str,
-    out: Path | None,
-    options: "Options",
-    request: "PlanRequest",
-    began: float | None = None,
-    omitted: Mapping[int, str] | None = None,
-    part_cases: "PartCases | None" = None,
-) -> tuple[int, str]:
+    part: str, out: Path | None, options: "Options", request: "PlanRequest", began: float | None,
+    omitted: Mapping[int, str] | None, part_cases: "PartCases | None",
+) -> tuple[int, str]:  # fmt: skip
     """Plan one part into a folder, None for none; exit code and a line about it.
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number;
@@ -159,7 +153,7 @@ def _default_density(options: "Options") -> "Options":
     return made
 
 
-class ProgressListener:
+class ProgressListener(ModelsListener):
     """Shows what is found as soon as it is safe on disk, and tells how far the work is."""
 
     def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:
@@ -170,7 +164,7 @@ class ProgressListener:
         if not is_child():
             names = {cutter.id: called(cutter) for cutter in options.judged}
             self.display = Display(request.quiet, len(names), began or time.monotonic(), itself=True, names=names)
-        self.tell = Teller(self.display)
+        super().__init__(Teller(self.display), request.debug)
 
     def summarise(self, plan: "Plan") -> None:
         self.end()
@@ -203,17 +197,6 @@ class ProgressListener:
             report("safe", f"{code} {self.out.absolute()}")
         self.judged(plan, code)
         self.summarise(plan)
-
-    def begins(self, what: str) -> None:
-        from plan_cutters.report.folder import file_name
-
-        # Each step has the whole limit of the stage.
-        self.tell("write", 0, 1)
-        self.tell.detail("splitting the faces" if what == "split" else f"writing {file_name(what)}")
-
-    def failed(self, what: str, error: Exception) -> None:
-        if self.request.debug:
-            terminal.emit("".join(traceback.format_exception(error)))
 
     def end(self) -> None:
         """Leave the line to others."""

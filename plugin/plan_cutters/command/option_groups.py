@@ -72,13 +72,9 @@ class Command(click.Command):
     """
 
     def __init__(
-        self,
-        *words: Any,
-        subcommands: Callable[[], Sequence[tuple[str, str]]] = tuple,
-        examples: Sequence[tuple[str, str]] = (),
-        codes: Sequence[tuple[str, str]] = (),
-        **more: Any,
-    ) -> None:
+        self, *words: Any, subcommands: Callable[[], Sequence[tuple[str, str]]] = tuple,
+        examples: Sequence[tuple[str, str]] = (), codes: Sequence[tuple[str, str]] = (), **more: Any,
+    ) -> None:  # fmt: skip
         more["context_settings"] = {"help_option_names": ["-h", "--help"]}
         super().__init__(*words, **more)
         click.version_option(__version__, prog_name="plan-cutters")(self)
@@ -129,7 +125,6 @@ class Command(click.Command):
 
 
 def _help_all(ctx: click.Context, param: click.Parameter, requested: bool) -> None:
-    """Print all of the help, and end."""
     if not requested or ctx.resilient_parsing:
         return
     ctx.meta[_ALL] = True
@@ -280,7 +275,6 @@ def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., A
 
 
 def _of_click(option: Option) -> dict[str, Any]:
-    """What click is told of an option."""
     more: dict[str, Any] = {"help": option.help, "brief": option.brief}
     if option.kind is bool:
         more |= {"is_flag": True, **({"flag_value": False} if option.default else {})}

@@ -20,8 +20,7 @@ def without_models(stopped: Unfinished, request: "PlanRequest") -> int:
     line = remaining_text(stopped.out, str(stopped))
     show_plan(stopped.out, request, summarised=stopped.summarised)
     terminal.error(f"plan-cutters: {line}")
-    remaining = request.parts[stopped.parts :]
-    if remaining and stopped.code != INTERRUPTED:
+    if (remaining := request.parts[stopped.parts :]) and stopped.code != INTERRUPTED:
         terminal.error(f"plan-cutters: not planned: {', '.join(remaining)}")
         return max(stopped.code, UNREADABLE)
     return stopped.code
@@ -31,7 +30,7 @@ def show_plan(out: Path, request: "PlanRequest", *, summarised: bool) -> None:
     """Show the plan of a run that was ended: its summary, unless that was shown already, its files, and itself where that is
     requested.
     """
-    from plan_cutters.report import PLAN
+    from plan_cutters.report.folder import PLAN
 
     path = out / PLAN
     if not path.is_file():
@@ -52,15 +51,21 @@ def show_plan(out: Path, request: "PlanRequest", *, summarised: bool) -> None:
 
 def remaining_text(out: Path, why: str) -> str:
     """Say what is missing of a plan in a folder, whose run ended for a reason; the plan says so, too."""
-    from plan_cutters.report import PLAN, file_name
-    from plan_cutters.report.folder import ended
+    from plan_cutters.report.folder import PLAN
 
-    missing = ", ".join(map(file_name, ended(out, why)))
+    missing = _ended(out, why)
     if text := verdicts_text(out, missing):
         return f"{why}; {text}"
     if missing:
         return f"{missing} in {out}: not written: {why}"
     return f"{why}; {'its plan' if (out / PLAN).is_file() else 'what stands'} is in {out}"
+
+
+def _ended(out: Path, why: str) -> str:
+    """Files that the plan in a folder is without, now that its run has ended for a reason."""
+    from plan_cutters.report.folder import ended, file_name
+
+    return ", ".join(map(file_name, ended(out, why)))
 
 
 def verdicts_text(out: Path, missing: str = "") -> str:
@@ -69,7 +74,7 @@ def verdicts_text(out: Path, missing: str = "") -> str:
     It is empty where there is another plan or none.
     """
     from plan_cutters.plan_file.words.names import typed
-    from plan_cutters.report import PLAN
+    from plan_cutters.report.folder import PLAN
     from plan_cutters.report.to_json import unfinished
 
     if not (text := typed(unfinished(out / PLAN))):
@@ -133,10 +138,7 @@ def _failure_text(out: Path | None, timeout: float) -> str:
     advice = "sample more coarsely (--spacing), or give more time (--timeout)"
     if out is None:
         return f"{why}: {advice}"
-    from plan_cutters.report import file_name
-    from plan_cutters.report.folder import ended
-
-    missing = ", ".join(map(file_name, ended(out, why)))
+    missing = _ended(out, why)
     if text := verdicts_text(out, missing):
         return f"{why}: {advice}; {text}"
     return f"{why}: the plan is in {out}{f', without {missing}' if missing else ''}; {advice}"

@@ -6,6 +6,7 @@ The process that waits draws it: the clock runs on while the CAD kernel holds th
 import contextlib
 import json
 import time
+import traceback
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -24,17 +25,11 @@ _SELF = "plan-cutters"
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {
     "start": "starting",
-    "read": "reading the part",
-    "measure": "reading the part",
-    "sew": "reading the part",
-    "orient": "reading the part",
+    **dict.fromkeys(("read", "measure", "sew", "orient"), "reading the part"),
     "fixtures": "reading the fixtures",
-    "sample": "taking samples",
-    "classify": "taking samples",
-    "tessellate": "meshing what is in the way",
-    "tree": "meshing what is in the way",
-    "compile": "preparing the search",
-    "bodies": "preparing the search",
+    **dict.fromkeys(("sample", "classify"), "taking samples"),
+    **dict.fromkeys(("tessellate", "tree"), "meshing what is in the way"),
+    **dict.fromkeys(("compile", "bodies"), "preparing the search"),
     "setups": "judging in the other setups",
     "proposal": "comparing setups",
     "reasons": "finding the reasons",
@@ -275,3 +270,24 @@ class Teller:
         report("detail", text)
         if self.display is not None:
             self.display.detail(text)
+
+
+class ModelsListener:
+    """A listener tells whoever waits what of the models is being written; with `debug`, why one is not."""
+
+    def __init__(self, tell: Teller, debug: bool) -> None:
+        self.tell, self.debug = tell, debug
+
+    def safe(self, plan: "Plan") -> None:
+        """The plan and the arrays are in the output."""
+
+    def begins(self, what: str) -> None:
+        from plan_cutters.report.folder import file_name
+
+        # Each step has the whole limit of the stage.
+        self.tell("write", 0, 1)
+        self.tell.detail("splitting the faces" if what == "split" else f"writing {file_name(what)}")
+
+    def failed(self, what: str, error: Exception) -> None:
+        if self.debug:
+            terminal.emit("".join(traceback.format_exception(error)))

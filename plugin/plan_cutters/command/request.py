@@ -129,8 +129,7 @@ class MapRequest(PostureRequest):
     part: str
     at: str
     within: float
-    #: One, of the one library where that is named.
-    cutters: str | None
+    cutters: str | None  #: One, of the one library where that is named.
     libraries: str | None
     setup: str
     out: tuple[str, ...]
@@ -169,13 +168,8 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
     tools = read_tools(request.cutters, request.libraries, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
     # The words of choices were looked at where the command line was read.
-    words: Any = {
-        **_handed_on(request, of_a_point=False),
-        **posture_options(request),
-        **tools._asdict(),
-        "setup": request.setup[0],
-        "other_setups": request.setup[1:],
-    }
+    words: Any = {**_handed_on(request, of_a_point=False), **posture_options(request), **tools._asdict()}
+    words |= {"setup": request.setup[0], "other_setups": request.setup[1:]}
     return cast("PlanOptions", words)
 
 
@@ -184,12 +178,8 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
     from plan_cutters.domain.posture import PostureRange
 
     postures = PostureRange.degrees(request.tilt or (0.0, 90.0), request.rotation, request.rotation_step)
-    words = {
-        **_handed_on(request, of_a_point=True),
-        "tilt": postures.tilt if request.tilt else None,
-        "rotation": postures.rotation,
-        "rotation_step": postures.step,
-    }
+    words = _handed_on(request, of_a_point=True)
+    words |= {"tilt": postures.tilt if request.tilt else None, "rotation": postures.rotation, "rotation_step": postures.step}
     del words["holder"]
     return cast("PlanOptions", words)
 

@@ -1,7 +1,6 @@
 """`plan-cutters show`: the page and the models of a folder that has a plan, and its summary."""
 
 import signal
-import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,33 +94,20 @@ def command(request: ShowRequest) -> int:
 
 def _made(plan: "Plan", out: Path, names: Sequence[str], request: ShowRequest) -> "Plan":
     """The plan with the files that it lacked."""
-    from plan_cutters.command.progress import Display, Teller
+    from plan_cutters.command.progress import Display, ModelsListener, Teller
     from plan_cutters.document.clock import Clock
-    from plan_cutters.report.folder import Staging, file_name, write_missing
+    from plan_cutters.report.folder import Staging, write_missing
     from plan_cutters.restored import part_of, restored
     from plan_cutters_base.stage_cache import StageCache, settle
 
     tell = Teller(None if is_child() else Display(request.quiet, 1, began(), itself=True))
-
-    class Listener:
-        """The work is told to whoever waits."""
-
-        def safe(self, plan: "Plan") -> None: ...
-
-        def begins(self, what: str) -> None:
-            tell("write", 0, 1)
-            tell.detail("splitting the faces" if what == "split" else f"writing {file_name(what)}")
-
-        def failed(self, what: str, error: Exception) -> None:
-            if request.debug:
-                terminal.emit("".join(traceback.format_exception(error)))
 
     part = part_of(plan, out, None if request.part is None else Path(request.part))
     clock = Clock.after(plan.run)
     clock.progress = tell
     with Staging(out, lambda folder: report("staging", str(folder))) as staging:
         result = restored(plan, out, part, clock, at=report_work, cache=StageCache.of_user())
-        made = write_missing(result, out, names, staging, clock, Listener())
+        made = write_missing(result, out, names, staging, clock, ModelsListener(tell, request.debug))
     settle()
     return made
 

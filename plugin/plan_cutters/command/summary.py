@@ -49,8 +49,8 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     rows = list(story.cutters)
     if not verbose and len(rows) > MOST_ROWS:
         missing_shares = {c.id: leaves(c) for c in plan.cutters}
-        shown = sorted(rows, key=lambda c: (c.id != story.taken, missing_shares[c.id]))[:MOST_ROWS]
-        rows = [c for c in rows if c in shown]
+        rows = sorted(rows, key=lambda c: (c.id != story.taken, missing_shares[c.id]))[:MOST_ROWS]
+        rows = [c for c in story.cutters if c in rows]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     lines: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
     short = _distinct([clean(c.name) for c in rows], _CUTTER)
@@ -181,9 +181,8 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str], *, verbose: 
 
 
 def _not_split(plan: "Plan") -> Iterator[str]:
-    splits = [("", plan.split)]
-    splits += [(f" in the {each.name} plan", each.split) for each in (plan.operations.plans if plan.operations else [])]
-    for where, split in splits:
+    plans = plan.operations.plans if plan.operations else []
+    for where, split in [("", plan.split), *((f" in the {each.name} plan", each.split) for each in plans)]:
         for face, entry in split.items():
             if entry.rung != "contour":
                 how = "it is one piece in the STEP, and the GLB shows it by its samples"
@@ -191,7 +190,6 @@ def _not_split(plan: "Plan") -> Iterator[str]:
 
 
 def _apart(lines: Sequence[Any]) -> list[Any]:
-    """A paragraph, set apart, if there is any."""
     return ["", *lines] if lines else []
 
 

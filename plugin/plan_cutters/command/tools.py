@@ -133,7 +133,6 @@ def _holders(request: ToolsRequest) -> int:
 
 
 def _plain(library: "Library") -> dict[str, Any]:
-    """A library as JSON has it."""
     from plan_cutters.domain.shapes import flute_length
 
     return {
@@ -143,15 +142,13 @@ def _plain(library: "Library") -> dict[str, Any]:
         "cutters": [
             {"id": cutter.id, "numbers": list(library.numbers(cutter)), "names": list(library.names(cutter)),
              "shape": cutter.shape, "radius": cutter.radius, "corner_radius": cutter.corner_radius, "length": cutter.length,
-             "flutes": flute_length(cutter),
-             "holder": None if cutter.holder is None else {"name": cutter.holder.name, "id": cutter.holder.id}}
+             "flutes": flute_length(cutter), "holder": cutter.holder and {"name": cutter.holder.name, "id": cutter.holder.id}}
             for cutter in library
         ],
         "entries": [
             {"place": entry.place, "number": entry.number, "name": entry.name, "type": entry.kind, "unit": entry.unit or None,
-             "cutter": None if entry.cutter is None else entry.cutter.id,
-             "drill": None if entry.drill is None else entry.drill.id, "unused": entry.unused, "broken": entry.broken,
-             "notes": list(entry.notes), "given": dict(entry.given)}
+             "cutter": entry.cutter and entry.cutter.id, "drill": entry.drill and entry.drill.id, "unused": entry.unused,
+             "broken": entry.broken, "notes": list(entry.notes), "given": dict(entry.given)}
             for entry in library.entries
         ],
         "holders": [{"name": holder.name, "id": holder.id} for holder in library.holders],
@@ -197,7 +194,6 @@ def _listed(console: "Console", row: list[str]) -> None:
 
 
 def _row(entry: "Entry") -> list[str]:
-    """A tool as the table has it."""
     codes, cutter = dict(entry.given), entry.cutter
     if entry.drill is not None:
         codes |= {"LCF": entry.drill.body.flutes or codes.get("LCF", 0.0)}

@@ -4,6 +4,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 #: Where the context of a command says that setups are named behind `auto`.
 _NAMED = "plan_cutters.named_setups"
-#: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
+#: What the shell itself completes, which knows about `~` and blanks.
 FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
 
@@ -68,11 +69,8 @@ class Faces(Words):
         return None if any(":" in value or "!" in value for value in values) else super().added(values)
 
 
-class File(Words):
-    """A path, completed as a file."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(name, files=True)
+#: A path, completed as a file.
+File = partial(Words, files=True)
 
 
 class Folder(Words):
@@ -275,10 +273,8 @@ def folders(request: PlanRequest) -> list[Path]:
     """The output folder of each part; none where only standard output is written."""
     if request.json_out == "-" and request.out is None and request.formats is None:
         return []
-    if request.out is not None and len(request.parts) > 1:
-        outs = [Path(request.out) / f"{Path(p).stem}-plan" for p in request.parts]
-    else:
-        outs = [Path(request.out or f"{Path(p).stem}-plan") for p in request.parts]
+    outs = [Path(request.out or "") / f"{Path(p).stem}-plan" for p in request.parts]
+    outs = [Path(request.out)] if request.out and len(outs) == 1 else outs
     if len(set(outs)) < len(outs):
         twice = next(str(out) for out in outs if outs.count(out) > 1)
         raise OptionError(f"two parts have the same name and would write to the same folder, {twice}; plan them one by one")
@@ -292,12 +288,10 @@ def _words(request: PlanRequest) -> None:
     if request.formats is not None:
         read_formats(request.formats)
     checks, several = request.check_operations is not None, len(request.parts) > 1
+    other = request.json_out not in (None, "-")
     _refuse(
         (request.process is not None and several, "--process names faces of one part: give one part"),
-        (
-            request.json_out not in (None, "-"),
-            "--json takes -, for standard output; --formats json writes plan.json into the folder",
-        ),
+        (other, "--json takes -, for standard output; --formats json writes plan.json into the folder"),
         (request.json_out and several, "--json - writes one plan: give one part, or -o DIR --formats json for a file of each"),
         (request.json_out and sys.stdout is None, "--json -: standard output is closed"),
     )

@@ -23,21 +23,9 @@ from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, DRILLED, INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts, Witness
+from plan_cutters.plan_file import part_info as schema
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
-from plan_cutters.plan_file.part_info import (
-    CarrierEntry,
-    CoveringBody,
-    FixtureEntry,
-    InsideEntry,
-    OrientationInfo,
-    PartInfo,
-    ReferenceEntry,
-    Scope,
-    SewingInfo,
-    SheetsEntry,
-    UnitEntry,
-)
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, FaceVerdicts
 from plan_cutters.scene.covering import coverings, numbers, sheets
 from plan_cutters.scene.faces import Chosen
@@ -47,17 +35,11 @@ from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 
-def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
-    """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
-    return [fixture_entry(fixture, setups) for fixture, setups in fixtures_in(each)]
-
-
-def fixtures_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
-    """Placed fixtures of all setups, each with the setups in which it stands, in the order of `fixture_entries`."""
-    fixtures: list[tuple[PlacedFixture, list[int]]] = []
-    known: list[FixtureEntry] = []
-    for number, surroundings in enumerate(each):
-        for fixture in surroundings.fixtures:
+def fixtures_in(ready: Prepared) -> list[tuple[PlacedFixture, list[int]]]:
+    """Placed fixtures of all setups, those of the first one first, each with the setups in which it stands in the same place."""
+    fixtures, known = list[tuple[PlacedFixture, list[int]]](), list[schema.FixtureEntry]()
+    for number, conditions in enumerate(ready.setups):
+        for fixture in conditions.surroundings.fixtures:
             mine = fixture_entry(fixture)
             if number and mine in known:
                 fixtures[known.index(mine)][1].append(number)
@@ -67,44 +49,32 @@ def fixtures_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[
     return fixtures
 
 
-def references(part: Part) -> list[ReferenceEntry]:
+def references(part: Part) -> list[schema.ReferenceEntry]:
     """The files that a part's file refers to."""
-    return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
+    return [schema.ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
 
 
-def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> FixtureEntry:
+def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> schema.FixtureEntry:
     """A fixture where it stands, in some setups."""
-    fixture, source, triangles = placed.fixture, placed.source, placed.obstacles.triangles
-    file = None if source is None else source.file
-    x, y, z, rx, ry, rz = fixture.placement
-    return FixtureEntry(
-        name=placed.name,
-        file=None if file is None else Path(file).name,
-        sha256=None if source is None else source.sha256,
-        references=references(source) if isinstance(source, Part) else [],
-        unit=source.unit if isinstance(source, Mesh) else fixture.unit,
-        placement=(x, y, z, rx, ry, rz),
-        triangles=len(triangles),
-        chord_error_mm=triangles.chord_error,
-        watertight=placed.body is not None,
-        notes=list(placed.notes),
-        clamping=fixture.text if fixture.clamping is not None else None,
-        grips=[] if placed.hold is None else [f"F{number}" for number in placed.hold.grips],
-        unheld=[f"F{number}" for number in placed.unheld],
-        hidden_mm2=None if placed.hold is None else placed.hold.hidden,
-        setups=list(setups),
-    )
+    fixture, source, triangles, hold = placed.fixture, placed.source, placed.obstacles.triangles, placed.hold
+    return filled(
+        schema.FixtureEntry, placed, file=None if source is None or source.file is None else Path(source.file).name,
+        sha256=None if source is None else source.sha256, references=references(source) if isinstance(source, Part) else [],
+        unit=source.unit if isinstance(source, Mesh) else fixture.unit, placement=fixture.placement, triangles=len(triangles),
+        chord_error_mm=triangles.chord_error, watertight=placed.body is not None, setups=list(setups),
+        clamping=fixture.text if fixture.clamping is not None else None, unheld=[f"F{number}" for number in placed.unheld],
+        grips=[f"F{number}" for number in hold.grips] if hold else [], hidden_mm2=hold.hidden if hold else None,
+    )  # fmt: skip
 
 
 def counts(
     verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None, exempt: NDArray[np.bool_] | None = None
 ) -> dict[str, Any]:
     """How many samples have each verdict; `inside`, `exempt` (n,): those inside other bodies of the part, and not required."""
-    of = {name: int((verdict == code).sum()) for code, name in WORDS.items()}
+    others = {"inside_bodies": inside, "exempt": exempt}
     return {
-        **of,
-        "inside_bodies": 0 if inside is None else int(inside.sum()),
-        "exempt": 0 if exempt is None else int(exempt.sum()),
+        **{name: int((verdict == code).sum()) for code, name in WORDS.items()},
+        **{name: 0 if rows is None else int(rows.sum()) for name, rows in others.items()},
     }
 
 
@@ -140,21 +110,16 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     as one.
     """
     targets = [
-        *(
-            (name, each.area_share, 1.0 - each.inside_share - each.exempt_share - each.drilled_share)
-            for name, each in faces.items()
-        ),
-        *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty),
+        (n, each.area_share, 1.0 - each.inside_share - each.exempt_share - each.drilled_share) for n, each in faces.items()
     ]
+    targets += [(f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty]
     areas = _areas([name for name, _, _ in targets], part)
     seen = np.array([areas[name] * finished for name, _, finished in targets])
     weights = (seen / max(1e-300, seen.sum())).tolist()
     parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
     sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in VERDICTS}
-    not_reached = {
-        reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
-    }
-    return AreaShare(**sums, lost_by={reason: share for reason, share in not_reached.items() if share})
+    sums_by = {reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS}
+    return AreaShare(**sums, lost_by={reason: share for reason, share in sums_by.items() if share})
 
 
 def sample_areas(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[NDArray[np.float64], float]:
@@ -188,11 +153,11 @@ def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[
     return AreaShare(**shares, lost_by=by)
 
 
-def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
+def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> schema.InsideEntry:
     """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
     inside, samples, scene = ready.inside_bodies, ready.samples, ready.scene
     if not inside.any():
-        return InsideEntry()
+        return schema.InsideEntry()
     areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], scene.part)
     area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
     within, lying = float(samples.area[inside].sum()), sheets(ready)
@@ -209,20 +174,14 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
         return {"faces": [f"F{n}" for n in np.unique(samples.face[rows]).tolist()], "samples": len(rows), "area_mm2": mine}
 
     bodies = [
-        filled(
-            CoveringBody,
-            each,
-            number=1 + each.index,
-            own_faces=numbers(each.faces).split(","),
-            option=f"--ignore {shlex.quote(each.selection)}",
-            **some(each.rows),
-        )
+        filled(schema.CoveringBody, each, number=1 + each.index, own_faces=numbers(each.faces).split(","),
+               option=f"--ignore {shlex.quote(each.selection)}", **some(each.rows))
         for each in ready.cache.cached("coverings", follows_from, lambda: coverings(ready))
-    ]
+    ]  # fmt: skip
     option = f"--ignore {numbers(ready.conditions.surroundings.on_bodies)}"
-    return InsideEntry(
+    return schema.InsideEntry(
         samples=int(inside.sum()), area_mm2=area, share=min(1.0, area / max(1e-300, sum(areas.values()))), bodies=bodies,
-        sheets=SheetsEntry(**some(lying), option=option) if len(lying) else None,
+        sheets=schema.SheetsEntry(**some(lying), option=option) if len(lying) else None,
     )  # fmt: skip
 
 
@@ -252,7 +211,8 @@ def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry
 def degrees(pair: tuple[float, float]) -> tuple[float, float]:
     """A range of radians in degrees."""
     # Rounded to what a person typed: 90, not 90.00000000000001.
-    return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
+    low, high = (round(float(np.degrees(end)), 9) for end in pair)
+    return low, high
 
 
 def cutter_entry(
@@ -273,59 +233,39 @@ def cutter_entry(
     open_ = bool(mine["undecided"] or surroundings.doubtful or another)
     feasible = False if blocked > another else None if open_ else True
     faces = face_verdicts(samples, reach, inside, exempt)
+
+    def by_reason(rows: NDArray[np.bool_], reason: NDArray[np.uint8]) -> dict[str, int]:
+        return {name: int((rows & (reason == code)).sum()) for code, name in enumerate(REASONS)}
+
     return filled(
-        CutterEntry,
-        cutter,
-        taper_deg=float(np.degrees(cutter.taper)),
-        group=group_of(cutter),
-        flutes_mm=flute_length(cutter),
-        holder=cutter.holder.name if cutter.holder else "",
-        stages=[
-            SegmentEntry(
-                part=part, low_mm=low, length_mm=stage.length, radius_mm=stage.radius, upper_radius_mm=stage.upper_radius
-            )
-            for part, low, stage in cutter.stages
-        ],
-        touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)],
-        allowance_mm=cutter.allowance or 0.0,
-        clearance_mm=cutter.clearance or 0.0,
-        slack_mm=slack,
-        feasible=feasible,
-        seen=samples.max_gap <= cutter.radius,
-        march_differs=march_differs,
-        **mine,
-        by_reason={name: int((not_reached & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        axis_limit_with={name: int((besides == i).sum()) for i, name in enumerate(REASONS) if (besides == i).any()},
-        faces=faces,
-        area_share=whole_share(faces, samples, part),
+        CutterEntry, cutter, taper_deg=float(np.degrees(cutter.taper)), group=group_of(cutter), flutes_mm=flute_length(cutter),
+        holder=cutter.holder.name if cutter.holder else "", slack_mm=slack, feasible=feasible, march_differs=march_differs,
+        stages=[filled(SegmentEntry, stage, part=part, low_mm=low) for part, low, stage in cutter.stages],
+        touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)], seen=samples.max_gap <= cutter.radius,
+        allowance_mm=cutter.allowance or 0.0, clearance_mm=cutter.clearance or 0.0, **mine,
+        by_reason=by_reason(not_reached, reach.reason), undecided_by_reason=by_reason(unsure, reach.reason),
+        axis_limit_with={name: n for name, n in by_reason(besides < len(REASONS), besides).items() if n},
+        faces=faces, area_share=whole_share(faces, samples, part), seconds=seconds,
         witnesses=[_witness_entry(w, samples, surroundings, reach, inside) for w in witnesses],
         witnesses_untried=sum(w.untried for w in witnesses),
-        seconds=seconds,
-    )
+    )  # fmt: skip
 
 
 def _witness_entry(
     witness: Witness, samples: SurfaceSamples, surroundings: Surroundings, reach: Verdicts, inside: NDArray[np.bool_]
 ) -> WitnessEntry:
-    best = None
+    best, row = None, witness.sample
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
     return filled(
-        WitnessEntry,
-        witness,
-        point=vector(samples.point[witness.sample]),
-        face=f"F{samples.face[witness.sample]}",
-        verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
+        WitnessEntry, witness, point=vector(samples.point[row]), face=f"F{samples.face[row]}", best_posture=best,
+        verdict="undecided" if reach.verdict[row] == UNDECIDED else "inaccessible", inside_bodies=bool(inside[row]),
         obstacle_face=None if not witness.obstacle_face else surroundings.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
-        best_posture=best,
-        depth_mm=witness.depth,
-        inside_bodies=bool(inside[witness.sample]),
-    )
+    )  # fmt: skip
 
 
-def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> PartInfo:
+def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -> schema.PartInfo:
     """The part, and what is odd about it."""
     part, orientation, sewn = scene.part, scene.orientation, scene.part.sewn
     warnings = list(part.warnings)
@@ -335,37 +275,26 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
             f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
             "not known for sure; a face or an edge may be missing"
         )
-    on_shell = ""
-    if surroundings.on_bodies:
-        names = listed([f"F{number}" for number in surroundings.on_bodies])
-        on_shell = (
-            f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
-            "all others: `--ignore` leaves them out"
-        )
-        warnings.append(on_shell)
+    on_shell = (
+        f"{listed([f'F{number}' for number in surroundings.on_bodies])} lie on faces of solids, as construction geometry does, "
+        "and are judged and in the way like all others: `--ignore` leaves them out"
+        if surroundings.on_bodies
+        else ""
+    )
+    warnings += [on_shell] if on_shell else []
     # Faces of no closed body that are neither ignored nor set aside. Those of a broken solid are not loose: they are its skin.
     closed = {number for body in surroundings.bodies if body.closed for number in body.faces}
     excluded = {face.number for face in part.faces if face.unjudged} | set(scene.ignored)
     opened = [f.id for f in part.faces if f.number not in closed | excluded]
     of_solids = [name for n in orientation.guessed if n not in excluded and (name := f"F{n}") not in opened]
     return filled(
-        PartInfo,
-        part,
-        file=Path(part.file).name if part.file else None,
-        references=references(part),
-        size_mm=part.size,
-        faces=len(part.faces),
-        orientation=filled(OrientationInfo, orientation),
-        sewing=None
-        if not sewn.faces
-        else filled(SewingInfo, sewn, tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_length_mm=sewn.open_length),
-        warnings=warnings,
+        schema.PartInfo, part, file=Path(part.file).name if part.file else None, references=references(part),
+        faces=len(part.faces), orientation=filled(schema.OrientationInfo, orientation),
+        sewing=filled(schema.SewingInfo, sewn) if sewn.faces else None, warnings=warnings,
         loose_faces=[name for name in opened if int(name[1:]) in sewn.faces] if part.solids else [],
-        guessed_faces=[] if orientation.confident else [*opened, *of_solids],
-        sheets_doubt=on_shell,
-        void_faces=void_faces,
-        unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],
-    )
+        guessed_faces=[] if orientation.confident else [*opened, *of_solids], sheets_doubt=on_shell, void_faces=void_faces,
+        unit_readings=[filled(schema.UnitEntry, each) for each in part.unit_readings],
+    )  # fmt: skip
 
 
 def face_entries(
@@ -384,28 +313,17 @@ def face_entries(
         again = choice.repeated.get(face.number)
         if reason is None and len(bad):
             reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
-        result.append(
-            filled(
-                FaceEntry,
-                face,
-                kind="blend" if face.number in choice.blends else face.shape,
-                target=face.number in chosen,
-                ignored=face.number in ignored,
-                area_mm2=face.area,
-                centre_mm=part.centre(face.number),
-                carrier=carrier_entry(face, orientation),
-                neighbours=[f"F{number}" for number in part.neighbours[face.number - 1]],
-                component=component[face.number],
-                samples=len(mine),
-                gap_mm=gaps.get(face.number),
-                chord_error_mm=errors.get(face.number),
-                unjudged=f"is F{again} again" if again else reason if face.number in chosen else face.unjudged,
-            )
-        )
+        result.append(filled(
+            FaceEntry, face, kind="blend" if face.number in choice.blends else face.shape, target=face.number in chosen,
+            ignored=face.number in ignored, centre_mm=part.centre(face.number), carrier=carrier_entry(face, orientation),
+            neighbours=[f"F{number}" for number in part.neighbours[face.number - 1]], component=component[face.number],
+            samples=len(mine), gap_mm=gaps.get(face.number), chord_error_mm=errors.get(face.number),
+            unjudged=f"is F{again} again" if again else reason if face.number in chosen else face.unjudged,
+        ))  # fmt: skip
     return result
 
 
-def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | None:
+def carrier_entry(face: FaceInfo, orientation: Orientation) -> schema.CarrierEntry | None:
     """Describe what a face is a part of; the side of the material only where it is sure."""
     carrier = face.carrier
     if carrier is None:
@@ -413,16 +331,16 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
     side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
     angle = None if carrier.half_angle is None else math.degrees(carrier.half_angle)
     lengths = {"radius_mm": carrier.radius, "minor_radius_mm": carrier.minor_radius, "half_angle_deg": angle}
-    return CarrierEntry(
-        point_mm=vector(np.round(carrier.point, _DIGITS) + 0.0),
-        direction=None if carrier.direction is None else vector(np.round(carrier.direction, _DIGITS) + 0.0),
-        outward=bool(side > 0) if side else None,
-        **{name: None if value is None else round(value, _DIGITS) for name, value in lengths.items()},
+    point, direction = (each and vector(np.round(each, _DIGITS) + 0.0) for each in (carrier.point, carrier.direction))
+    fields = {name: value and round(value, _DIGITS) for name, value in lengths.items()}
+    return filled(
+        schema.CarrierEntry, carrier, point_mm=point, direction=direction, outward=bool(side > 0) if side else None, **fields
     )
 
 
 @cache
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Versions of what the plan was made with."""
     from importlib.metadata import version
 
     names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
@@ -430,20 +348,11 @@ def _versions() -> dict[str, str]:
     return {"plan_cutters": __version__, **made, "python": platform.python_version()}
 
 
-def versions() -> dict[str, str]:
-    """Versions of what the plan was made with."""
-    return dict(_versions())
-
-
-def scope_of(faces: Sequence[FaceEntry]) -> Scope:
+def scope_of(faces: Sequence[FaceEntry]) -> schema.Scope:
     """Say which of all faces were judged and which were not, with their areas, mm2."""
-    targets = [f for f in faces if f.target]
+    fields = dict[str, Any]()
     others = [f for f in faces if not f.target and not f.ignored]
-    areas = (math.fsum(f.area_mm2 for f in each if math.isfinite(f.area_mm2)) for each in (targets, others))
-    kinds = (dict(sorted(Counter(f.kind for f in each).items())) for each in (targets, others))
-    judged_mm2, not_judged_mm2 = areas
-    judged_by_kind, not_judged_by_kind = kinds
-    return Scope(
-        judged=len(targets), judged_mm2=judged_mm2, not_judged=len(others), not_judged_mm2=not_judged_mm2,
-        judged_by_kind=judged_by_kind, not_judged_by_kind=not_judged_by_kind,
-    )  # fmt: skip
+    for name, each in (("judged", [f for f in faces if f.target]), ("not_judged", others)):
+        fields |= {name: len(each), f"{name}_mm2": math.fsum(f.area_mm2 for f in each if math.isfinite(f.area_mm2)),
+                   f"{name}_by_kind": dict(sorted(Counter(f.kind for f in each).items()))}  # fmt: skip
+    return schema.Scope(**fields)

@@ -11,7 +11,7 @@ from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import largest_fitting, least_radius
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, REAR_GOUGE, Verdicts
-from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.part_info import InsideRadiusEntry, PatternEntry, SharpEdgeEntry
 from plan_cutters.scene.preparation import Prepared
 
@@ -31,16 +31,11 @@ def sharp_edge_entries(
     entries = []
     for (first, second), places in pairs.items():
         angle = float(np.concatenate([edges[place].angle[edges[place].sharp] for place in places]).mean())
-        entries.append(
-            SharpEdgeEntry(
-                faces=(f"F{first}", f"F{second}"),
-                length_mm=sum(edges[place].length for place in places),
-                angle_deg=float(np.degrees(angle)),
-                radius_mm=radius,
-                width_mm=radius / float(np.tan(0.5 * angle)),
-                area_mm2=float(np.nansum(samples.area[np.isin(strips, places)])),
-            )
-        )
+        entries.append(SharpEdgeEntry(
+            faces=(f"F{first}", f"F{second}"), length_mm=sum(edges[place].length for place in places),
+            angle_deg=float(np.degrees(angle)), radius_mm=radius, width_mm=radius / float(np.tan(0.5 * angle)),
+            area_mm2=float(np.nansum(samples.area[np.isin(strips, places)])),
+        ))  # fmt: skip
     return sorted(entries, key=lambda each: (-each.area_mm2, each.faces))
 
 
@@ -68,15 +63,9 @@ def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -
             continue
         inside = _inside_radius(ready, mine)
         if 0.0 < inside < radius * (1.0 - 1e-6):
-            entries.append(
-                InsideRadiusEntry(
-                    face=f"F{number}",
-                    radius_mm=inside,
-                    cutter_radius_mm=radius,
-                    area_mm2=float(np.nansum(samples.area[mine])),
-                    fits_mm=largest_fitting(inside, cutter.allowance or 0.0),
-                )
-            )
+            area, fits = float(np.nansum(samples.area[mine])), largest_fitting(inside, cutter.allowance or 0.0)
+            entries.append(InsideRadiusEntry(face=f"F{number}", radius_mm=inside, cutter_radius_mm=radius, area_mm2=area,
+                                             fits_mm=fits))  # fmt: skip
     named = [each for each in entries if each.area_mm2 >= _NAMED] or entries
     return sorted(named, key=lambda each: (each.radius_mm, each.face))
 
@@ -131,13 +120,11 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
         if each.kind == "mirror":
             values, vectors = np.linalg.eigh(0.5 * (first.linear + first.linear.T))
             place, direction = 0.5 * first.shift, vectors[:, int(values.argmin())]
-        entries.append(
-            PatternEntry(
-                kind=each.kind, order=each.order, whole=each.whole, place_mm=None if place is None else vector(place),
-                direction=None if direction is None else vector(direction),
-                shifts_mm=[vector(m.shift) for m in each.motions] if each.kind == "shift" else [],
-                faces=[[f"F{ring[k % len(ring)]}" for ring in each.faces] for k in range(each.order)] if each.faces else [],
-                moved=int(own[0]), followed=int(own[1]), verified=int(own[2]),
-            )
-        )  # fmt: skip
+        entries.append(filled(
+            PatternEntry, each, place_mm=None if place is None else vector(place),
+            direction=None if direction is None else vector(direction),
+            shifts_mm=[vector(m.shift) for m in each.motions] if each.kind == "shift" else [],
+            faces=[[f"F{ring[k % len(ring)]}" for ring in each.faces] for k in range(each.order)] if each.faces else [],
+            moved=int(own[0]), followed=int(own[1]), verified=int(own[2]),
+        ))  # fmt: skip
     return entries

@@ -10,18 +10,8 @@ from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.domain.thread import thread_in, tolerance_in
-from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.holes import (
-    CounterboreEntry,
-    CountersinkEntry,
-    DrillingStep,
-    HoleEntry,
-    MissingEntry,
-    StrokeEntry,
-    ThreadEntry,
-    ToleranceEntry,
-    WorkplaneEntry,
-)
+from plan_cutters.plan_file import holes as schema
+from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.fixed_axis import tilted_plane
 from plan_cutters.scene.holes import groups
@@ -37,14 +27,10 @@ IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 _IN_TURN: tuple[Kind, ...] = ("centre drill", "drill", "reamer", "counterbore", "countersink", "tap")
 
 
-def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[HoleEntry]:
+def hole_entries(ready: Prepared, made: Sequence[Bored]) -> list[schema.HoleEntry]:
     """The holes for drills of a part, those of the first group first; `made`: by what tools."""
     number = groups(ready.holes)
-    return [_entry(ready.holes[k], number[k], made[k]) for k in _in_order(number)]
-
-
-def _in_order(number: Sequence[int]) -> list[int]:
-    return sorted(range(len(number)), key=lambda k: number[k])
+    return [_entry(ready.holes[k], number[k], made[k]) for k in np.argsort(number, kind="stable").tolist()]
 
 
 def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored], index_times: IndexTimes) -> ProcessEntry:
@@ -68,28 +54,28 @@ def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored],
     return process.model_copy(update={"drilling": drilling, "seconds": sum(times.values()), **times})
 
 
-def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[DrillingStep]:
+def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, timed: bool) -> list[schema.DrillingStep]:
     """The steps that drill holes: by setup, kind and diameter; those of one tool follow each other."""
-    options, number = ready.options, groups(ready.holes)
+    options, in_order = ready.options, np.argsort(groups(ready.holes), kind="stable").tolist()
     entries_of = [entry for library in options.libraries for entry in library.entries if entry.drill is not None]
     feeds = {entry.drill.id: entry.feed for entry in reversed(entries_of) if entry.drill is not None and entry.feed is not None}
     same: dict[tuple[Any, ...], list[tuple[int, Drilled]]] = {}
-    for place, k in enumerate(_in_order(number)):
+    for place, k in enumerate(in_order):
         for use in made[k].uses:
             size = round(use.diameter, _DIGITS), round(use.depth, _DIGITS)
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
     threads = [thread_in(hole.sizes, hole.diameter) for hole in ready.holes]
-    steps, turned = list[DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
+    steps, turned = list[schema.DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
         axis, deep = _rounded(use.axis), round(use.depth, _DIGITS)
-        thread = threads[_in_order(number)[same[key][0][0]]] if use.drill.kind == "tap" else None
+        thread = threads[in_order[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
-        strokes = [StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
+        strokes = [schema.StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
         steps.append(
-            DrillingStep(
+            schema.DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
                 holes=strokes,
                 setup=use.setup, axis=vector(use.axis + 0.0), **_turned(ready, use.setup, use.axis),
@@ -99,13 +85,13 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
                 link_seconds=len(same[key]) * options.link_time, index_seconds=1.0 if begins and timed else 0.0,
             )
         )  # fmt: skip
-    together: dict[tuple[int, str], list[DrillingStep]] = {}
+    together: dict[tuple[int, str], list[schema.DrillingStep]] = {}
     for step in steps:
         together.setdefault((step.setup, step.tool), []).append(step)
     return [step for group in together.values() for step in _indexed(ready, group, index_times)]
 
 
-def _indexed(ready: Prepared, steps: Sequence[DrillingStep], index_times: IndexTimes) -> list[DrillingStep]:
+def _indexed(ready: Prepared, steps: Sequence[schema.DrillingStep], index_times: IndexTimes) -> list[schema.DrillingStep]:
     """The steps of one tool in one setup with the seconds of turns: as those of mills they begin with the axes at zero."""
     kinematics, options = ready.setups[steps[0].setup].kinematics, ready.options
     turns = [k for k, step in enumerate(steps) if step.index_seconds]
@@ -136,49 +122,28 @@ def _turned(ready: Prepared, setup: int, axis: Floats) -> dict[str, Any]:
     second = other if apart.max(initial=0.0) > _SAME else None
     place, angle = places(ready.options)[setup], both[0, int(taken[0])]
     origin, x, words = tilted_plane(conditions, place, conditions.kinematics, axis, angle, own, second)
-    frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
+    frame = schema.WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
     return {"angles_deg": own, "frame": frame, "g68_2": words.g68_2, "g53_1": words.g53_1, "rotary_words": words.rotary}
 
 
-def _entry(hole: Hole, group: int, made: Bored) -> HoleEntry:
+def _entry(hole: Hole, group: int, made: Bored) -> schema.HoleEntry:
     by, sink, bore = made.by, hole.countersink, hole.counterbore
     thread, tolerance = thread_in(hole.sizes, hole.diameter), tolerance_in(hole.sizes, hole.diameter)
-    return HoleEntry(
-        faces=[f"F{number}" for number in hole.faces],
-        diameter_mm=round(hole.diameter, _DIGITS),
-        depth_mm=round(hole.depth, _DIGITS),
-        through=hole.through,
-        bottom=hole.bottom,
-        cone_deg=None if hole.cone is None else _degrees(hole.cone),
-        countersink=None if sink is None else CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
-        counterbore=None if bore is None else CounterboreEntry(**dict(zip(_BORE, np.round(bore, _DIGITS).tolist(), strict=True))),
-        axis=vector(hole.axis + 0.0),
-        place_mm=vector(np.round(hole.place, _DIGITS) + 0.0),
-        group=group,
-        drilled=by is not None,
-        tool=None if by is None else by.id,
-        missing=[_missing(each) for each in made.missing],
-        thread=None
-        if thread is None
-        else ThreadEntry(name=thread.name, diameter_mm=thread.diameter, pitch_mm=thread.pitch, fit=thread.fit, left=thread.left),
-        tolerance=None
-        if tolerance is None
-        else ToleranceEntry(nominal_mm=tolerance.nominal, lower_mm=tolerance.lower, upper_mm=tolerance.upper, fit=tolerance.fit),
-    )
+    missing = [
+        filled(schema.MissingEntry, each, **_size(each), angle_deg=each.angle and _degrees(each.angle)) for each in made.missing
+    ]
+    return filled(
+        schema.HoleEntry, hole, faces=[f"F{number}" for number in hole.faces], **_size(hole),
+        cone_deg=hole.cone and _degrees(hole.cone), axis=vector(hole.axis + 0.0), place_mm=_rounded(hole.place), group=group,
+        countersink=sink and schema.CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
+        counterbore=bore and schema.CounterboreEntry(diameter_mm=round(bore[0], _DIGITS), depth_mm=round(bore[1], _DIGITS)),
+        drilled=by is not None, tool=None if by is None else by.id, missing=missing,
+        thread=thread and filled(schema.ThreadEntry, thread), tolerance=tolerance and filled(schema.ToleranceEntry, tolerance),
+    )  # fmt: skip
 
 
-def _missing(each: Missing) -> MissingEntry:
-    return MissingEntry(
-        thing=each.thing,
-        diameter_mm=round(each.diameter, _DIGITS),
-        depth_mm=None if each.depth is None else round(each.depth, _DIGITS),
-        angle_deg=None if each.angle is None else _degrees(each.angle),
-        why=each.why,
-        name=each.name,
-    )
-
-
-_BORE = ("diameter_mm", "depth_mm")
+def _size(of: Hole | Missing) -> dict[str, float | None]:
+    return {"diameter_mm": round(of.diameter, _DIGITS), "depth_mm": None if of.depth is None else round(of.depth, _DIGITS)}
 
 
 def _degrees(angle: float) -> float:

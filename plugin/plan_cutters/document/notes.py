@@ -32,7 +32,8 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     scene, options, surroundings = ready.scene, ready.options, ready.conditions.surroundings
     return [
         *_of_cutters(options, ready.cutters),
-        *_of_samples(ready),
+        note("samples_apart", most_mm=ready.samples.max_gap),
+        *([note("not_sampled", *_ids([number for number, _ in ready.samples.empty]))] if ready.samples.empty else []),
         *_of_sides(ready),
         *_of_surfaces(scene),
         *_of_obstacles(scene.part, surroundings),
@@ -74,13 +75,6 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
         yield note("all_length_cuts")
     if options.process is not None and (rounded := options.process.rounded()):
         yield notes.angles_rounded(rounded)
-
-
-def _of_samples(ready: Prepared) -> Iterator[Note]:
-    samples = ready.samples
-    yield note("samples_apart", most_mm=samples.max_gap)
-    if samples.empty:
-        yield note("not_sampled", *_ids([number for number, _ in samples.empty]))
 
 
 def _of_sides(ready: Prepared) -> Iterator[Note]:
@@ -209,7 +203,7 @@ def _of_limits(ready: Prepared) -> Iterator[Note]:
     why = unjudged(options.machine, options.placement)
     if why:
         yield note("travel_not_judged", why=why)
-    if why is None:
+    elif why is None:
         yield note("travel_of_holder")
         if options.other_setups:
             yield note("travel_first_setup")

@@ -15,7 +15,7 @@ from plan_cutters.document.build import sample_areas
 from plan_cutters.document.features import ends_in_a_point
 from plan_cutters.document.stands import setups_and_stock
 from plan_cutters.domain.figures import exact
-from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.domain.operations import Strategy
 from plan_cutters.domain.own_process import OwnResult
 from plan_cutters.domain.placement import Placement
@@ -26,25 +26,9 @@ from plan_cutters.domain.verdicts import COLLISION, LOCAL_GOUGE, NO_REASON, REAR
 from plan_cutters.judging.limits import AXES, within_limits
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, OperationPlan, Operations, Step
+from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.frozen import Vector, filled, vector
 from plan_cutters.plan_file.model import CutterEntry, LinearEntry, nearest
-from plan_cutters.plan_file.operations import (
-    NOT_PLANNED,
-    OTHER_ORIENTATION,
-    SHORT_STEP,
-    UNJUDGED_CAUSE,
-    FitEntry,
-    HelpEntry,
-    NearestEntry,
-    OperationEntry,
-    OperationPlanEntry,
-    OperationsEntry,
-    OwnStepEntry,
-    PointsEntry,
-    ProcessEntry,
-    ProcessStep,
-    RemainingEntry,
-)
 from plan_cutters.plan_file.part_info import AxisTravel, BeyondTravel, PlacementEntry, SetupEntry, TravelEntry
 from plan_cutters.plan_file.reasons import operation_colour
 from plan_cutters.plan_file.words.answers import typed_size
@@ -52,25 +36,15 @@ from plan_cutters.plan_file.words.names import kind
 from plan_cutters.plan_file.words.operations import numbered
 from plan_cutters.scene.preparation import Prepared
 
-#: A setup axis, and what each cutter reaches there by its id.
-OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
 
-
-@dataclass(frozen=True, slots=True)
-class OverSetups:
-    """The verdicts of each cutter, by its id, over all setups and in each of them: in one or another, in the `first` (its axis),
-    and in each other setup; `served_in` has the setup that serves each sample, (n,) int32.
+class OverSetups(NamedTuple):
+    """The verdicts of each cutter, by its id, in one setup or another; the setup that serves each sample, (n,) int32; and of each
+    setup, the first one first, its axis and what each cutter reaches there.
     """
 
     reaches: dict[str, Verdicts]
-    here: dict[str, Verdicts]
     served_in: dict[str, Ints]
-    first: Vector
-    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
-
-    def each(self) -> tuple[OtherSetup, ...]:
-        """Every setup with what is reached there, the first one first."""
-        return ((self.first, self.here), *self.elsewhere)
+    each: tuple[tuple[Vector, dict[str, Verdicts]], ...]
 
 
 def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
@@ -86,7 +60,7 @@ def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: Over
         return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
 
     entries: dict[Vector, SetupEntry] = {}
-    for (axis, each), inside in zip(over.each(), within, strict=False):
+    for (axis, each), inside in zip(over.each, within, strict=False):
         mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
         count, reached, part = int(inside.sum()), int(mine.sum()), share(mine)
         entries.setdefault(axis, SetupEntry(axis=axis, within=count, share=share(inside), reached=reached, reached_share=part))
@@ -111,17 +85,14 @@ def linear_entries(ready: Prepared) -> list[LinearEntry]:
     for axis in ready.options.machine.linear:
         direction = np.array(axis.direction) @ ready.conditions.frame
         along = ready.samples.point[ready.finished] @ direction
-        low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
-        entries.append(
-            LinearEntry(
-                name=axis.name,
-                carries=axis.carries,
-                direction=vector(direction),
-                limits_mm=(low, high),
-                extent_mm=float(np.ptp(along)) if len(along) else 0.0,
-            )
-        )
+        extent = float(np.ptp(along)) if len(along) else 0.0
+        entries.append(filled(LinearEntry, axis, direction=vector(direction), limits_mm=_limits(axis), extent_mm=extent))
     return entries
+
+
+def _limits(axis: Axis) -> tuple[float | None, float | None]:
+    low, high = (float(end) if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+    return low, high
 
 
 def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
@@ -130,25 +101,16 @@ def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: Sur
     axes, worst = [], []
     for k, axis in enumerate(machine.linear):
         position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
-        low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
         least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
-        axes.append(
-            AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most, outside=int((beyond > 0.0).sum()))
-        )
-        if len(beyond) and beyond.max() > 0.0:
+        outside = int((beyond > 0.0).sum())
+        axes.append(AxisTravel(name=axis.name, limits_mm=_limits(axis), least_mm=least, most_mm=most, outside=outside))
+        if outside:
             at = int(beyond.argmax())
-            worst.append(
-                BeyondTravel(
-                    point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name, beyond_mm=float(beyond[at])
-                )
-            )
-    return TravelEntry(
-        judged=int(known.sum()),
-        unknown=int((reach.reached & ~known).sum()),
-        outside=int((travel.outside & known).sum()),
-        axes=axes,
-        worst=sorted(worst, key=lambda each: -each.beyond_mm),
-    )
+            point, face = vector(samples.point[at]), f"F{samples.face[at]}"
+            worst.append(BeyondTravel(point=point, face=face, axis=axis.name, beyond_mm=float(beyond[at])))
+    unknown, outside = int((reach.reached & ~known).sum()), int((travel.outside & known).sum())
+    worst.sort(key=lambda each: -each.beyond_mm)
+    return TravelEntry(judged=int(known.sum()), unknown=unknown, outside=outside, axes=axes, worst=worst)
 
 
 #: Angles that are written to three digits are equal within this, deg.
@@ -159,7 +121,9 @@ _AGREES, _NORMAL = 0.98, math.cos(math.radians(10.0))
 _SAME = 1e-6
 
 
-def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
+def repeats(
+    ready: Prepared, same: Sequence[schema.OperationEntry], mine: NDArray[np.bool_]
+) -> tuple[int, dict[str, float] | None]:
     """How often a step is done, and by how much one rotary axis turns from one time to the next; None where several turn.
 
     `same` are the operations of the step: images of each other, from the first angle up; `mine` (n,) its samples.
@@ -229,7 +193,9 @@ class Reasons(NamedTuple):
     cutters: list[str]
 
 
-def reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[ProcessStep], done: NDArray[np.bool_]) -> Reasons:
+def reasons(
+    entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[schema.ProcessStep], done: NDArray[np.bool_]
+) -> Reasons:
     """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any."""
     used = {each.cutter for each in steps}
     finest_first = sorted(entries, key=lambda e: (e.id not in used, e.radius, e.corner_radius))
@@ -242,20 +208,19 @@ def reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[Pr
 
 
 def remaining(
-    ready: Prepared, done: NDArray[np.bool_], why: Reasons, area: Floats, requested: float, steps: Sequence[Step] = (),
-    fitting: Fitting | None = None,
-) -> list[RemainingEntry]:  # fmt: skip
+    ready: Prepared, done: NDArray[np.bool_], why: Reasons, area: Floats, requested: float, steps: Sequence[Step],
+    fitting: Fitting,
+) -> list[schema.RemainingEntry]:  # fmt: skip
     """List what is left by cause, the largest area first.
 
     `done` (n,): samples that are finished; `area` (n,), mm2, and `requested` that of all; `steps` that are known, as they stand
     in the plan file; `fitting` finds the usual sizes that fit.
     """
-    samples, entries = ready.samples, list[RemainingEntry]()
-    cutters = {cutter.id: cutter for cutter in ready.cutters}
-    left = ready.finished & ~done
+    samples, entries = ready.samples, list[schema.RemainingEntry]()
+    cutters, left = {cutter.id: cutter for cutter in ready.cutters}, ready.finished & ~done
     for code in np.unique(why.reason[left]).tolist():
         mine = left & (why.reason == code)
-        cause = SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else NOT_PLANNED
+        cause = schema.SHORT_STEP if code == _SHORT else REASONS[code] if code != NO_REASON else schema.NOT_PLANNED
         by_size: dict[str, Any] = {}
         if code in _BY_SIZE:
             rows = np.flatnonzero(mine)
@@ -263,51 +228,45 @@ def remaining(
             large = np.bincount(samples.face[rows], area[rows])[samples.face[rows]] >= _SPEAKS
             rows = rows[large] if area[rows[large]].sum() >= _MOST * area[rows].sum() and large.any() else rows
             cutter = cutters[why.cutters[int(np.bincount(why.by[rows], area[rows]).argmax())]]
-            fits = None if fitting is None else fitting(cutter, rows, area)
+            fits = fitting(cutter, rows, area)
             by_size["points"] = _points(ready, rows, area)
-            by_size["fits"] = (
-                None
-                if fits is None
-                else [
-                    FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=fit.share)
-                    for fit in fits
-                    for c in (fit.cutter,)
-                ]
-            )
+            by_size["fits"] = None if fits is None else [
+                schema.FitEntry(cutter=c.id, kind=kind(c), size=typed_size(c), diameter_mm=2.0 * c.radius, share=share)
+                for c, share in fits
+            ]  # fmt: skip
         helped = _helped(steps, mine, area)
         entries.append(remaining_entry(ready, cause, mine, area, requested, helped=helped, **by_size))
     unjudged = samples.unjudged >= 0
     if unjudged.any() or samples.empty:
         empty = [number for number, _ in samples.empty]
-        entries.append(remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested, empty))
+        entries.append(remaining_entry(ready, schema.UNJUDGED_CAUSE, unjudged, area, requested, empty))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
 
 
-def _points(ready: Prepared, rows: Rows, area: Floats) -> PointsEntry | None:
+def _points(ready: Prepared, rows: Rows, area: Floats) -> schema.PointsEntry | None:
     """The inside cones with a point among the faces of some samples (m,)."""
-    whole = float(area[rows].sum())
     by_face = {number: rows[ready.samples.face[rows] == number] for number in np.unique(ready.samples.face[rows]).tolist()}
     sizes = {number: float(area[mine].sum()) for number, mine in by_face.items() if ends_in_a_point(ready, number, mine)}
     if not sizes:
         return None
     faces = [f"F{number}" for number in sorted(sizes, key=lambda number: (-sizes[number], number))]
-    return PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, whole)))
+    return schema.PointsEntry(faces=faces, share=min(1.0, sum(sizes.values()) / max(1e-300, float(area[rows].sum()))))
 
 
-def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> list[HelpEntry]:
+def _helped(steps: Sequence[Step], mine: NDArray[np.bool_], area: Floats) -> list[schema.HelpEntry]:
     """How much of some samples (n,) each step frees, the most first."""
-    whole, each = float(area[mine].sum()), list[HelpEntry]()
+    whole, each = float(area[mine].sum()), list[schema.HelpEntry]()
     for k, step in enumerate(steps):
         freed = step.freed[mine[step.freed]]
         share = min(1.0, float(area[freed].sum()) / max(1e-300, whole))
         if share >= _HELPS:
-            each.append(HelpEntry(step=k, share=share))
+            each.append(schema.HelpEntry(step=k, share=share))
     return sorted(each, key=lambda entry: (-entry.share, entry.step))
 
 
 def remaining_entry(
     ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float, empty: Sequence[int] = (), **more: Any
-) -> RemainingEntry:
+) -> schema.RemainingEntry:
     """The entry of some samples (n,) that are left for one cause, and of faces without samples; with more of its fields."""
     samples, missing = ready.samples, float(sum(ready.scene.part.faces[number - 1].area for number in empty))
     whole = float(area[mine].sum()) + (missing if np.isfinite(missing) else 0.0)
@@ -318,7 +277,9 @@ def remaining_entry(
         place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
     share = min(1.0, whole / max(1e-300, requested))
     faces = list(dict.fromkeys([*faces, *(f"F{number}" for number in empty)]))
-    return RemainingEntry(cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place, **more)
+    return schema.RemainingEntry(
+        cause=cause, area_mm2=whole, share=share, samples=int(mine.sum()), faces=faces, place_mm=place, **more
+    )
 
 
 def faces_of(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:
@@ -339,9 +300,8 @@ _BELOW = -0.01
 
 
 def process_entry(
-    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str,
-    fitting: Fitting | None = None,
-) -> ProcessEntry:  # fmt: skip
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str, fitting: Fitting
+) -> schema.ProcessEntry:
     """Put together what the given cutters, setups and operations finish.
 
     The plan of operations among the `answers` is the process where there is one, else the fewest runs of cutters and setups.
@@ -350,8 +310,7 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, name, seconds, times = float(area.sum()) + not_sampled, "", None, dict[str, Any]()
-    short = np.zeros(0, np.int64)
+    requested, name, seconds, times, short = float(area.sum()) + not_sampled, "", None, dict[str, Any](), np.zeros(0, np.int64)
     parts = _Parts(ready, over, area, requested)
     if answers.operations is not None:
         chosen, entry = min(
@@ -375,7 +334,7 @@ def process_entry(
         at_edges = np.where(ready.inside_bodies, 0.0, sampled)
         exempt = remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, at_edges, requested)
     setups, stock = setups_and_stock(ready)
-    return ProcessEntry(
+    return schema.ProcessEntry(
         steps=steps, setups=setups, stock=stock, plan=name, finished_mm2=finished,
         asked_mm2=requested, left=left,
         seconds=seconds, **times,
@@ -383,7 +342,7 @@ def process_entry(
     )  # fmt: skip
 
 
-def in_colours_of_steps(operations: OperationsEntry, process: ProcessEntry) -> OperationsEntry:
+def in_colours_of_steps(operations: schema.OperationsEntry, process: schema.ProcessEntry) -> schema.OperationsEntry:
     """Plans with the operations of the process in the colours of their steps: pages, models and CAD have one legend."""
     step = {name: int(number.partition(".")[0]) for name, number in numbered(operations, process).items()}
     plans = [
@@ -398,7 +357,7 @@ def in_colours_of_steps(operations: OperationsEntry, process: ProcessEntry) -> O
     return operations.model_copy(update={"plans": plans})
 
 
-def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str, Any]:
+def _times(options: Options, plan: schema.OperationPlanEntry, setups: int) -> dict[str, Any]:
     """What the time of a plan is made of, by the fields of the process."""
     clamping = options.setup_time * max(0, setups - 1)
     change = options.change_time * max(0, len({each.cutter for each in plan.operations}) - 1)
@@ -408,7 +367,7 @@ def _times(options: Options, plan: OperationPlanEntry, setups: int) -> dict[str,
     }  # fmt: skip
 
 
-def place_in_shop(step: OperationEntry | ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
+def place_in_shop(step: schema.OperationEntry | schema.ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
     """Give the place of a step in the order of a shop, `size` being those of cutters by their ids, 0 the largest.
 
     Setup by setup the largest cutter comes first, so that each is changed to once a setup; of a cutter floors, then walls, other
@@ -426,30 +385,30 @@ class _Parts:
     area: Floats
     requested: float
 
-    def step(self, mine: NDArray[np.bool_], made: OperationEntry | None, **fields: Any) -> ProcessStep:
+    def step(self, mine: NDArray[np.bool_], made: schema.OperationEntry | None, **fields: Any) -> schema.ProcessStep:
         """A step that finishes some samples (n,): with one axis, or each with that of its posture.
 
         What is not among the `fields` is as in its operation.
         """
         size, ready = float(self.area[mine].sum()), self.ready
         setup, cutter, axis = (fields[name] if name in fields else getattr(made, name) for name in ("setup", "cutter", "axis"))
-        axes = self.over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
+        axes = self.over.each[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
         below = axes @ ready.setups[setup].setup < _BELOW
         return filled(
-            ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
+            schema.ProcessStep, made, faces=faces_of(ready, mine, self.area), area_mm2=size,
             share=min(1.0, size / max(1e-300, self.requested)), below_mm2=float(self.area[mine][below].sum()),
             operation="" if made is None else made.id, **fields,
         )  # fmt: skip
 
-    def planned(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> list[ProcessStep]:
+    def planned(self, operations: Operations, plan: OperationPlan, entry: schema.OperationPlanEntry) -> list[schema.ProcessStep]:
         """List the steps that were planned, in the order of a shop."""
         place = partial(place_in_shop, size={cutter.id: k for k, cutter in enumerate(by_radius(self.ready.cutters))})
         # Operations that are images of each other are one step.
-        together = dict[object, list[tuple[int, OperationEntry]]]()
+        together = dict[object, list[tuple[int, schema.OperationEntry]]]()
         for k, each in sorted(enumerate(entry.operations), key=lambda ranked: place(ranked[1])):
             if each.step is None:
                 together.setdefault(each.id if each.orbit is None else each.orbit, []).append((k, each))
-        alone, planned = _alone(operations, plan), list[ProcessStep]()
+        alone, planned = _alone(operations, plan), list[schema.ProcessStep]()
         for images in together.values():
             images.sort(key=lambda ranked: [angle % 360.0 for angle in (ranked[1].angles_deg or {}).values()])
             ranks, same = [k for k, _ in images], [each for _, each in images]
@@ -467,7 +426,7 @@ class _Parts:
         # Those that are images of others count with all of them.
         return sorted(planned, key=place)
 
-    def own(self, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry) -> Iterator[ProcessStep]:
+    def own(self, operations: Operations, plan: OperationPlan, entry: schema.OperationPlanEntry) -> Iterator[schema.ProcessStep]:
         """The planner's own steps in their order."""
         done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
         all_done = np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
@@ -485,25 +444,25 @@ class _Parts:
                 own=self._own(operations, outcome, all_done), **none,
             )  # fmt: skip
 
-    def _own(self, operations: Operations, outcome: OwnResult, done: Rows) -> OwnStepEntry:
+    def _own(self, operations: Operations, outcome: OwnResult, done: Rows) -> schema.OwnStepEntry:
         """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
 
         `done` (d,) is what all of them do together.
         """
         process, area, near = self.ready.options.process, self.area, outcome.nearest
-        leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
+        leaves, missed = list[schema.RemainingEntry](), np.zeros(len(area), bool)
         missed[outcome.requested] = True
         missed[done] = False
         if process is not None and process.steps[outcome.number - 1].faces is not None:
-            verdicts = self.over.each()[outcome.setup][1][outcome.cutter.id]
+            verdicts = self.over.each[outcome.setup][1][outcome.cutter.id]
             cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
             for code in np.unique(cause[missed]).tolist():
-                word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
+                word = schema.OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else schema.NOT_PLANNED
                 leaves.append(remaining_entry(self.ready, word, missed & (cause == code), area, self.requested))
-        return OwnStepEntry(
+        return schema.OwnStepEntry(
             number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
             leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)),
-            nearest=None if near is None else NearestEntry(
+            nearest=None if near is None else schema.NearestEntry(
                 angles_deg=_named(operations, near.angle), axis=vector(near.axis), area_mm2=float(area[near.rows].sum())
             ),
         )  # fmt: skip
@@ -525,14 +484,9 @@ def _runs(
     ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups
 ) -> Iterator[tuple[int, str, NDArray[np.bool_]]]:
     """The fewest runs, each with its setup, its cutter, and the samples (n,) that none before it reaches."""
-    verdicts = [each for _, each in over.each()]
-    if answers.least_set is None:
-        pairs = [(0, nearest(entries).id)]
-    else:
-        pairs = [(run.number, run.cutter.id) for run in answers.least_set.runs]
-    open_, done = ready.machinable, np.zeros(len(ready.samples), bool)
-    for setup, cutter in pairs:
-        mine = verdicts[setup][cutter].reached & open_[setup] & ~done
+    least, done = answers.least_set, np.zeros(len(ready.samples), bool)
+    for setup, cutter in [(0, nearest(entries).id)] if least is None else [(run.number, run.cutter.id) for run in least.runs]:
+        mine = over.each[setup][1][cutter].reached & ready.machinable[setup] & ~done
         done |= mine
         if mine.any():
             yield setup, cutter, mine

@@ -40,7 +40,7 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
 
 
 def _stock(ready: Prepared, surroundings: Surroundings, blank: Fixture, along: Vector, volume: float) -> StockEntry:
-    """The entry of stock about a part of a volume, mm3; what grips it stands along a direction."""
+    """The entry of stock about a part of a volume, mm3, in what stands along a direction."""
     rate, chord = ready.options.removal_rate, CHORD_REQUESTED * ready.scene.asked
     body = stock_body(blank, along, surroundings.alone or surroundings, chord, {})
     remove = max(0.0, body.volume - volume)

@@ -1,5 +1,6 @@
 """All entries of the plan file derive from the class of this module."""
 
+import re
 from collections.abc import Sequence
 from typing import Any, ClassVar, TypeVar
 
@@ -17,15 +18,17 @@ class Frozen(BaseModel):
 
 
 _Entry = TypeVar("_Entry", bound=Frozen)
+#: Records are in mm, and say so in no name.
+_UNIT = re.compile("_mm2?$")
 
 
 def filled(kind: type[_Entry], record: object, /, **other: Any) -> _Entry:
-    """Make an entry of a record: each field is the record's attribute of its name, unless it is one of `other`.
+    """Make an entry of a record: each field is the record's attribute of its name, also without a unit, or one of `other`.
 
     A field that neither has keeps its default.
     """
-    here = (name for name in kind.model_fields if name not in other and hasattr(record, name))
-    return kind(**{name: getattr(record, name) for name in here}, **other)
+    names = {name: name if hasattr(record, name) else _UNIT.sub("", name) for name in kind.model_fields.keys() - other.keys()}
+    return kind(**{name: getattr(record, its) for name, its in names.items() if hasattr(record, its)}, **other)
 
 
 class Posture(Frozen):

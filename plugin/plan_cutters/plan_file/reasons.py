@@ -2,37 +2,23 @@
 
 from typing import NamedTuple
 
-#: Verdict -> sRGB hex. Their order is that of the labels along which faces are split, from best to worst.
-PALETTE = {
-    "interference_free": "#009E73",
-    "accessible": "#56B4E9",
-    "undecided": "#F0E442",
-    "inaccessible": "#D55E00",
-    "unjudged": "#CC79A7",
-    "inside_bodies": "#595959",
-    "drilled": "#0072B2",
-    "check": "#BFBFBF",
-    "ignored": "#BFBFBF",
-    "mixed": "#E69F00",
-    "fixture": "#6E7B8B",
+#: Of each verdict its colour in sRGB, and what it means, in words for people. Their order is that of the labels along which faces
+#: are split, from best to worst.
+_VERDICTS = {
+    "interference_free": ("#009E73", "interference-free"),
+    "accessible": ("#56B4E9", "accessible"),
+    "undecided": ("#F0E442", "undecided"),
+    "inaccessible": ("#D55E00", "inaccessible"),
+    "unjudged": ("#CC79A7", "could not be judged"),
+    "inside_bodies": ("#595959", "inside another body: no surface of the finished part"),
+    "drilled": ("#0072B2", "drilled: in a hole for a drill, which no mill has to reach"),
+    "check": ("#BFBFBF", "not judged (obstacle only)"),
+    "ignored": ("#BFBFBF", "ignored: neither judged nor an obstacle"),
+    "mixed": ("#E69F00", "mixed: could not be split"),
+    "fixture": ("#6E7B8B", "fixture"),
 }
+PALETTE, MEANING = ({word: each[k] for word, each in _VERDICTS.items()} for k in (0, 1))
 LABELS = tuple(PALETTE)
-#: What each of them means, in words for people.
-MEANING = {
-    "interference_free": "interference-free",
-    "accessible": "accessible",
-    "undecided": "undecided",
-    "inaccessible": "inaccessible",
-    "unjudged": "could not be judged",
-    "inside_bodies": "inside another body: no surface of the finished part",
-    "drilled": "drilled: in a hole for a drill, which no mill has to reach",
-    "check": "not judged (obstacle only)",
-    "ignored": "ignored: neither judged nor an obstacle",
-    "mixed": "mixed: could not be split",
-    "fixture": "fixture",
-}
-
-
 _DARK = "#404040"
 #: Colours of operations, the first ones first: Okabe and Ito's, with a dark grey for their black, which hides the form. That of
 #: what is not reached, which stands beside operations, comes last.
@@ -74,20 +60,17 @@ def parts(colour: str) -> tuple[float, float, float]:
 
 
 class Reason(NamedTuple):
-    """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here.
-
-    `name` is a label, `tries` are the things to try first (they are not computed), each with the changes of an answer
-    (`domain.answers.MEANS`) that are this: none where no answer tries it. `colour` is sRGB; `pattern`, on the page, and `hatch`,
-    on sheets as matplotlib writes it, show the same without colour.
-    """
+    """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here."""
 
     code: str
-    name: str
+    name: str  #: A label.
     sentence: str
+    #: The things to try first (they are not computed), each with the changes of an answer (`domain.answers.MEANS`) that are this:
+    #: none where no answer tries it.
     tries: tuple[tuple[str, tuple[str, ...]], ...]
-    colour: str
-    pattern: str
-    hatch: str
+    colour: str  #: sRGB.
+    pattern: str  #: On the page; it shows the same without colour.
+    hatch: str  #: The same on sheets, as matplotlib writes it.
 
     @property
     def hint(self) -> str:

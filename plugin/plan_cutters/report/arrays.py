@@ -21,13 +21,15 @@ from plan_cutters.domain.assembly import part_words
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, VerdictCounts
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.plan_file.words.operations import steps_of
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.question import question_of
 from plan_cutters.scene.conditions import rotations_of
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 #: Parts of unit vectors are written to so many binary places at this tolerance, mm, and to more at smaller ones: rounding moves
 #: the far end of a tool of 180 mm by less than 2 % of it.
@@ -66,17 +68,9 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     """
     samples, tolerance = result.samples, result.plan.effective.tolerance_mm
     machined = _machined(result)
-    arrays: dict[str, Any] = {
-        "point": samples.point,
-        "normal": samples.normal,
-        "direction_max": samples.direction_max,
-        "curvature": samples.curvature,
-        "uv": samples.uv,
-        "face": samples.face,
-        "area": samples.area,
-        "surface_class": result.surface_class,
-        "inside_bodies": result.inside_bodies,
-    }
+    columns = ("point", "normal", "direction_max", "curvature", "uv", "face", "area")
+    arrays: dict[str, Any] = {name: getattr(samples, name) for name in columns}
+    arrays |= {"surface_class": result.surface_class, "inside_bodies": result.inside_bodies}
     if len(question := question_of(result)):
         arrays["question"] = question
     if result.exempt is not None:
@@ -95,17 +89,14 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
             if name in result.travels:
                 arrays[f"travel_{name}"] = result.travels[name].position
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
-    if result.elsewhere:
-        arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
-        for name, verdicts in result.here.items():
-            each = [verdicts, *(verdicts_there[name] for _, verdicts_there in result.elsewhere)]
-            arrays[f"setup_{name}"] = result.served_in[name]
-            arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
+    if result.served_in:
+        arrays["setups"] = np.array([axis for axis, _ in result.over_setups.each])
+        for name, which in result.served_in.items():
+            arrays[f"setup_{name}"] = which
+            arrays[f"reached_in_{name}"] = np.stack([there[name].reached for _, there in result.over_setups.each], axis=1)
     for radii in result.answers.radius_maps:
-        arrays[f"radius_{radii.shape}"] = radii.radius
-        arrays[f"radius_beyond_{radii.shape}"] = radii.beyond
-        arrays[f"radius_axis_{radii.shape}"] = radii.axis
-        arrays[f"radius_lean_{radii.shape}"] = radii.tilt_direction
+        words = {"": radii.radius, "beyond_": radii.beyond, "axis_": radii.axis, "lean_": radii.tilt_direction}
+        arrays |= {f"radius_{word}{radii.shape}": each for word, each in words.items()}
     write_arrays(arrays, path)
 
 
@@ -129,6 +120,7 @@ def write_postures(result: Judged, _split: object, path: Path) -> None:
     Whatever the machine: what one holds of them is for the reader to find. `missing`: obstacles that are missing or guessed.
     """
     maps = result.maps
+    assert maps is not None, "written where posture maps were requested"
     name = maps.cutter
     about = {"format": "plan-cutters-postures", "version": 3, "cutter": name, "part": maps.part, "tilt": maps.tilt,
              "tolerance": maps.tolerance, "missing": maps.missing, "unmapped": maps.unmapped}  # fmt: skip
@@ -166,36 +158,22 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     ids, columns = [entry.id for entry in result.cutters], operations.candidates
     number = np.array([ids.index(cutter.id) for cutter in operations.cutters], np.int32)
     arrays: dict[str, Any] = {
-        "candidate_cutter": number[columns.cutter],
-        "candidate_setup": columns.setup,
-        "candidate_angle": columns.angle,
-        "candidate_axis": columns.axis,
-        "chosen": operations.chosen,
-    }
+        "candidate_cutter": number[columns.cutter], "candidate_setup": columns.setup, "candidate_angle": columns.angle,
+        "candidate_axis": columns.axis, "chosen": operations.chosen,
+    }  # fmt: skip
     for k, plan in enumerate(operations.plans):
+        axis, piece = np.full((len(plan.label), 3), np.nan), np.full(len(plan.label), -1, np.int32)
+        for each in plan.operations:
+            if each.moving is not None:
+                axis[each.rows], piece[each.rows] = (mine[each.rows] for mine in each.moving)
+        made = {
+            "operation": plan.label.astype(np.int16), "strip_mm": plan.strip, "path_mm": plan.length, "seconds": plan.seconds,
+            "link_s": plan.link, "exclusive": plan.alone, "lean": plan.lean, "strategy": plan.strategy,
+            "contact": plan.contact, "moving_axis": axis, "moving_piece": piece,
+        }  # fmt: skip
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""
-        arrays |= {f"{word}{behind}": each for word, each in _columns(plan).items()}
+        arrays |= {f"{word}{behind}": column for word, column in made.items()}
     write_arrays(arrays, path)
-
-
-def _columns(plan: OperationPlan) -> dict[str, Any]:
-    axis, piece = np.full((len(plan.label), 3), np.nan), np.full(len(plan.label), -1, np.int32)
-    for each in plan.operations:
-        if each.moving is not None:
-            axis[each.rows], piece[each.rows] = (mine[each.rows] for mine in each.moving)
-    return {
-        "operation": plan.label.astype(np.int16),
-        "strip_mm": plan.strip,
-        "path_mm": plan.length,
-        "seconds": plan.seconds,
-        "link_s": plan.link,
-        "exclusive": plan.alone,
-        "lean": plan.lean,
-        "strategy": plan.strategy,
-        "contact": plan.contact,
-        "moving_axis": axis,
-        "moving_piece": piece,
-    }
 
 
 def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
@@ -236,10 +214,6 @@ def _rounded(value: float | None, digits: int = 3) -> float | str:
     return "" if value is None else round(value, digits) + 0.0
 
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-
 CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
 #: Digits behind the point of lengths, mm, angles, deg, and parts of unit vectors.
 _MM, _DEG, _UNIT = 6, 6, 9
@@ -247,15 +221,12 @@ _MM, _DEG, _UNIT = 6, 6, 9
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column, or three of a vector: values (n,) or (n, 3), and digits behind the point and words of codes, for text.
-
-    A name has its unit at the end where it has one: `tilt_deg`.
-    """
+    """One column, or three of a vector. A name has its unit at the end where it has one: `tilt_deg`."""
 
     name: str
-    values: NDArray[Any]
-    digits: int = 0
-    words: dict[int, str] | None = None
+    values: NDArray[Any]  #: (n,) or (n, 3).
+    digits: int = 0  #: Behind the point, for text.
+    words: dict[int, str] | None = None  #: Of codes, for text.
 
     @property
     def names(self) -> list[str]:
@@ -295,23 +266,20 @@ def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
         Column("nearest_face", near.face, words={0: "", **faces}),
     ]
     if name in result.served_in:
-        setups = range(len(result.elsewhere) + 1)
+        setups = range(len(result.over_setups.each))
         table.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
     # Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged.
     machine = result.conditions.machine
     if result.kinematics is None:
         return table
     angles, taken = result.rotary(name)
-    moved = result.travels.get(name)
     first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
     for word, way in (("", first), ("_other", 1 - first)):
         each = np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan).T
-        table += [
-            Column(f"{axis.name}{word}_deg", values.copy(), _DEG) for axis, values in zip(machine.rotary, each, strict=False)
-        ]
-    if moved is not None:
-        position = moved.position.T
-        table += [Column(f"{axis.name}_mm", values.copy(), _MM) for axis, values in zip(machine.linear, position, strict=False)]
+        table += [Column(f"{axis.name}{word}_deg", own.copy(), _DEG) for axis, own in zip(machine.rotary, each, strict=False)]
+    if (moved := result.travels.get(name)) is not None:
+        each = moved.position.T
+        table += [Column(f"{axis.name}_mm", own.copy(), _MM) for axis, own in zip(machine.linear, each, strict=False)]
     return table
 
 
@@ -322,13 +290,11 @@ def write_csv(result: Judged, _split: object, path: Path) -> None:
     columns.
     """
     table = columns(result)
-    cells = [text for column in table for text in _cells(column)]
-    names = ["cutter", *(name for column in table for name in column.names)]
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")
-        rows.writerow(names)
-        shown = [result.shown] * len(result.samples)
-        rows.writerows(zip(shown, *cells, strict=True))
+        rows.writerow(["cutter", *(name for column in table for name in column.names)])
+        cells = (text for column in table for text in _cells(column))
+        rows.writerows(zip([result.shown] * len(result.samples), *cells, strict=True))
 
 
 def _worded(column: Column, empty: Any = "") -> NDArray[Any]:
@@ -363,8 +329,7 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
     `cutter`, `part`.
     """
     arrays = {column.name: column.values for column in columns(result)}
-    point = arrays.pop("point_mm")
-    n = len(point)
+    point, n = arrays.pop("point_mm"), len(result.samples)
     about = {
         "cutter": [result.shown],
         "part": [Path(result.part.file).name if result.part.file else ""],
@@ -378,26 +343,14 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
         '<?xml version="1.0"?>',
         '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
         'compressor="vtkZLibDataCompressor">',
-        "<PolyData>",
-        "<FieldData>",
-        *(_texts(name, lines) for name, lines in about.items()),
-        "</FieldData>",
+        "<PolyData>", "<FieldData>", *(_texts(name, lines) for name, lines in about.items()), "</FieldData>",
         f'<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">',
         '<PointData Scalars="verdict" Vectors="axis" Normals="normal">',
         *(_array(name, values) for name, values in arrays.items()),
-        "</PointData>",
-        "<CellData></CellData>",
-        "<Points>",
-        _array("Points", point),
-        "</Points>",
-        "<Verts>",
-        _array("connectivity", np.arange(n, dtype=np.int64)),
-        _array("offsets", np.arange(1, n + 1, dtype=np.int64)),
-        "</Verts>",
-        "</Piece>",
-        "</PolyData>",
-        "</VTKFile>",
-    ]
+        "</PointData>", "<CellData></CellData>", "<Points>", _array("Points", point), "</Points>",
+        "<Verts>", _array("connectivity", np.arange(n, dtype=np.int64)), _array("offsets", np.arange(1, n + 1, dtype=np.int64)),
+        "</Verts>", "</Piece>", "</PolyData>", "</VTKFile>",
+    ]  # fmt: skip
     path.write_text("\n".join(text) + "\n", encoding="ascii", errors="xmlcharrefreplace")
 
 

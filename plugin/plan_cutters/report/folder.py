@@ -40,7 +40,7 @@ class Writer(NamedTuple):
 
 _FASTEST = {"name": "fastest"}
 WRITERS = {
-    "html": Writer("review.html", "page", "write_html", by_name=True),
+    "html": Writer("review.html", "page.write", "write_html", by_name=True),
     "step": Writer("annotated.step", "models", "write_step", by_name=True),
     "glb": Writer("annotated.glb", "models", "write_glb", by_name=True),
     "merged": Writer("merged.glb", "models", "write_glb", by_name=True, options={"merged": True}),
@@ -105,8 +105,11 @@ class Making:
         """
         from plan_cutters_base.forks import SideProcess
 
-        by_model = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
-        models = {self._place(about): mine for about, mine in by_model.items() if mine}
+        plans = self._result.plan.operations.plans if self._result.plan.operations else []
+        # Of a plan of operations its place among them; None where models are about verdicts.
+        places = {"verdicts": None, **{str(each.name): k for k, each in enumerate(plans)}, "operations": 0}
+        wanted = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
+        models = {places[about]: mine for about, mine in wanted.items() if mine}
         each = [name for mine in models.values() for name in mine]
         with ExitStack() as copies:
 
@@ -131,13 +134,6 @@ class Making:
         if which in self._errors:
             raise self._errors[which]
         return self.file(name, self.splits[which])
-
-    def _place(self, about: str) -> int | None:
-        """Of a plan of operations its place among them; None where models are about verdicts."""
-        plan = self._result.plan.operations
-        if about == "verdicts" or plan is None:
-            return None
-        return 0 if about == "operations" else [str(each.name) for each in plan.plans].index(about)
 
     def _split(self, which: int | None) -> None:
         if which not in self.splits and which not in self._errors:
@@ -192,17 +188,16 @@ class Staging:
         self.samples: tuple[Any, FileEntry] | None = None
         self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
         named(self.folder)
+        lock: Lock | None = None
         try:
             if out.exists() and not out.is_dir():
                 raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
-            self._lock = Lock(out, named, self.folder)
-        except OSError as error:
-            raise _unwritable(out, error) from None
-        try:
+            self._lock = lock = Lock(out, named, self.folder)
             self.folder.mkdir(mode=0o700)
         except OSError as error:
-            self._lock.release()
+            if lock is not None:
+                lock.release()
             raise _unwritable(out, error) from None
 
     def __enter__(self) -> "Staging":
@@ -242,6 +237,10 @@ class ProgressListener(Protocol):
         """A format was not written; the plan says so, too."""
 
 
+def _begins(listener: ProgressListener | None) -> Callable[[str], None]:
+    return listener.begins if listener else lambda what: None
+
+
 def write_all(
     result: Judged, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242",
     listener: ProgressListener | None = None, clock: "Clock | None" = None, hurried: bool = False,
@@ -267,15 +266,13 @@ def write_all(
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
     later = _later(result.plan, formats)
     with staging or Staging(out) as staging:
-        making = Making(
-            result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None, alone=hurried
-        )
-        stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
+        making = Making(result, staging.folder, step_schema, clock, _begins(listener), alone=hurried)
+        edited = _edited(result, out)
+        stays = {"process": _STAYS} if result.ready.options.process is None and edited else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
-        steps = bool(result.plan.process.steps)
         stands = "npz" in formats and _has_samples(staging, result)
         arrays = [*(["npz"] if "npz" in formats and not stands else []), *_setup_files(result)]
-        arrays += ["process"] if steps and not _edited(result, out) else []
+        arrays += ["process"] if result.plan.process.steps and not edited else []
         arrays += [*(["postures"] if result.maps else []), *(["operations", "operations_csv"] if result.plan.operations else [])]
         try:
             for name in arrays:
@@ -334,19 +331,19 @@ def _write_later(making: Making, written: "_Written", later: Sequence[str], list
 
 def missing_files(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
     """Formats of a plan in a folder, page and models, whose file is not there as the plan lists it."""
-    files = {name: out / entry.name for name, entry in plan.files.items()}
-    return [
-        name for name in _later(plan, formats)
-        if name not in files or not files[name].is_file() or sha256(files[name]) != plan.files[name].sha256
-    ]  # fmt: skip
+
+    def there(name: str) -> bool:
+        entry = plan.files.get(name)
+        return entry is not None and (out / entry.name).is_file() and sha256(out / entry.name) == entry.sha256
+
+    return [name for name in _later(plan, formats) if not there(name)]
 
 
 def write_missing(
     result: Judged, out: Path, names: Sequence[str], staging: Staging, clock: "Clock", listener: ProgressListener | None = None
 ) -> "Plan":
     """Write page and models of a plan into its folder, which has all else; the plan as written. As `write_all`."""
-    making = Making(result, staging.folder, "ap242", clock, listener.begins if listener else lambda what: None)
-    plan = result.plan
+    making, plan = Making(result, staging.folder, "ap242", clock, _begins(listener)), result.plan
     files = {name: entry for name, entry in plan.files.items() if name not in names}
     written = _Written(plan, staging, clock, out, dict(plan.not_written), files, as_json=True)
     staging.models_follow()

@@ -7,7 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.model import FaceEntry, Plan, SplitEntry
 from plan_cutters.plan_file.operations import OperationPlanEntry
 from plan_cutters.plan_file.reasons import LABELS, MEANING, parts, rgb
+from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.operations import stepped, steps_of
 from plan_cutters.report.protocol import Judged
 
@@ -45,6 +46,7 @@ def clamping_shape(clamping: Clamping, chord: float) -> Any:
     return compound(shapes)
 
 
+_Shown = TypeVar("_Shown", Plan, OperationPlanEntry)
 #: STEP application protocols that can be requested, and the kernel's names of them.
 SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS", "ap203": "AP203"}
 
@@ -124,14 +126,14 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
 
 def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:
     """The plan with how its models show faces: by plan of operations, None for the verdicts."""
-    update: dict[str, Any] = {"split": rungs(splits[None])} if None in splits else {}
+
+    def shown(of: _Shown, which: int | None) -> _Shown:
+        return of.model_copy(update={"split": rungs(splits[which])}) if which in splits else of
+
     if plan.operations is not None:
-        plans = [
-            each.model_copy(update={"split": rungs(splits[i])}) if i in splits else each
-            for i, each in enumerate(plan.operations.plans)
-        ]
-        update["operations"] = plan.operations.model_copy(update={"plans": plans})
-    return plan.model_copy(update=update)
+        plans = [shown(each, k) for k, each in enumerate(plan.operations.plans)]
+        plan = plan.model_copy(update={"operations": plan.operations.model_copy(update={"plans": plans})})
+    return shown(plan, None)
 
 
 def styles(result: Judged, plan: OperationPlanEntry | None = None) -> Callable[[Any], Style]:
@@ -175,16 +177,10 @@ def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:
     """Give what models say of a face, whatever they show on it."""
     number = int(entry.id[1:])
     return {
-        "face": entry.id,
-        "number": number,
-        "name": entry.name,
-        "component": entry.component,
-        "layers": list(result.part.layers.get(number, ())),
-        "surface": entry.surface,
-        "kind": entry.kind,
-        "target": entry.target,
-        "ignored": entry.ignored,
-    }
+        "face": entry.id, "number": number, "name": entry.name, "component": entry.component,
+        "layers": list(result.part.layers.get(number, ())), "surface": entry.surface, "kind": entry.kind,
+        "target": entry.target, "ignored": entry.ignored,
+    }  # fmt: skip
 
 
 def fixture_meshes(result: Judged) -> list[Drawn]:
@@ -203,38 +199,24 @@ def shown_pieces(result: Judged, split: Any) -> Any:
 
 def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False, fixtures: bool = True) -> None:
     """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`; without `fixtures` the part alone."""
-    shown = next(c for c in result.plan.cutters if c.id == result.shown)
-    entries = {int(f.id[1:]): f for f in result.plan.faces}
+    shown = shown_cutter(result.plan)
     reasons = defaultdict[str, set[str]](set)
     for witness in shown.witnesses:
         if not witness.inside_bodies:
             reasons[witness.face].add(witness.reason)
 
     def extras(face: int) -> dict[str, Any]:
-        entry = entries[face]
+        entry = result.plan.faces[face - 1]
         counts = shown.faces.get(entry.id)
-        return {
-            **face_facts(result, entry),
-            "cutter": shown.id,
-            "verdicts": counts.model_dump() if counts else {},
-            "reasons": sorted(reasons[entry.id]),
-            "unjudged": entry.unjudged,
-        }
+        return {**face_facts(result, entry), "cutter": shown.id, "verdicts": counts.model_dump() if counts else {},
+                "reasons": sorted(reasons[entry.id]), "unjudged": entry.unjudged}  # fmt: skip
 
-    write_gltf(
-        shown_pieces(result, split),
-        path,
-        styles(result),
-        extras=extras,
-        piece_extras=lambda p: {
-            "face": f"F{p.face}",
-            "verdict": verdict_of(p),
-            "meaning": MEANING[verdict_of(p)],
-            "cutter": shown.id,
-        },
-        merged=merged,
-        others=fixture_meshes(result) if fixtures else (),
-    )
+    def facts(piece: Any) -> dict[str, Any]:
+        word = verdict_of(piece)
+        return {"face": f"F{piece.face}", "verdict": word, "meaning": MEANING[word], "cutter": shown.id}
+
+    write_gltf(shown_pieces(result, split), path, styles(result), extras=extras, piece_extras=facts, merged=merged,
+               others=fixture_meshes(result) if fixtures else ())  # fmt: skip
 
 
 def product(result: Judged) -> str:
@@ -276,7 +258,6 @@ def write_operations_step(result: Judged, split: Any, path: Path, *, name: str |
 def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | None = None) -> None:
     """Write `operations.glb`: as `annotated.glb`, with the operation of each piece in `extras`."""
     plan = _operations(result, name)
-    entries = {int(face.id[1:]): face for face in result.plan.faces}
     step = steps_of(result.plan, plan)
 
     def extras(face: int) -> dict[str, Any]:
@@ -286,7 +267,7 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | 
             for at in each.faces
             if at.face == f"F{face}"
         ]
-        return {**face_facts(result, entries[face]), "plan": plan.name, "operations": here}
+        return {**face_facts(result, result.plan.faces[face - 1]), "plan": plan.name, "operations": here}
 
     def facts(piece: Any) -> dict[str, Any]:
         about = {"face": f"F{piece.face}", "plan": plan.name}
@@ -303,12 +284,12 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, name: str | 
 
 def _fixtures(result: Judged) -> list[Drawn]:
     """The fixtures, those of each setup below a node of their own where setups differ in them."""
-    ready = result.ready
-    if ready.alike:
+    if result.ready.alike:
         return fixture_meshes(result)
-    fixtures = []
-    for k, conditions in enumerate(ready.setups):
-        for each in conditions.surroundings.fixtures:
-            facts = fixture_entry(each, [k]).model_dump(mode="json")
-            fixtures.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
-    return fixtures
+    return [
+        Drawn(
+            each.name, each.shown, rgb("fixture"), fixture_entry(each, [k]).model_dump(mode="json"), f"fixtures of setup {k + 1}"
+        )
+        for k, conditions in enumerate(result.ready.setups)
+        for each in conditions.surroundings.fixtures
+    ]

@@ -9,7 +9,7 @@ import webbrowser
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, get_args
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.figures import reporting
@@ -96,14 +96,13 @@ def show(result: Judged, height: int = HEIGHT, size: Size = "full") -> Path | No
     """
     if size not in get_args(Size):
         raise OptionError(f"card: {shown(size)} is neither full nor small")
-    small = size == "small" and _in_notebook()
-    data = b"" if small else page(result)
     if _in_notebook():
         from IPython.display import HTML, display
 
-        opened = "" if small else _rendered(result, story_of(result.plan), height, page=data.decode(), opened=True)
-        display(HTML(opened or card(result, size=size)))
+        whole = partial(_rendered, result, story_of(result.plan), height, opened=True)
+        display(HTML(card(result, size=size) if size == "small" else whole(page=page(result).decode())))
         return None
+    data = page(result)
     path = Path(tempfile.mkdtemp(prefix="plan-cutters-")) / "review.html"
     path.write_bytes(data)
     if not webbrowser.open(path.as_uri()):
@@ -159,16 +158,11 @@ def _rendered(
     result: Judged, story: Story, height: int, *, page: str, picture: str = "", missing: list[str] | None = None,
     opened: bool = False, kind: str = "png", most: int | None = None,
 ) -> str:  # fmt: skip
-    cutters: list[dict[str, Any]] = [
-        {
-            "id": each.id,
-            "name": each.name,
-            "finishes": FEASIBLE[each.feasible],
-            "shares": [each.shares[word] for word in _COLUMNS],
-            "reason": each.reason,
-        }
+    cutters = [
+        {"id": each.id, "name": each.name, "finishes": FEASIBLE[each.feasible], "reason": each.reason,
+         "shares": [each.shares[word] for word in _COLUMNS]}
         for each in (sorted(story.cutters, key=lambda c: c.id != story.taken) if most else story.cutters)
-    ]
+    ]  # fmt: skip
     return _TEMPLATE.render(
         chip=_CHIPS[story.headline.good], headline=story.headline,
         text="\n".join(result.plan.text.lines),

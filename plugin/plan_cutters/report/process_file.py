@@ -11,16 +11,15 @@ from plan_cutters.files.content import toml_text
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import ProcessStep
 from plan_cutters.plan_file.part_info import ProposedSetup
+from plan_cutters.plan_file.words.operations import images_of
 from plan_cutters.report.protocol import Judged
 
 
 def process_toml(plan: Plan) -> str:
     """Write the process of a plan as TOML: a `[[step]]` each, in their order, with what it does as a comment."""
-    process = plan.process
-    setups = ""
-    if plan.setup_proposal is not None:
-        files = " ".join(f"--setup setup-{number}.toml" for number in range(1, 1 + len(plan.setup_proposal.setups)))
-        setups = f"# In place of --setup auto: {files}\n"
+    process, proposed = plan.process, plan.setup_proposal
+    files = [f"--setup setup-{number}.toml" for number in range(1, 1 + len(proposed.setups))] if proposed else []
+    setups = f"# In place of --setup auto: {' '.join(files)}\n" if files else ""
     names = {each.id: typed(each.id, each.name) for each in plan.cutters}
     often = Counter(names.values())
     words = {each: name if often[name] == 1 else each for each, name in names.items()}
@@ -44,19 +43,15 @@ def process_toml(plan: Plan) -> str:
 
 def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
     """A step as often as it is done: each time has angles of its own, which the file writes out."""
-    plans = [] if plan.operations is None else plan.operations.plans
-    operations = [each for one in plans if one.name == plan.process.plan for each in one.operations]
-    orbit = next((each.orbit for each in operations if each.id == step.operation), None)
-    if step.repeat == 1 or orbit is None:
-        return [step]
+    images = [] if step.repeat == 1 or plan.operations is None else images_of(plan.operations, plan.process, step)
     return [
         step.model_copy(update={
             "angles_deg": each.angles_deg, "axis": each.axis, "faces": [face.face for face in each.faces],
             "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds, "link_seconds": each.link_seconds,
         })
-        for each in operations
-        if each.orbit == orbit
-    ]  # fmt: skip
+        for each in images
+        if each.orbit is not None
+    ] or [step]  # fmt: skip
 
 
 def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:

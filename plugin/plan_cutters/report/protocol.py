@@ -1,76 +1,10 @@
-"""All writers take an object of this form: a plan with the arrays behind it."""
+"""All writers take a result, which knows them itself: this is its type, for type checkers alone."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from plan_cutters.result import Result as Judged
+else:
     # What formats there are is asked before anything heavy is loaded.
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from cad_io import Part, SurfaceSamples
-    from cad_io.arrays import Floats, Ints
-    from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.kinematics import Kinematics
-    from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.domain.travel import Travel
-    from plan_cutters.domain.verdicts import Verdicts
-    from plan_cutters.outcome import Answers
-    from plan_cutters.plan_file.model import CutterEntry, Plan
-    from plan_cutters.scene.conditions import Conditions
-    from plan_cutters.scene.distances import Clearances
-    from plan_cutters.scene.preparation import Prepared
-    from plan_cutters.scene.scene import Scene
-
-
-class Judged(Protocol):
-    """A plan with the arrays behind it; `result.Result` says what each of them is."""
-
-    @property
-    def plan(self) -> "Plan": ...
-    @property
-    def part(self) -> "Part": ...
-    @property
-    def scene(self) -> "Scene": ...
-    @property
-    def samples(self) -> "SurfaceSamples": ...
-    @property
-    def surface_class(self) -> "NDArray[np.uint8]": ...
-    @property
-    def reaches(self) -> "dict[str, Verdicts]": ...
-    @property
-    def postures(self) -> "PostureRange": ...
-    @property
-    def kinematics(self) -> "Kinematics | None": ...
-    @property
-    def elsewhere(self) -> "Sequence[tuple[tuple[float, float, float], dict[str, Verdicts]]]": ...
-    @property
-    def answers(self) -> "Answers": ...
-    @property
-    def maps(self) -> Any: ...  # PostureMaps: reports import no stage
-    @property
-    def travels(self) -> "dict[str, Travel]": ...
-    @property
-    def ready(self) -> "Prepared": ...
-    @property
-    def here(self) -> "dict[str, Verdicts]": ...
-    @property
-    def served_in(self) -> "dict[str, Ints]": ...
-    @property
-    def cutters(self) -> "list[CutterEntry]": ...
-    @property
-    def selected(self) -> str | None: ...
-    @property
-    def shown(self) -> str: ...
-    @property
-    def clearances(self) -> "Clearances": ...
-    @property
-    def inside_bodies(self) -> "NDArray[np.bool_]": ...
-    @property
-    def exempt(self) -> "NDArray[np.bool_] | None": ...
-    @property
-    def conditions(self) -> "Conditions": ...
-
-    def rotary(self, cutter: str) -> "tuple[Floats, NDArray[np.int8]]": ...
-    def judged(self, cutter: str | None = None) -> "Cutter": ...
-    def clearances_of(self, cutter: str) -> "Clearances": ...
+    Judged = object
+__all__ = ["Judged"]

@@ -29,20 +29,6 @@ def schema() -> dict[str, Any]:
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Plan.model_json_schema(mode="serialization")}
 
 
-def schema_text() -> str:
-    return json.dumps(schema(), indent=2) + "\n"
-
-
-def schemas() -> dict[str, str]:
-    """Texts of all schemas that are made from models, by the names of their files in the package."""
-    from plan_cutters.plan_file.outputs import OUTPUTS
-
-    draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    others = {name: {**draft, **kind.model_json_schema(mode="serialization")} for name, kind in OUTPUTS.items()}
-    result = {"plan": schema(), **others}
-    return {f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in result.items()}
-
-
 def write_plan(plan: "Plan", path: Path) -> None:
     """Write the plan, whole or not at all."""
     _write(dumps(plan), path)
@@ -102,5 +88,4 @@ def explain(path: Path, cause: str) -> tuple[str, ...]:
 
 
 if __name__ == "__main__":
-    for file, text in schemas().items():
-        (Path(__file__).parent.parent / file).write_text(text, encoding="utf-8")
+    (Path(__file__).parent.parent / "plan.schema.json").write_text(json.dumps(schema(), indent=2) + "\n", encoding="utf-8")

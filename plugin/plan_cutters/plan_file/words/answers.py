@@ -336,10 +336,8 @@ def _stick_outs(plan: Plan) -> Iterator[Line]:
                 f"for all that it reaches now. {limit(stick_out)}"
             )
     if short:
-        yield Line(
-            "These can be held as short as their flutes and necks allow, and still reach all that they reach: "
-            f"{', '.join(short)}."
-        )
+        so = "These can be held as short as their flutes and necks allow, and still reach all that they reach"
+        yield Line(f"{so}: {', '.join(short)}.")
 
 
 def narrowest(radius: RadiusEntry) -> str:

@@ -23,42 +23,35 @@ FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
 @dataclass(frozen=True, slots=True)
 class WorstFace:
-    """A face on which a cutter loses samples: how much of it (mm2, percent), by which reason mostly, and how much too deep (mm)
-    the deepest witness there is in what; both may be empty."""
+    """A face on which a cutter loses samples."""
 
     id: str
     name: str
-    area: str
-    share: str
-    reason: str
-    depth: str
-    obstacle: str
+    area: str  #: How much of it, mm2.
+    share: str  #: The same in percent.
+    reason: str  #: By which mostly.
+    depth: str  #: How much too deep the deepest witness there is, mm; may be empty.
+    obstacle: str  #: In what; may be empty.
 
 
 @dataclass(frozen=True, slots=True)
 class CutterStory:
-    """A cutter's story has these texts; a text is empty where there is nothing to say.
-
-    `name` is that of all texts, `tool` its kind and how far it stands out of which holder; `reached` and `shares` are percent of
-    the area, in all and by verdict; `reason` is that of most of what is not reached, `hint` the thing to try first against it.
-    `sentence` says how much it reaches, or what it leaves (`left`), `next` the next step, `between` how much is known between its
-    samples. `faces` are the worst ones, of `failing` in all.
-    """
+    """A cutter's story has these texts; a text is empty where there is nothing to say."""
 
     id: str
-    name: str
-    tool: str
+    name: str  #: That of all texts.
+    tool: str  #: Its kind, and how far it stands out of which holder.
     feasible: bool | None
-    reached: str
-    shares: dict[str, str]
-    reason: str
-    hint: str
-    sentence: str
-    next: str
-    left: str
-    between: str
-    faces: tuple[WorstFace, ...]
-    failing: int
+    reached: str  #: Percent of the area.
+    shares: dict[str, str]  #: The same by verdict.
+    reason: str  #: That of most of what is not reached.
+    hint: str  #: The thing to try first against it.
+    sentence: str  #: How much it reaches, or `left`.
+    next: str  #: The next step.
+    left: str  #: What it leaves.
+    between: str  #: How much is known between its samples.
+    faces: tuple[WorstFace, ...]  #: The worst ones.
+    failing: int  #: How many there are in all.
 
 
 def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
@@ -72,21 +65,11 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     unsure = "" if c.feasible else ", but obstacles are missing that may be in its way"
     failing = _by_remaining_area(plan, c)
     return CutterStory(
-        id=c.id,
-        name=name,
-        tool=described(c, name),
-        feasible=c.feasible,
-        reached=reached(c, c.area_share),
-        shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
-        reason=main.name if main else "",
-        hint=hint,
-        sentence=loss or f"{capital(name)} reaches {every(plan)}{unsure}.",
-        next=_next(plan, c),
-        left=loss,
-        between=between(plan, c),
-        faces=tuple(_worst(face, c) for face in failing[:_WORST]),
-        failing=len(failing),
-    )
+        id=c.id, name=name, tool=described(c, name), feasible=c.feasible, reached=reached(c, c.area_share),
+        shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS}, reason=main.name if main else "", hint=hint,
+        sentence=loss or f"{capital(name)} reaches {every(plan)}{unsure}.", next=_next(plan, c), left=loss,
+        between=between(plan, c), faces=tuple(_worst(face, c) for face in failing[:_WORST]), failing=len(failing),
+    )  # fmt: skip
 
 
 def main_reason(share: AreaShare) -> str:
@@ -130,14 +113,11 @@ def remaining_text(plan: Plan, c: CutterEntry) -> str:
     if deep:
         worst = max(deep, key=lambda w: w.depth_mm or 0.0)
         sure = "may be" if worst.verdict == "undecided" else "is"
-        where = (
-            f"; the worst is on {worst.face} at ({place(worst.point)}), "
-            f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
-        )
+        deep_there = f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
+        where = f"; the worst is on {worst.face} at ({place(worst.point)}), {deep_there}"
     return (
         f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached:,} of {plan.samples.finished:,} "
-        "samples): "
-        f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}."
+        f"samples): {why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}."
     )
 
 
@@ -173,9 +153,7 @@ def spot(witness: WitnessEntry) -> str:
 
 def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
     """The deepest of each face and reason first, then the others; the deepest first in both."""
-    seen: set[tuple[str, str]] = set()
-    first: list[WitnessEntry] = []
-    rest: list[WitnessEntry] = []
+    seen, first, rest = set[tuple[str, str]](), list[WitnessEntry](), list[WitnessEntry]()
     for w in sorted((w for w in witnesses if not w.inside_bodies), key=lambda w: -(w.depth_mm or 0.0)):
         (rest if (w.face, w.reason) in seen else first).append(w)
         seen.add((w.face, w.reason))
@@ -259,7 +237,7 @@ def details(plan: Plan) -> Iterator[str]:
     e = plan.effective
     # The end of a range of rotations: here a whole turn is one.
     turns = ["360°" if degrees == 360.0 else angle(degrees) for degrees in e.rotation_deg]
-    yield (f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
+    yield f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}."
     yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
     yield (
         f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "

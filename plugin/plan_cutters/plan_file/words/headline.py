@@ -435,14 +435,11 @@ _MOST = 0.5
 
 
 class Headline(NamedTuple):
-    """Which cutter to take, or how much all finish together (`good`; None: not for sure, or not all); for what; and why.
+    """Which cutter to take, or how much all finish together; for what; and why: whole sentences."""
 
-    `title` is a sentence without its stop, the others are whole ones; `about` may be empty.
-    """
-
-    title: str
-    good: bool | None
-    about: str
+    title: str  #: Without its stop.
+    good: bool | None  #: None: not for sure, or not all.
+    about: str  #: It may be empty.
     why: str
 
 

@@ -258,8 +258,7 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    for doubt in (_unit, _travel, _held, _moving, _unheld, _side):
-        lines += doubt(plan)
+    lines += [text for doubt in (_unit, _travel, _held, _moving, _unheld, _side) for text in doubt(plan)]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
         lines.append(
@@ -324,8 +323,7 @@ def _held(plan: Plan) -> Iterator[str]:
     steps = [process.steps[k - 1] for k in below]
     partly = all(step.below_mm2 < step.area_mm2 * (1.0 - ROUNDING) for step in steps)
     which = f"step {below[0]} comes" if len(below) == 1 else f"steps {_runs(below)} come"
-    setups = {step.setup for step in steps}
-    where = f" in setup {setups.pop() + 1}" if holds and len(setups) == 1 else ""
+    where = f" in setup {steps[0].setup + 1}" if holds and len({step.setup for step in steps}) == 1 else ""
     yield f"Nothing holds the part{where}: {which} {'partly ' if partly else ''}from below."
 
 
@@ -393,10 +391,10 @@ _STATED_ABOVE: frozenset[str] = frozenset(
 )
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
-    "none": "nothing stands for it",
-    "box": "the box around it stands for it",
-    "triangles": "its own triangles stand for it",
-    "edges": "its edges stand for it",
+    "none": "nothing stands",
+    "box": "the box around it stands",
+    "triangles": "its own triangles stand",
+    "edges": "its edges stand",
 }
 #: Tools that are named for each reason why they are not used.
 _TOOLS = 3
@@ -416,7 +414,7 @@ def unsure(plan: Plan) -> dict[str, tuple[Line, ...]]:
         "warnings": tuple(Line(f"{text.removesuffix('.')}.", "Warning:") for text in plan.part.warnings),
         "faces that are not judged": tuple(Line(f"{which} ({why}).", "Not judged:") for which, why in unjudged),
         "missing obstacles": tuple(
-            Line(f"{which} ({m.why}; {_STAND_IN[m.stand_in]}).", "Missing obstacle:") for which, m in missing
+            Line(f"{which} ({m.why}; {_STAND_IN[m.stand_in]} for it).", "Missing obstacle:") for which, m in missing
         ),
     }
 
@@ -440,14 +438,12 @@ def libraries(plan: Plan) -> Iterator[Line]:
         more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused else ""
         of = f"{library.file} ({library.format}) gives {count(library.cutters, 'cutter')} of {count(library.tools, 'tool')}"
         yield Line(f"{of}{more}.")
-        for remark in library.notes:
-            yield Line(f"  {remark}", minor=True)
+        yield from (Line(f"  {remark}", minor=True) for remark in library.notes)
         places: dict[str, list[str]] = {}
         for tool in library.unused:
             places.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
         for why, each in places.items():
-            omitted = f" and {len(each) - _TOOLS} more" if len(each) > _TOOLS else ""
-            yield Line(f"  Not used: {', '.join(each[:_TOOLS])}{omitted}: {why}.", minor=True)
+            yield Line(f"  Not used: {listed(each, _TOOLS)}: {why}.", minor=True)
 
 
 def machine(plan: Plan) -> str:

@@ -46,7 +46,7 @@ def numbered(operations: OperationsEntry, process: ProcessEntry) -> dict[str, st
     """The numbers of `operation_names`."""
     names = dict[str, str]()
     for number, step in enumerate(process.steps, 1):
-        images = _images(operations, process, step)
+        images = images_of(operations, process, step)
         for k, each in enumerate(images, 1):
             names[each.id] = f"{number}.{k}" if len(images) > 1 else str(number)
     return names
@@ -57,7 +57,7 @@ def of_process(operations: OperationsEntry, process: ProcessEntry) -> list[Opera
     return [each for one in operations.plans if one.name == process.plan for each in one.operations]
 
 
-def _images(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
+def images_of(operations: OperationsEntry, process: ProcessEntry, step: ProcessStep) -> list[OperationEntry]:
     """The operations that a step consists of: images of each other."""
     entries = of_process(operations, process)
     made = next((each for each in entries if each.id == step.operation), None)
@@ -70,7 +70,7 @@ def each_time(plan: Plan, step: ProcessStep, width: int) -> str:
     """
     if step.repeat < 2 or step.repeat_deg or plan.operations is None:
         return ""
-    images = _images(plan.operations, plan.process, step)
+    images = images_of(plan.operations, plan.process, step)
     every = sorted((each.angles_deg or {} for each in images), key=lambda angles: [angle % 360.0 for angle in angles.values()])
     for shown in range(len(every), 1, -1):
         words = list[str]()
@@ -255,20 +255,18 @@ def turning(each: OperationEntry) -> str:
         return ""
     if not turn.pieces_mm2:
         return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
-    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
-    text = (
-        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
-        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
-    )
+    texts = [
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in "
+        f"{count(len(turn.pieces_mm2), 'piece')}, with axes that turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
+    ]
     if turn.angles_deg is not None:
-        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
-    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
-        text += (
-            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
-        )
+        texts.append(", ".join(f"{name} {low:.0f} to {high:.0f} deg" for name, (low, high) in turn.angles_deg.items()))
+        if turn.held_share < 1.0 - ROUNDING:
+            back = "no solution of the rotary axes goes from end to end without turning back"
+            texts.append(f"in {some(1.0 - turn.held_share)} of that {back}")
     if turn.singular_mm2 > 0.0:
-        text += f"; {area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
-    return f"{text}."
+        texts.append(f"{area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast")
+    return f"{'; '.join(texts)}."
 
 
 class OperationText(NamedTuple):

@@ -12,21 +12,9 @@ from plan_cutters.domain.clamping import Vise
 from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.operations import (
-    MARGIN,
-    NOT_PLANNED,
-    OTHER_ORIENTATION,
-    SHORT_STEP,
-    UNJUDGED_CAUSE,
-    NextEntry,
-    ProcessEntry,
-    ProcessSetup,
-    ProcessStep,
-    RemainingEntry,
-    StockEntry,
-)
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
@@ -53,7 +41,7 @@ _SMALLEST = 1.0
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
 _OTHER_CAUSES = {
-    UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step", SHORT_STEP: "too little for a step"
+    schema.UNJUDGED_CAUSE: "not judged", schema.NOT_PLANNED: "in no step", schema.SHORT_STEP: "too little for a step"
 }  # fmt: skip
 #: Steps of the planner's own whose faults are told.
 _OWN_STEPS = 3
@@ -62,11 +50,7 @@ _MINOR = 0.001
 
 
 class StepRow(NamedTuple):
-    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
-
-    `alone` is what is gone if it is left out, empty where that is not known, `operation` the id of its operation, `at` its
-    setup, counted from 0, and `holes` how many it drills, 0 for a mill.
-    """
+    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known."""
 
     number: str
     setup: str
@@ -74,11 +58,11 @@ class StepRow(NamedTuple):
     cutter: str
     share: str
     took: str
-    faces: list[str]
-    alone: str
-    operation: str
-    at: int
-    holes: int = 0
+    at: int  #: Its setup, counted from 0.
+    faces: Sequence[str] = ()
+    alone: str = ""  #: What is gone if it is left out; empty where that is not known.
+    operation: str = ""  #: The id of its operation.
+    holes: int = 0  #: How many it drills, 0 for a mill.
 
 
 class Stays(NamedTuple):
@@ -154,26 +138,19 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         many = percent(sum(step.share for step in rest), some=True, whole=False)
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
     known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
-    least, step = min(known, default=(0.0, 0))
-    clearance = (
-        f"Least clearance of neck, shank and holder: {f'{mm(_FAR)} or more' if least >= _FAR else f'{mm(least)} in step {step}'}."
-        if known
-        else ""
-    )
-    if known and least < MARGIN and plan.effective.holder_clearance_mm < MARGIN:
-        clearance = f"{clearance[:-1]}; {mm(MARGIN)} everywhere: `--holder-clearance {MARGIN:g}`."
+    clearance = ""
+    if known:
+        least, step = min(known)
+        wider = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN
+        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
+        much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
+        clearance = f"Least clearance of neck, shank and holder: {much}{advice}."
     return ProcessStory(
-        rows=tuple(rows),
-        stands=tuple(each.text for each in process.setups),
-        roughing=roughing(process),
-        more=more,
-        besides=_besides(process),
-        own=tuple(own_steps(process)),
-        remaining=tuple(_remaining(process, plan)),
+        rows=tuple(rows), stands=tuple(each.text for each in process.setups), roughing=roughing(process), more=more,
+        besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
-        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
-        clearance=clearance,
-    )
+        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=clearance,
+    )  # fmt: skip
 
 
 def with_process_words(plan: Plan) -> Plan:
@@ -184,17 +161,12 @@ def with_process_words(plan: Plan) -> Plan:
         for k, step in enumerate(plan.process.steps, 1)
     ]
     setups = [each.model_copy(update={"text": stand_text(plan, each)}) for each in plan.process.setups]
-    words = {
-        "steps": steps,
-        "setups": setups,
-        "left": needed,
-        "doubts": doubts(plan),
-        "next": list(_next_entries(plan, plan.process, needed)),
-    }
+    following = list(_next_entries(plan, plan.process, needed))
+    words = {"steps": steps, "setups": setups, "left": needed, "doubts": doubts(plan), "next": following}
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
-def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
+def _row(number: int, step: schema.ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool, each: str) -> StepRow:
     turned = ""
     if fixed:
         by = step.repeat_deg or {}
@@ -206,36 +178,26 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
     longest = 26 if fixed else 40
     return StepRow(
-        number=str(number),
-        setup=f"setup {step.setup + 1}" if setups else "",
-        turned=times + turned,
+        number=str(number), setup=f"setup {step.setup + 1}" if setups else "", turned=times + turned,
         cutter=what if len(what) <= longest else f"{what[: longest - 3]}...",
-        share=percent(step.share, some=step.area_mm2 > 0.0),
-        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
-        faces=step.faces,
-        alone="" if step.alone_mm2 is None else area(step.alone_mm2),
-        operation=step.operation,
-        at=step.setup,
-    )
+        share=percent(step.share, some=step.area_mm2 > 0.0), took=_took(step), at=step.setup, faces=step.faces,
+        alone="" if step.alone_mm2 is None else area(step.alone_mm2), operation=step.operation,
+    )  # fmt: skip
 
 
 def _drilling_row(number: int, step: DrillingStep, *, setups: bool, fixed: bool) -> StepRow:
     return StepRow(
-        number=str(number),
-        setup=f"setup {step.setup + 1}" if setups else "",
-        turned=angles_text(step.angles_deg or {}) if fixed else "",
-        cutter=drilling_words(step),
-        share=count(len(step.holes), "hole"),
-        took=duration(None if step.seconds is None else step.seconds + step.link_seconds),
-        faces=[],
-        alone="",
-        operation="",
-        at=step.setup,
-        holes=len(step.holes),
-    )
+        number=str(number), setup=f"setup {step.setup + 1}" if setups else "", cutter=drilling_words(step),
+        turned=angles_text(step.angles_deg or {}) if fixed else "", share=count(len(step.holes), "hole"), took=_took(step),
+        at=step.setup, holes=len(step.holes),
+    )  # fmt: skip
 
 
-def stand_text(plan: Plan, setup: ProcessSetup) -> str:
+def _took(step: schema.ProcessStep | DrillingStep) -> str:
+    return duration(None if step.seconds is None else step.seconds + step.link_seconds)
+
+
+def stand_text(plan: Plan, setup: schema.ProcessSetup) -> str:
     """Say which way is up, what holds the part, and what it stands on."""
     on = "stock" if setup.stands_on == "stock" else listed(setup.stands_on or [], _FACES)
     if setup.grip_mm is not None:
@@ -250,7 +212,8 @@ def stand_text(plan: Plan, setup: ProcessSetup) -> str:
         gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
         how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
-        how = f"nothing holds it yet{f'; {on} {_is_are(setup)} below' if on else ''}"
+        are = "is" if len(setup.stands_on or ()) == 1 else "are"
+        how = f"nothing holds it yet{f'; {on} {are} below' if on else ''}"
     else:
         held = "on a table" if setup.held == "table" else f"held by {setup.held}"
         how = f"{held}, {f'stands on {on}' if on else 'on no plane'}{'; its clamps are yours to add' * (setup.held == 'table')}"
@@ -272,11 +235,11 @@ def _direction(along: Sequence[float]) -> str:
     return names[0] if names else axis_words(along)
 
 
-def _lies(stock: StockEntry) -> bool:
+def _lies(stock: schema.StockEntry) -> bool:
     return stock.word.startswith("cylinder") and stock.size_mm[0] != stock.size_mm[1]
 
 
-def roughing(process: ProcessEntry) -> str:
+def roughing(process: schema.ProcessEntry) -> str:
     """How much of the stock is to be roughed, and in what time if that is known; empty where there is none."""
     stock = process.stock
     if stock is None:
@@ -288,7 +251,7 @@ def roughing(process: ProcessEntry) -> str:
     return f"Roughing: {removed} of {whole} cm³ of stock{took}."
 
 
-def _besides(process: ProcessEntry) -> str:
+def _besides(process: schema.ProcessEntry) -> str:
     """The time between steps, which with theirs makes that of the process, or why that is not known; empty without any."""
     if unknown := [str(k) for k, step in enumerate(process.steps, 1) if step.seconds is None and process.plan == "fastest"]:
         steps = f"step{'s' * (len(unknown) > 1)} {listed(unknown, _FACES)}"
@@ -298,11 +261,7 @@ def _besides(process: ProcessEntry) -> str:
     return f"Between steps: {', '.join(each)}." if each else ""
 
 
-def _is_are(setup: ProcessSetup) -> str:
-    return "is" if len(setup.stands_on or ()) == 1 else "are"
-
-
-def _fitting(faces: list[str], width: int) -> str:
+def _fitting(faces: Sequence[str], width: int) -> str:
     """As many faces as fit into a width, and how many more there are.
 
     >>> _fitting(["F1", "F22", "F3"], 20), _fitting(["F1", "F22", "F3"], 8), _fitting(["F1"], 1)
@@ -316,8 +275,10 @@ def _fitting(faces: list[str], width: int) -> str:
     return ""
 
 
-def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[Stays]:
-    listed_causes = [each for each in process.left if each is process.left[0] or not _is_minor(each)][:_CAUSES]
+def _remaining(process: schema.ProcessEntry, plan: Plan) -> Iterator[Stays]:
+    # Too small for a line, and for advice; what was not judged is none.
+    minor = [e for e in process.left[1:] if e.area_mm2 < _SMALLEST and e.share < WORTH and e.cause != schema.UNJUDGED_CAUSE]
+    listed_causes = [each for each in process.left if each not in minor][:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
         near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
@@ -334,26 +295,23 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[Stays]:
         yield Stays("", "", text)
 
 
-def _is_minor(each: RemainingEntry) -> bool:
-    """Whether an area is too small for a line, and for advice; what was not judged is none."""
-    return each.area_mm2 < _SMALLEST and each.share < WORTH and each.cause != UNJUDGED_CAUSE
-
-
-def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:
+def _next_entries(
+    plan: Plan, process: schema.ProcessEntry, remaining: Sequence[schema.RemainingEntry]
+) -> Iterator[schema.NextEntry]:
     """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
-    if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
+    if all(each.cause == schema.UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
     sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
     if sharp >= WORTH and plan.effective.sharp_edges == "asked":
         # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
         words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
-        yield NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        yield schema.NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
         if left - sharp < WORTH:
             return
     if advice is None:
         if "mend" not in plan.effective.answers:
-            yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
+            yield schema.NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
         return
     things = [{change.thing for change in step.changes} for step in advice.steps]
     after = dict[int, float]()
@@ -370,10 +328,10 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
         if left - after[k] >= WORTH - _ROUNDING and not alike:
             reported.append((things[k], after[k]))
             option = advice.steps[k].option
-            yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
+            yield schema.NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
 
 
-def _next(each: NextEntry) -> str:
+def _next(each: schema.NextEntry) -> str:
     stays = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
     bracket = f" [`{shlex.join(each.argv)}`]" if each.argv else ""
     return f"Next: {each.words}{stays}{bracket}"
@@ -406,7 +364,7 @@ def _lines(text: str) -> list[str]:
     return textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
 
 
-def own_steps(process: ProcessEntry) -> Iterator[str]:
+def own_steps(process: schema.ProcessEntry) -> Iterator[str]:
     """Sentences on the planner's own steps, first which they are, then what is wrong with each; none where all were planned."""
     own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
     if not own:
@@ -429,7 +387,7 @@ def shortened(sentences: Sequence[str]) -> list[str]:
     return [*sentences[: _OWN_STEPS + 1], *more]
 
 
-def fault(number: int, step: ProcessStep) -> str:
+def fault(number: int, step: schema.ProcessStep) -> str:
     """Say what is wrong with a step; empty where it does what it is asked, and where it was planned."""
     own = step.own
     if own is None:
@@ -440,7 +398,7 @@ def fault(number: int, step: ProcessStep) -> str:
     left = sum(each.area_mm2 for each in own.leaves)
     if left > _MINOR * own.asked_mm2:
         worst = own.leaves[0]
-        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else reason(worst.cause)
+        cause = "it needs another orientation" if worst.cause == schema.OTHER_ORIENTATION else reason(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
     if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
         return f"Step {number} does nothing: steps that share its faces are quicker."

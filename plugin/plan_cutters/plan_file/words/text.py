@@ -4,27 +4,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from plan_cutters.domain.figures import count, reporting, sentence
+from plan_cutters.domain.figures import count, listed, reporting, sentence
 from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
+from plan_cutters.plan_file.words import headline as first
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
-from plan_cutters.plan_file.words.headline import (
-    Headline,
-    could_not,
-    headline,
-    in_summary,
-    inside,
-    inside_radii,
-    not_judged,
-    not_seen,
-    patterns,
-    proposal,
-    sharp_edges,
-    shown_cutter,
-    undecided,
-    unseen,
-)
 from plan_cutters.plan_file.words.holes import holes
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names, typed
 from plan_cutters.plan_file.words.notes import repeated_warnings
@@ -34,30 +19,23 @@ from plan_cutters.plan_file.words.process import ProcessStory, process_story, sh
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A story puts a plan into words, in the order in which people read them.
+    """A story puts a plan into words, in the order in which people read them."""
 
-    `names` are those of cutters in the texts, by id; `taken` and `shown` the ids of the cutter that the headline says to take,
-    if any, and of the one that the models show. `inside` is surface that does not belong to the finished part, which comes
-    first; `scope` what is undecided, which faces were not judged or not seen, and how much the cutters reach together;
-    `between` how much is known between the samples; `in_short` what the plan of operations leaves, and how many orientations it
-    needs; `doubts` causes that make verdicts unsure, by their kind in the plural.
-    """
-
-    names: Mapping[str, str]
-    taken: str | None
-    shown: str
-    inside: tuple[str, ...]
-    headline: Headline
+    names: Mapping[str, str]  #: Those of cutters in the texts, by id.
+    taken: str | None  #: Id of the cutter that the headline says to take, if any.
+    shown: str  #: Id of the one that the models show.
+    inside: tuple[str, ...]  #: Surface that does not belong to the finished part, which comes first.
+    headline: first.Headline
     process: ProcessStory
     proposal: tuple[str, ...]
-    in_short: tuple[str, ...]
-    scope: tuple[str, ...]
-    between: tuple[str, ...]
+    in_short: tuple[str, ...]  #: What the plan of operations leaves, and how many orientations it needs.
+    scope: tuple[str, ...]  #: What is undecided, which faces were not judged or not seen, what the cutters reach together.
+    between: tuple[str, ...]  #: How much is known between the samples.
     cutters: tuple[CutterStory, ...]
     setups: tuple[Line, ...]
     operations: tuple[Line, ...]
     answers: tuple[Line, ...]
-    doubts: Mapping[str, tuple[Line, ...]]
+    doubts: Mapping[str, tuple[Line, ...]]  #: Causes that make verdicts unsure, by their kind in the plural.
     notes: tuple[Line, ...]
 
     def cutter(self, name: str) -> CutterStory:
@@ -68,66 +46,49 @@ class Story:
 @reporting(lambda plan: plan.effective.units)
 def story_of(plan: Plan) -> Story:
     """Tell a plan."""
-    names, best = short_names(plan), shown_cutter(plan)
+    names, best = short_names(plan), first.shown_cutter(plan)
     cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
     finished = plan.selected or plan.selected_over_setups
     pair = "" if finished else together(plan)
+    scope = (
+        *first.undecided(plan, names), *holes(plan), *first.sharp_edges(plan, names), *first.inside_radii(plan, names),
+        *first.not_judged(plan), *first.not_seen(plan, names), *([sentence(named(plan, pair))] if pair else []),
+    )  # fmt: skip
     return Story(
-        names=names,
-        taken=finished or plan.selected_for_setup,
-        shown=best.id,
-        inside=tuple(named(plan, line) for line in inside(plan)),
-        headline=headline(plan, names),
-        process=process_story(plan, names),
-        proposal=proposal(plan),
-        in_short=tuple(in_short(plan)),
-        scope=(
-            *undecided(plan, names),
-            *holes(plan),
-            *sharp_edges(plan, names),
-            *inside_radii(plan, names),
-            *not_judged(plan),
-            *not_seen(plan, names),
-            *([sentence(named(plan, pair))] if pair else []),
-        ),
-        between=tuple(each.between for each in cutters if each.between),
-        cutters=cutters,
-        setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
-        operations=tuple(operations(plan)),
-        answers=tuple(answers(plan)),
-        doubts=notes.unsure(plan),
-        notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
-    )
+        names=names, taken=finished or plan.selected_for_setup, shown=best.id,
+        inside=tuple(named(plan, line) for line in first.inside(plan)), headline=first.headline(plan, names),
+        process=process_story(plan, names), proposal=first.proposal(plan), in_short=tuple(in_short(plan)), scope=scope,
+        between=tuple(each.between for each in cutters if each.between), cutters=cutters,
+        setups=(*notes.setups(plan, best), *notes.travel(plan, best)), operations=tuple(operations(plan)),
+        answers=tuple(answers(plan)), doubts=notes.unsure(plan),
+        notes=(notes.side(plan), *map(Line, first.patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
+    )  # fmt: skip
 
 
 class Chip(NamedTuple):
-    """A kind (`good`, `unsure` or `bad`: its colours), a sign, and a word."""
+    """The tone of a text, a sign, and a word."""
 
-    kind: str
+    tone: Tone
     sign: str
     word: str
+
+    @property
+    def kind(self) -> str:
+        """`good`, `unsure` or `bad`: its colours."""
+        return "unsure" if self.tone == "partly" else self.tone
 
 
 #: Of a cutter: feasible, not, undecided.
 CHIPS = {True: Chip("good", "✓", "Feasible"), False: Chip("bad", "✕", "Not feasible"), None: Chip("unsure", "?", "Undecided")}
 #: Where it says more than that.
-_WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
-_IN_PART = Chip("unsure", "◐", "Feasible in part")
-#: The tone of a text, by its chip.
-TONES: dict[Chip, Tone] = {
-    CHIPS[True]: "good",
-    CHIPS[False]: "bad",
-    CHIPS[None]: "unsure",
-    _WHERE_JUDGED: "unsure",
-    _IN_PART: "partly",
-}
+_WHERE_JUDGED, _IN_PART = Chip("unsure", "!", "Feasible where judged"), Chip("partly", "◐", "Feasible in part")
 
 
 def chip(plan: Plan, story: Story) -> Chip:
     """The verdict on the part. Feasible without more words is only what the exit code calls so, too."""
     good = story.headline.good
-    if good:
-        return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
+    if good and (first.could_not(plan) or first.unseen(plan)):
+        return _WHERE_JUDGED
     if good is None and not plan.process.finished and any(c.blocked for c in plan.cutters):
         return _IN_PART
     return CHIPS[good]
@@ -157,17 +118,14 @@ def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines."""
     story = story_of(plan)
     # As of the part: feasible without more words only where all was judged and seen.
-    default, judged = plan.effective.sampled_by == "default", not could_not(plan)
+    default, judged = plan.effective.sampled_by == "default", not first.could_not(plan)
     unsure = {c.id: bool(c.feasible) and not (judged and (c.seen or not default)) for c in plan.cutters}
     chips = {c.id: _WHERE_JUDGED if unsure[c.id] else CHIPS[c.feasible] for c in plan.cutters}
     return TextEntry(
-        headline=f"{story.headline.title}.",
-        tone=TONES[chip(plan, story)],
-        lines=process_lines(plan, story),
-        cutters={each.id: each.sentence for each in story.cutters},
-        verdicts={name: VerdictText(tone=TONES[each], word=each.word) for name, each in chips.items()},
-        shares={each.id: each.shares for each in story.cutters},
-    )
+        headline=f"{story.headline.title}.", tone=chip(plan, story).tone, lines=process_lines(plan, story),
+        cutters={each.id: each.sentence for each in story.cutters}, shares={each.id: each.shares for each in story.cutters},
+        verdicts={name: VerdictText(tone=each.tone, word=each.word) for name, each in chips.items()},
+    )  # fmt: skip
 
 
 def process_lines(plan: Plan, story: Story, write: Callable[[str], str] = as_fields, most: int = MOST) -> list[str]:
@@ -197,8 +155,8 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each([f"Inside other bodies: {text}" for text in story.inside[:1]], _LEFT, 1)
     yield from each([" ".join(story.inside[1:])], 5)
     yield from each(_doubts(plan, story)[:_DOUBTS], 1, 1)
-    yield from each([" ".join(filter(None, (story.headline.about, *not_judged(plan))))], 3, 1)
-    yield from each([in_summary(plan)], 2, 1)
+    yield from each([" ".join(filter(None, (story.headline.about, *first.not_judged(plan))))], 3, 1)
+    yield from each([first.in_summary(plan)], 2, 1)
     yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
     yield from each(holes(plan), 2, 1)
     if plan.process.plan == "fewest":
@@ -210,7 +168,8 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each(process.next[:1], 3, 0)
     yield from each(process.next[1:], 3)
     yield from each(stays[process.much :], _LEFT)
-    yield from each([*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])], 2, 1)
+    unseen = first.not_seen(plan, story.names) if first.unseen(plan) else []
+    yield from each([*first.undecided(plan, story.names), *unseen], 2, 1)
     yield from each([process.clearance], 1, 1)
     yield from each(_alone(story), _ALONE)
     yield from each([story.headline.why], 2)
@@ -246,8 +205,7 @@ def _alone(story: Story) -> list[str]:
     why = {c.id: f" ({c.reason})" if c.reason else "" for c in story.cutters}
     each = [f"{c.name} {'all' if c.feasible else f'{c.reached}{why[c.id]}'}" for c in story.cutters]
     for shown in range(min(_CUTTERS, len(each)), 0, -1):
-        more = f" and {len(each) - shown} more" if len(each) > shown else ""
-        text = f"Each alone reaches: {', '.join(each[:shown])}{more}."
+        text = f"Each alone reaches: {listed(each, shown)}."
         if len(wrapped([text], len(text))) <= _ALONE:
             break
     return [text]

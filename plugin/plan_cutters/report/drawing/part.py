@@ -181,11 +181,7 @@ def write_png(result: Judged, split: Any, path: Path) -> None:
 def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]]:
     """Four directions to look from, with their words: from above along the setup axis, from two opposite corners, and of many the
     one that shows the most of what is not reached, or from below if all is."""
-    # Two unit directions across the setup axis, as near to X and Y as can be.
-    axis = np.eye(3)[0] if abs(up[0]) < 0.9 else np.eye(3)[1]
-    right = axis - (axis @ up) * up
-    right = right / np.linalg.norm(right)
-    back = np.cross(up, right)
+    right, back, _ = frame_towards(up, up)
     first, second = right - back + 0.9 * up, -right + back + 0.9 * up
     corners = [x * right + y * back + z * up for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1)]
     others = [each / np.linalg.norm(each) for each in corners if np.linalg.norm(each) > 0.5]

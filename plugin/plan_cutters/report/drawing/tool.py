@@ -8,7 +8,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.outline import AnyPart, Outline, Point, Segment, outline
+from plan_cutters.domain.outline import Outline, Point, Segment, outline
 from plan_cutters.domain.shapes import SAME, flank, flute_length, stages, top_radius
 from plan_cutters.report.drawing.posture_map import printable, standard
 
@@ -20,19 +20,13 @@ _FAMILY = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 #: Length and half width of arrow heads.
 ARROW, _HALF = 2.4, 0.4
 
-#: Fills: the ground; colour, angle, deg, and distance of the strokes on it, and how long each of them is (distance: a line).
-FILLS: dict[str, tuple[str, str, float, float, float]] = {
-    "flutes": ("#FFD27A", "#7A4A00", 45.0, 1.2, 1.2),
-    "neck": ("#FFF6DD", "#8C6D1F", 45.0, 1.3, 0.3),
-    "shank": ("#D9D9D9", "#D9D9D9", 0.0, 1.0, 0.0),
-    "holder": ("#BBD5EA", "#2F5D86", -45.0, 2.6, 2.6),
-}
+#: A note tells what each part is: colours only help.
+FILLS = {"flutes": "#FFD27A", "neck": "#FFF6DD", "shank": "#D9D9D9", "holder": "#BBD5EA"}
 _PENS = {
     "edge": {"stroke": "#000", "stroke-width": "0.35", "stroke-linejoin": "round"},
     "fine": {"stroke": "#000", "stroke-width": "0.13"},
     "frame": {"stroke": "#000", "stroke-width": "0.25"},
     "axis": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "6 1.2 0.6 1.2"},
-    "mark": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "1.2 0.8"},
 }
 
 
@@ -87,57 +81,29 @@ class Sheet:
         )
         ET.SubElement(self.root, "title", {"id": f"{self.key}-title"}).text = title
         ET.SubElement(self.root, "desc", {"id": f"{self.key}-desc"}).text = description
-        self._defs = ET.SubElement(self.root, "defs")
         self._lines = ET.SubElement(self.root, "g", {"fill": "none"})
         self._texts = ET.SubElement(self.root, "g", {"font-family": _FAMILY, "fill": "#000"})
-        self._clip: str | None = None
 
     def finished(self, width: float, height: float, **data: str) -> str:
         """The sheet as text, of a size, framed."""
-        self.root.attrib |= {
-            "width": f"{_mm(width)}mm",
-            "height": f"{_mm(height)}mm",
-            "viewBox": f"0 0 {_mm(width)} {_mm(height)}",
-        }
+        wide, high = _mm(width), _mm(height)
+        self.root.attrib |= {"width": f"{wide}mm", "height": f"{high}mm", "viewBox": f"0 0 {wide} {high}"}
         self.root.attrib |= {f"data-{word}": value for word, value in data.items()}
-        paper = ET.Element("rect", {"width": _mm(width), "height": _mm(height), "fill": "#fff"})
-        self._lines.insert(0, paper)
+        self._lines.insert(0, ET.Element("rect", {"width": wide, "height": high, "fill": "#fff"}))
         return ET.tostring(self.root, encoding="unicode") + "\n"
-
-    def window(self, x: float, y: float, width: float, height: float) -> None:
-        """From here on only what lies in a rectangle is drawn of paths; a width of 0 ends that."""
-        self._clip = None
-        if width:
-            self._clip = f"{self.key}-window"
-            within = ET.SubElement(self._defs, "clipPath", {"id": self._clip})
-            ET.SubElement(within, "rect", {"x": _mm(x), "y": _mm(y), "width": _mm(width), "height": _mm(height)})
-
-    def fill(self, path: str, name: str, kind: str) -> None:
-        """A closed path in the fill of a part; `kind` is its class."""
-        ground, colour, angle, gap, stroke = FILLS[name]
-        id_ = f"{self.key}-{name}"
-        if self._defs.find(f"pattern[@id='{id_}']") is None:
-            pattern = ET.SubElement(self._defs, "pattern", {"id": id_, "width": _mm(gap), "height": _mm(gap), "patternUnits":
-                                "userSpaceOnUse", "patternTransform": f"rotate({angle:g})"})  # fmt: skip
-            ET.SubElement(pattern, "rect", {"width": _mm(gap), "height": _mm(gap), "fill": ground})
-            if stroke:
-                line = {"d": f"M0 {_mm(0.5 * gap)}h{_mm(stroke)}", "stroke": colour, "stroke-width": "0.25"}
-                ET.SubElement(pattern, "path", line)
-        self.path(path, "edge", fill=f"url(#{id_})", kind=kind)
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:
         element = ET.SubElement(self._lines, "path", {"d": path, **_PENS[pen]})
         element.attrib |= {"class": kind} if kind else {}
         element.attrib |= {"fill": fill} if fill else {}
-        element.attrib |= {"clip-path": f"url(#{self._clip})"} if self._clip else {}
 
     def lines(self, points: Iterable[Point], pen: str) -> None:
         """Straight lines from point to point."""
         self.path("M" + "L".join(at(point) for point in points), pen)
 
-    def circle(self, centre: Point, radius: float, pen: str, *, fill: str = "none") -> None:
+    def dot(self, centre: Point) -> None:
         ET.SubElement(
-            self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": _mm(radius), "fill": fill, **_PENS[pen]}
+            self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": "0.4", "fill": "#000", **_PENS["fine"]}
         )
 
     def text(self, x: float, y: float, words: str, *, size: float = FONT, anchor: str = "start", bold: bool = False,
@@ -194,18 +160,6 @@ class Note(NamedTuple):
         return LINE * len(self.lines) + 0.8
 
 
-class Span(NamedTuple):
-    """A length along the axis, between two heights, and its number."""
-
-    low: float
-    high: float
-    name: str
-
-    @property
-    def number(self) -> str:
-        return length(self.high - self.low)
-
-
 def across(radius: float, upper: float | None = None) -> str:
     words = f"Ø{length(2 * radius)}"
     return words if upper is None or upper == radius else f"{words} to Ø{length(2 * upper)}"
@@ -246,16 +200,11 @@ def notes_of(cutter: Cutter, line: Outline) -> list[Note]:
     return notes
 
 
-def spans_of(cutter: Cutter) -> list[Span]:
-    top, spans = flute_length(cutter), []
-    if stages(cutter):
-        spans.append(Span(0.0, top, "flutes"))
-    spans += [Span(low, low + stage.length, part) for part, low, stage in stages(cutter) if part != "holder"]
-    spans.append(Span(0.0, cutter.length, "stick-out" if cutter.holder else "length"))
-    if cutter.holder:
-        end = cutter.length + sum(stage.length for stage in cutter.holder.stages)
-        spans += [Span(cutter.length, end, "holder"), Span(0.0, end, "overall")]
-    return spans
+def heights_of(cutter: Cutter) -> dict[str, float]:
+    """Heights over the tip that have a dimension line, mm, the lowest first."""
+    if cutter.holder is None:
+        return {"length": cutter.length}
+    return {"stick-out": cutter.length, "overall": cutter.length + sum(stage.length for stage in cutter.holder.stages)}
 
 
 def facts_of(cutter: Cutter) -> list[str]:
@@ -267,23 +216,20 @@ def facts_of(cutter: Cutter) -> list[str]:
     return facts + clearance
 
 
-def description(cutter: Cutter, notes: list[Note], spans: list[Span], facts: list[str]) -> str:
+def description(cutter: Cutter, notes: list[Note], facts: list[str]) -> str:
     """All of it in words, for whoever sees no picture; nothing is left out here."""
-    form = "; ".join(f"{across(r)} at height {length(h)}" for r, h in cutter.outline)
     lines = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
-    return "; ".join([*lines, *(f"{span.name} {span.number}" for span in spans), *facts, *([form] if form else [])]) + "."
+    lines += [f"{name} {length(height)}" for name, height in heights_of(cutter).items()]
+    form = [f"{across(r)} at height {length(h)}" for r, h in cutter.outline]
+    return "; ".join([*lines, *facts, *form]) + "."
 
 
 #: A4 upright, its margin, and what stands around the view: room for arrows below the tip and for the axis above the end.
 _PAGE, _MARGIN, _BELOW, _ABOVE = (210.0, 297.0), 9.0, 15.0, 6.0
 #: Distance of dimension lines; of the view from what stands beside it; room for leaders; least width of a sheet.
 _COLUMN, _GAP, _LEADER, _LEAST = 6.5, 5.0, 9.0, 112.0
-#: The enlarged cutting end, room for words below it, and what is drawn smaller than this asks for it.
-_DETAIL, _LABELS, _SMALL = (44.0, 40.0), 6.0, 6.0
 #: Letters of the id, most lines of names and of ids.
 _FINE, _NAMES, _IDS = 2.2, 2, 3
-#: Parts whose lengths the notes tell as well.
-_NOTED = ("flutes", "neck", "shank")
 #: Directions closer to each other than this have no edge between them, rad.
 _SMOOTH = 1e-4
 
@@ -303,87 +249,39 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     """A tool assembly as an SVG drawing, an `svg` element without an XML declaration.
 
     It is drawn upright, its tip at the bottom, 1:1 where that fits an A4 sheet, else in the largest standard reduction that
-    does; the sheet states which, and is as large on paper as the SVG says. What is small of the cutting end is drawn again,
-    enlarged. `name` is the title; else the cutter's own name, or its id. `data-scale` is mm on paper a mm; paths of the class
-    `part` are the silhouettes of flutes, neck, shank and holder.
+    does; the sheet states which, and is as large on paper as the SVG says. `name` is the title; else the cutter's own name, or
+    its id. `data-scale` is mm on paper a mm; paths of the class `part` are the silhouettes of flutes, neck, shank and holder.
 
     >>> "no holder" in draw(Cutter.parse("R6L80"))
     True
     """
     line = outline(cutter)
     title = printable(name or cutter.name or cutter.id)
-    notes, spans = notes_of(cutter, line), spans_of(cutter)
-    facts = facts_of(cutter)
-    sheet = Sheet(title, description(cutter, notes, spans, facts))
+    notes, heights, facts = notes_of(cutter, line), heights_of(cutter), facts_of(cutter)
+    sheet = Sheet(title, description(cutter, notes, facts))
     widest = max(width_of(words) for note in notes for words in note.lines)
-    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + LINE + 8.0)
-    available = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER
-    scale = _scale(line, spans, available - widest, high)
-    if _zoom(cutter, line, scale):
-        widest = max(widest, _DETAIL[0] + 12.0)
-        scale = _scale(line, spans, available - widest, high)
-    zoom = _zoom(cutter, line, scale)
-    enlarged = _DETAIL[1] + 2 * LINE if zoom else 0.0
-    columns = _columns(spans, scale)
+    high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - (4.5 * _NAMES + 3.0 * _IDS + LINE * len(facts) + 8.0)
+    broad = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - widest - len(heights) * _COLUMN
+    scale = min(1.0, standard(min(broad / (2.0 * line.widest), high / line.height)))
     wide, tall = scale * line.widest, scale * line.height
-    right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
+    right = _MARGIN + len(heights) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
     width = max(_LEAST, right + widest + _MARGIN)
     # A sheet is no narrower than its title: the view stands in its middle.
     right = 0.5 * (width + right - widest - _MARGIN)
     top = _MARGIN + _ABOVE
-    bottom = top + max(tall + _BELOW, sum(note.height for note in notes) + enlarged)
+    bottom = top + max(tall + _BELOW, sum(note.height for note in notes))
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
-    _dimensions(sheet, columns, line, view)
+    _dimensions(sheet, heights, line, view)
     # The cutting diameter, below the tip.
     y, r = view.y + 9.0, view.scale * cutter.radius
     for side in (-r, r):
         sheet.lines(((view.x + side, view.y + 0.8), (view.x + side, y + 1.2)), "fine")
     sheet.between((view.x - r, y), (view.x + r, y))
     sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
-    _leaders(sheet, notes, view, wide, (right, top, bottom - enlarged))
-    if zoom:
-        _detail(sheet, cutter, line, view, zoom, (right, bottom - _DETAIL[1]))
-    end = _block(sheet, (title, cutter.id), facts, line.parts, scale, bottom + 3.0, width)
+    _leaders(sheet, notes, view, wide, (right, top, bottom))
+    end = _block(sheet, (title, cutter.id), facts, scale, bottom + 3.0, width)
     return sheet.finished(width, end, scale=f"{scale:.10g}")
-
-
-def _scale(line: Outline, spans: list[Span], wide: float, high: float) -> float:
-    """The largest standard scale, 1:1 at most, in which the view fits a width with its dimension lines, and a height."""
-    scale = min(1.0, standard(min(wide / (2.0 * line.widest), high / line.height)))
-    while 2.0 * scale * line.widest + len(_columns(spans, scale)) * _COLUMN > wide:
-        scale = standard(0.9 * scale)
-    return scale
-
-
-def _words(scale: float) -> str:
-    return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
-
-
-def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
-    """Spans and what is written on them in columns, from the view outwards: short ones first, and none over another's words.
-
-    A span of the cutter too short for its words has its number alone; one that is too short for that is left to the notes.
-    """
-    columns: list[list[tuple[Span, str]]] = []
-    taken: list[list[Point]] = []
-    for span in sorted(spans, key=lambda each: each.high - each.low):
-        column_width, words = scale * (span.high - span.low), f"{span.name} {span.number}"
-        if span.name in _NOTED and width_of(words) > column_width:
-            words = span.number
-            if max(width_of(words), 3.0 * ARROW) > column_width:
-                continue
-        middle, half = 0.5 * scale * (span.low + span.high), 0.5 * max(column_width, width_of(words) + 1.0)
-        mine = (middle - half, middle + half)
-        for column, others in zip(columns, taken, strict=True):
-            if all(mine[1] <= low + 1e-6 or mine[0] >= high - 1e-6 for low, high in others):
-                column.append((span, words))
-                others.append(mine)
-                break
-        else:
-            columns.append([(span, words)])
-            taken.append([mine])
-    return columns
 
 
 def _silhouette(segments: tuple[Segment, ...], view: _View) -> str:
@@ -403,7 +301,7 @@ def _side(segment: Segment, view: _View, to: Point, side: float = 1.0) -> str:
 
 def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
     for part in line.parts:
-        sheet.fill(_silhouette(line.of(part), view), part, f"part {part}")
+        sheet.path(_silhouette(line.of(part), view), "edge", fill=FILLS[part], kind=f"part {part}")
     for below, above in zip(line.segments[:-1], line.segments[1:], strict=True):
         # Circles along which the outline has an edge: seen from the side they are lines across.
         (a, b), (c, d) = below.direction(1.0), above.direction(0.0)
@@ -412,18 +310,17 @@ def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
     sheet.lines(((view.x, view.y + 4.0), (view.x, view.y - view.scale * line.height - 4.0)), "axis")
 
 
-def _dimensions(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
-    """Dimension lines along the axis, in columns left of the view, each from the largest radius at its height."""
+def _dimensions(sheet: Sheet, heights: dict[str, float], line: Outline, view: _View) -> None:
+    """Dimension lines from the tip up, left of the view, each from the largest radius at its height."""
     ends = [end for segment in line.segments for end in (segment.start, segment.end)]
-    for i, column in enumerate(columns):
+    for i, (name, height) in enumerate(heights.items()):
         x = view.x - view.scale * line.widest - _GAP - i * _COLUMN
-        for span, words in column:
-            low, high = view.y - view.scale * span.low, view.y - view.scale * span.high
-            for height, y in ((span.low, low), (span.high, high)):
-                radius = max((r for r, h in ends if abs(h - height) <= 1e-6), default=0.0)
-                sheet.lines(((view.x - view.scale * radius - 0.8, y), (x - 1.2, y)), "fine")
-            sheet.between((x, low), (x, high))
-            sheet.text(x - 1.0, 0.5 * (low + high), words, anchor="middle", upright=True)
+        high = view.y - view.scale * height
+        for at_height, y in ((0.0, view.y), (height, high)):
+            radius = max((r for r, h in ends if abs(h - at_height) <= 1e-6), default=0.0)
+            sheet.lines(((view.x - view.scale * radius - 0.8, y), (x - 1.2, y)), "fine")
+        sheet.between((x, view.y), (x, high))
+        sheet.text(x - 1.0, 0.5 * (view.y + high), f"{name} {length(height)}", anchor="middle", upright=True)
 
 
 def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins: tuple[float, float, float]) -> None:
@@ -442,52 +339,13 @@ def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins:
         point = view(note.at)
         elbow = (view.x + wide + 2.0, point[1])
         sheet.lines((point, elbow, (x - 3.0, y + 0.5 * size), (x - 1.0, y + 0.5 * size)), "fine")
-        sheet.circle(point, 0.4, "fine", fill="#000")
+        sheet.dot(point)
         for i, words in enumerate(note.lines):
             sheet.text(x, y + LINE * (i + 0.75), words)
 
 
-def _zoom(cutter: Cutter, line: Outline, scale: float) -> float:
-    """The scale of the enlarged cutting end; 0 where nothing of it is small."""
-    features = [s for s in line.of("flutes") if s.centre or cutter.shape == "form"]
-    if not features:
-        return 0.0
-    least = min(features, key=lambda s: s.length)
-    high = flute_length(cutter) if cutter.shape == "form" else least.end[1]
-    zoom = standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
-    return zoom if scale * min(2.0 * cutter.radius, least.length) < _SMALL and zoom > scale else 0.0
-
-
-def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: float, place: Point) -> None:
-    """The cutting end, enlarged, right of its axis."""
-    x, y = place
-    tall = _DETAIL[1] - _LABELS
-    near = _View(x, y + tall, zoom)
-    sheet.window(x - 0.2, y, _DETAIL[0] + 0.4, tall + 0.4)
-    for part in line.parts:
-        sheet.fill(_silhouette(line.of(part), near), part, f"detail {part}")
-    sheet.window(0, 0, 0, 0)
-    sheet.lines(((x, y - 1.0), (x, y + tall + 3.0)), "axis")
-    sheet.text(x, y - 2.5, f"A ({_words(zoom)})", bold=True)
-    seen = view((0.5 * cutter.radius, 0.5 * tall / zoom))
-    radius = max(2.2, math.dist(seen, (view.x, view.y)))
-    sheet.circle(seen, radius, "mark")
-    sheet.text(seen[0] + 0.75 * radius + 0.6, seen[1] + 0.75 * radius + 2.5, "A", bold=True)
-    for segment in line.of("flutes"):
-        # The highest of some points of an arc that can be seen.
-        points = [share for share in (0.5, 0.25, 0.1) if segment.at(share)[1] <= 0.9 * tall / zoom]
-        if segment.centre and points:
-            point, (a, b) = near(segment.at(points[0])), segment.direction(points[0])
-            end = (point[0] + 5.0 * b, point[1] + 5.0 * a)
-            sheet.lines((end, point), "fine")
-            sheet.arrow(point, end)
-            sheet.text(end[0] + 0.6, end[1] + 1.0, f"R{length(segment.radius)}")
-
-
-def _block(
-    sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[AnyPart, ...], scale: float, top: float, width: float
-) -> float:
-    """The title block: name, id, scale, what is true of the whole, and which fill is which part; returns where it ends."""
+def _block(sheet: Sheet, names: tuple[str, str], facts: list[str], scale: float, top: float, width: float) -> float:
+    """The title block: name, id, scale, and what is true of the whole; returns where it ends."""
     left, available = _MARGIN, width - 2 * _MARGIN
     title, id_ = names
     lines = wrapped(title, available, 3.6, _NAMES, bold=True)
@@ -501,19 +359,13 @@ def _block(
         sheet.text(left, y - 0.4, words, size=_FINE)
     sheet.lines(((4.0, top), (width - 4.0, top)), "frame")
     y += 1.0
-    scale_words = f"scale {_words(scale)}, in mm"
+    scale_words = f"scale 1:{1.0 / scale:g}, in mm"
     for i, words in enumerate(facts):
         y += LINE
         fact = wrapped(words, available - (width_of(scale_words) + 4.0 if i == 0 else 0.0), FONT, 1)
         sheet.text(left, y, "".join(fact))
         if i == 0:
             sheet.text(width - _MARGIN, y, scale_words, anchor="end", bold=True)
-    y += LINE + 2.0
-    x = left
-    for part in parts:
-        sheet.fill(f"M{at((x, y - 3.0))}h7v3.6h-7Z", part, "legend")
-        sheet.text(x + 8.5, y, part)
-        x += 8.5 + width_of(part) + 5.0
     y += 8.0
     sheet.path(f"M4 4H{width - 4.0:.4f}V{y - 4.0:.4f}H4Z", "frame")
     return y

@@ -1,5 +1,1 @@
 """The review page: one HTML file that says all of a plan in words, and shows it in 3D where there is JavaScript."""
-
-from plan_cutters.report.page.write import write_html
-
-__all__ = ["write_html"]

@@ -21,7 +21,6 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.words.cutters import ranked_spots
 from plan_cutters.report.protocol import Judged
-from plan_cutters.scene.surroundings import PlacedFixture
 
 
 def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:
@@ -163,18 +162,20 @@ def octahedral(normal: Floats, steps: int) -> NDArray[np.int16]:
     x, y, z = np.nan_to_num(normal).T
     size = np.abs(x) + np.abs(y) + np.abs(z)
     size = np.where(size > 0.0, size, 1.0)
-    x, y = x / size, y / size
-    folded_x, folded_y = (1 - np.abs(y)) * np.where(x < 0, -1, 1), (1 - np.abs(x)) * np.where(y < 0, -1, 1)
-    x, y = np.where(z < 0, folded_x, x), np.where(z < 0, folded_y, y)
-    return np.round(np.stack([x, y], axis=1) * steps).astype(np.int16)
+    return np.round(np.stack(_folded(x / size, y / size, z), axis=1) * steps).astype(np.int16)
+
+
+def _folded(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats]:
+    """Where z is negative the corners of the square are folded over its sides, which is its own way back."""
+    folded_x, folded_y = (1.0 - np.abs(y)) * np.where(x < 0, -1, 1), (1.0 - np.abs(x)) * np.where(y < 0, -1, 1)
+    return np.where(z < 0, folded_x, x), np.where(z < 0, folded_y, y)
 
 
 def unfolded(stored: NDArray[np.int16], steps: int) -> Floats:
     """Unit vectors (n, 3) of stored ones, in the very steps in which the page finds them: their frames must be the same."""
     x, y = stored[:, 0] / steps, stored[:, 1] / steps
     z = 1.0 - np.abs(x) - np.abs(y)
-    folded_x, folded_y = (1.0 - np.abs(y)) * np.where(x < 0, -1, 1), (1.0 - np.abs(x)) * np.where(y < 0, -1, 1)
-    x, y = np.where(z < 0, folded_x, x), np.where(z < 0, folded_y, y)
+    x, y = _folded(x, y, z)
     length = np.sqrt(x * x + y * y + z * z)
     return np.stack([x / length, y / length, z / length], axis=1)
 
@@ -227,12 +228,10 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Atlas:
-    """All sheets, by face number, side by side: `index` (height, width) is the row of the sample, -1 where no sheet lies;
-    `corner` the row and column at which a sheet begins.
-    """
+    """All sheets, by face number, side by side."""
 
-    index: Ints
-    corner: Mapping[int, tuple[int, int]]
+    index: Ints  #: (height, width): the row of the sample, -1 where no sheet lies.
+    corner: Mapping[int, tuple[int, int]]  #: Row and column at which a sheet begins.
     sheets: Mapping[int, Sheet]
 
 
@@ -257,8 +256,7 @@ def _even(line: Floats, finer: int) -> NDArray[np.intp]:
         return np.arange(count)
     cell = np.diff(np.concatenate([line[:1], 0.5 * (line[1:] + line[:-1]), line[-1:]]))[1:-1].min(initial=span)
     steps = min(int(np.ceil(span / cell)) + 1, finer * count, max(count, _LONGEST - 1))
-    at = np.linspace(line[0], line[-1], steps)
-    return np.searchsorted(0.5 * (line[1:] + line[:-1]), at)
+    return np.searchsorted(0.5 * (line[1:] + line[:-1]), np.linspace(line[0], line[-1], steps))
 
 
 def atlas_of(samples: SurfaceSamples) -> Atlas:
@@ -344,44 +342,25 @@ class Surface:
 
 def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface:
     """Put the meshes of faces and fixtures together."""
-    start = 0
-    meshes: list[Mesh] = []
-    places: list[NDArray[np.uint16]] = []
-
-    def add(mesh: Mesh, place: NDArray[np.uint16] | None = None) -> Range:
-        nonlocal start
-        meshes.append(mesh)
-        places.append(np.full((len(mesh.point), 2), NOWHERE, np.uint16) if place is None else place)
-        start += len(mesh.triangle)
-        return start - len(mesh.triangle), len(mesh.triangle)
-
-    faces = {
-        number: add(*placed_in(atlas, result.samples, number, mesh, render_mesh.periods[number]))
-        for number, mesh in sorted(render_mesh.meshes.items())
-    }
-    fixtures: dict[int, Range] = {}
-    for i, (fixture, _) in enumerate(fixtures_of(result)):
+    numbers = sorted(render_mesh.meshes)
+    placed = [placed_in(atlas, result.samples, n, render_mesh.meshes[n], render_mesh.periods[n]) for n in numbers]
+    meshes, places = [mesh for mesh, _ in placed], [place for _, place in placed]
+    for fixture, _ in fixtures_in(result.ready):
         # Flat facets.
         normal = np.cross(fixture.shown[:, 1] - fixture.shown[:, 0], fixture.shown[:, 2] - fixture.shown[:, 0])
         length = np.linalg.norm(normal, axis=1)
         flat, unit = fixture.shown[length > 0], normal[length > 0] / length[length > 0][:, None]
         count = 3 * len(flat)
         triangle = np.arange(count, dtype=np.uint32).reshape(-1, 3)
-        fixtures[i] = add(Mesh(flat.reshape(-1, 3), np.repeat(unit, 3, axis=0), triangle, np.zeros((count, 2))))
-    first = np.cumsum([0, *(len(m.point) for m in meshes)])[:-1]
+        meshes.append(Mesh(flat.reshape(-1, 3), np.repeat(unit, 3, axis=0), triangle, np.zeros((count, 2))))
+        places.append(np.full((count, 2), NOWHERE, np.uint16))
+    first, starts = (np.cumsum([0, *map(len, each)])[:-1] for each in ([m.point for m in meshes], [m.triangle for m in meshes]))
+    ranges = list(zip(starts.tolist(), [len(m.triangle) for m in meshes], strict=True))
     return Surface(
-        np.concatenate([m.point for m in meshes]),
-        np.concatenate([m.normal for m in meshes]),
-        np.concatenate([m.triangle + np.uint32(n) for m, n in zip(meshes, first, strict=True)]),
-        np.concatenate(places),
-        faces,
-        fixtures,
-    )
-
-
-def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
-    """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
-    return fixtures_in([each.surroundings for each in result.ready.setups])
+        np.concatenate([m.point for m in meshes]), np.concatenate([m.normal for m in meshes]),
+        np.concatenate([m.triangle + np.uint32(n) for m, n in zip(meshes, first, strict=True)]), np.concatenate(places),
+        dict(zip(numbers, ranges, strict=False)), dict(enumerate(ranges[len(numbers) :])),
+    )  # fmt: skip
 
 
 def box_of(surface: Surface, samples: Any) -> tuple[Floats, Floats]:
@@ -430,24 +409,18 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
 
 def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
-    tilt, tilt_direction = tilt_and_direction(result.samples, result.reaches[name])
-    arrays = {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
-    share = shares(result.reaches[name].tilt_direction)
-    if share is not None:
-        arrays[f"share.{name}"] = Stored.of(share)
-    if result.reaches[name].shift.any():
-        arrays[f"shift.{name}"] = Stored.of(halves(_shift(result, name, tilt)))
-    return arrays
-
-
-def _shift(result: Judged, name: str, tilt: NDArray[np.uint16]) -> Floats:
-    """Shifts (n, 3) of the postures as the page has them: at rounded tilts another end of a flank may be that which touches."""
-    samples, verdicts, cutter = result.samples, result.reaches[name], result.judged(name)
-    rounded = np.where(tilt == NO_TILT, np.nan, np.radians(0.01 * tilt))
-    stated = replace(verdicts, tilt=rounded, shift=np.zeros_like(verdicts.shift))
-    away = tips(cutter, samples.point, samples.normal, verdicts) - tips(cutter, samples.point, samples.normal, stated)
-    moved = np.asarray(verdicts.shift.any(axis=1))
-    return np.where(moved[:, None], away, 0.0)
+    samples, verdicts = result.samples, result.reaches[name]
+    tilt, tilt_direction = tilt_and_direction(samples, verdicts)
+    arrays: dict[str, NDArray[Any]] = {"tilt": tilt, "lean": tilt_direction}
+    if (share := shares(verdicts.tilt_direction)) is not None:
+        arrays["share"] = share
+    if verdicts.shift.any():
+        # As the page has the postures: at rounded tilts another end of a flank may be that which touches.
+        rounded = np.where(tilt == NO_TILT, np.nan, np.radians(0.01 * tilt))
+        stated = replace(verdicts, tilt=rounded, shift=np.zeros_like(verdicts.shift))
+        there, here = (tips(result.judged(name), samples.point, samples.normal, each) for each in (verdicts, stated))
+        arrays["shift"] = halves(np.where(verdicts.shift.any(axis=1, keepdims=True), there - here, 0.0))
+    return {f"{word}.{name}": Stored.of(array) for word, array in arrays.items()}
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
@@ -470,5 +443,5 @@ def _scalar(
 ) -> dict[str, Any]:
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if len(known) else (None, None)
-    return {"key": key, "label": label, "unit": unit, "low": low, "high": high,
-            "array": array or f"scalar.{key}", "column": column}  # fmt: skip
+    array = array or f"scalar.{key}"
+    return {"key": key, "label": label, "unit": unit, "low": low, "high": high, "array": array, "column": column}

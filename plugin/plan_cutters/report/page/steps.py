@@ -15,7 +15,6 @@ from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.plan_file.words.operations import operation_names
 from plan_cutters.plan_file.words.process import StepRow, process_story
 from plan_cutters.plan_file.words.text import Story
-from plan_cutters.report.page.arrays import Arrays, Stored
 from plan_cutters.report.protocol import Judged
 
 #: Patterns of steps, another one each time that the colours come round.
@@ -42,16 +41,10 @@ def step_of(result: Judged) -> NDArray[np.uint16]:
 def _finished(result: Judged, step: ProcessStep) -> NDArray[np.bool_]:
     """Samples (n,) that a step without an operation finishes: what its cutter reaches in its setup; of a drill its holes."""
     samples, ready = result.samples, result.ready
-    verdicts = result.here if step.setup == 0 else result.elsewhere[step.setup - 1][1]
+    verdicts = result.over_setups.each[step.setup][1]
     if step.cutter in verdicts:
         return np.asarray(verdicts[step.cutter].reached & ready.machinable[step.setup])
     return np.isin(samples.face, [int(face[1:]) for face in step.faces])
-
-
-def step_arrays(result: Judged, number: NDArray[np.uint16]) -> Arrays:
-    """The array `step`: the number of the step that finishes each sample, 0 where none does."""
-    few = number.max(initial=0) < 256
-    return {"step": Stored.of(number.astype(np.uint8 if few else np.uint16))}
 
 
 def colour(number: int) -> dict[str, str]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.document.build import counts, degrees
+from plan_cutters.document.build import counts, degrees, fixtures_in
 from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
@@ -16,18 +16,19 @@ from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
+from plan_cutters.plan_file.frozen import Posture
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.operations import OperationPlanEntry
 from plan_cutters.plan_file.reasons import MEANING, NO_CONTACT, PALETTE, REASONS, label
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
 from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
-from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names
+from plan_cutters.plan_file.words.names import as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
 from plan_cutters.plan_file.words.text import CHIPS, Story, before_approval, chip, story_of
-from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, fixtures_of, shares, turned_by
+from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, shares, turned_by
 from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
 from plan_cutters.report.protocol import Judged
 
@@ -55,20 +56,13 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
     operations, entry = result.answers.operations, result.plan.operations
     if operations is None or entry is None:
         return None
-    return {
-        "plans": [
-            {
-                "key": key(mine),
-                "name": each.name,
-                "array": f"operation.{key(mine)}",
-                "lean": f"operation_lean.{key(mine)}",
-                "operations": [
-                    _operation(result.plan, each, k, middle(result, mine.label == k)) for k in range(len(each.operations))
-                ],
-            }
-            for mine, each in zip(operations.plans, entry.plans, strict=True)
-        ]
-    }
+    plans = []
+    for mine, each in zip(operations.plans, entry.plans, strict=True):
+        made = [_operation(result.plan, each, k, middle(result, mine.label == k)) for k in range(len(each.operations))]
+        name = key(mine)
+        plans.append({"key": name, "name": each.name, "array": f"operation.{name}", "lean": f"operation_lean.{name}",
+                      "operations": made})  # fmt: skip
+    return {"plans": plans}
 
 
 def _operation(plan: Plan, of: OperationPlanEntry, number: int, row: int | None) -> dict[str, Any]:
@@ -89,28 +83,16 @@ def _in_order(plan: Plan, of: OperationPlanEntry, texts: list[OperationText]) ->
     return sorted(rows, key=lambda row: number.get(row[1].entry.id, (0,))) if of.name == plan.process.plan else rows
 
 
-class OperationTables(NamedTuple):
-    """These are what the template shows of the operations."""
-
-    lines: list[Line]
-    plans: list[tuple[OperationPlanEntry, str, list[tuple[int, OperationText]], bool]]
-
-
-def tables(plan: Plan, story: Story) -> OperationTables | None:
-    """Sentences and rows of tables; None where operations were not requested."""
-    operations = plan.operations
-    if operations is None:
+def tables(plan: Plan, story: Story) -> dict[str, Any] | None:
+    """Sentences, and of each plan its entry, its key, the rows of its table and whether it is timed; None without operations."""
+    if plan.operations is None:
         return None
     plans = [
-        (
-            each,
-            key(each),
-            _in_order(plan, each, [operation_text(plan, each, one) for one in each.operations]),
-            all(o.seconds is not None for o in each.operations),
-        )
-        for each in operations.plans
-    ]
-    return OperationTables(of_the_whole(story.operations, story.in_short), plans)
+        (each, key(each), _in_order(plan, each, [operation_text(plan, each, one) for one in each.operations]),
+         all(one.seconds is not None for one in each.operations))
+        for each in plan.operations.plans
+    ]  # fmt: skip
+    return {"lines": of_the_whole(story.operations, story.in_short), "plans": plans}
 
 
 FORMAT = 1
@@ -128,10 +110,7 @@ def meta_of(
         "format": FORMAT,
         "part": {**_of(plan.part, "file", "sha256", "size_mm"), "low": low.tolist(), "high": high.tolist()},
         "setup": {"z": effective.setup, "x": effective.placement and effective.placement.x},
-        "machine": plan.machine.name,
-        "tolerance_mm": effective.tolerance_mm,
-        "shown": result.shown,
-        "selected": plan.selected,
+        "machine": plan.machine.name, "tolerance_mm": effective.tolerance_mm, "shown": result.shown, "selected": plan.selected,
         "reasons": plan.reasons,
         "verdicts": {str(code): word for code, word in WORDS.items()},
         "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
@@ -141,18 +120,16 @@ def meta_of(
         "tilt_limit_deg": plan.machine.tilt_limit_deg,
         "rotary": plan.machine.rotary is not None,
         "axes": [axis.name for axis in result.conditions.machine.rotary or ()],
-        "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
-        "setups": []
-        if not result.elsewhere
-        else [
+        "kinematics": result.kinematics and _kinematics(result.kinematics),
+        "setups": [
             {"z": each.setup.tolist(), "kinematics": each.kinematics and _kinematics(each.kinematics)}
-            for each in result.ready.setups
+            for each in (result.ready.setups if result.served_in else ())
         ],
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
             {"name": fixture.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
-            for i, (fixture, setups) in enumerate(fixtures_of(result))
+            for i, (fixture, setups) in enumerate(fixtures_in(result.ready))
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
@@ -162,19 +139,19 @@ def meta_of(
             {
                 **_of(each, "cutter", "sample"),
                 **_of(each.witness, "face", "reason", "point", "obstacle_face", "obstacle_point", "depth_mm"),
-                **dict(zip(("tilt_deg", "lean_deg", "axis"), _posture(each.witness), strict=True)),
+                **_posture(each.witness.best_posture),
                 "text": sentence(each.witness),
             }
             for each in spots
         ],
         "operations": operations_of(result),
         "process": process_of(result, story_of(plan), number),
-    }
+    }  # fmt: skip
 
 
-def _posture(witness: WitnessEntry) -> tuple[Any, Any, Any]:
-    best = witness.best_posture
-    return (best.tilt, best.rotation, best.axis) if best else (None, None, None)
+def _posture(best: Posture | None) -> dict[str, Any]:
+    words = {"tilt_deg": "tilt", "lean_deg": "rotation", "axis": "axis"}
+    return {word: getattr(best, name, None) for word, name in words.items()}
 
 
 def _kinematics(axes: Kinematics) -> dict[str, Any]:
@@ -207,7 +184,7 @@ def _cutter(name: str, entry: CutterEntry, cutter: Cutter, data: dict[str, Any])
         "name": name,
         **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
         "modes": [
-            {**_of(mode, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high} for mode, (low, high) in ends
+            {**_of(m, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high} for m, (low, high) in ends
         ],
         "outline": parts,
         "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
@@ -242,7 +219,7 @@ _VERDICTS = {
 def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing, omitted: list[str]) -> dict[str, Any]:
     """Everything that the template shows; `more`: spots by cutter that are not listed; `omitted`: what the data has not."""
     plan, story = result.plan, story_of(result.plan)
-    shown = next(c for c in plan.cutters if c.id == story.shown)
+    shown = headline.shown_cutter(plan)
     rows = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     warnings = [text for text in plan.part.warnings if text not in repeated_warnings(plan)]
@@ -254,52 +231,33 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         bars[c.id] = [(word, round(at, 2), round(width, 2), plan.legend[word]) for word, at, width in row if width]
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
     return {
-        "w": numbers,
-        "plan": plan,
-        "story": story,
-        "header": _header(plan, story, shown),
-        "plain": as_fields,
-        "size": numbers.size(plan.part.size_mm),
-        "stands": story.process.stands,
+        "w": numbers, "plan": plan, "story": story, "plain": as_fields, "names": story.names,
+        "header": [*story.process.own, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))],
+        "size": numbers.size(plan.part.size_mm), "stands": story.process.stands,
         "check": as_fields(" ".join(before_approval(story))),
         **process_tables(plan, story),
-        "names": story.names,
-        "named": lambda text: named(plan, text),
-        "step_told": step_text,
-        "limit": answers.limit,
-        "narrowest": answers.narrowest,
-        "called": cutters.called,
-        "chip": chip(plan, story),
-        "chips": CHIPS,
-        "feasible": cutters.FEASIBLE,
-        "order": {True: 0, None: 1, False: 2},
+        "named": lambda text: named(plan, text), "step_told": step_text, "limit": answers.limit,
+        "narrowest": answers.narrowest, "called": cutters.called, "label": label,
+        "chip": chip(plan, story), "chips": CHIPS, "feasible": cutters.FEASIBLE, "order": {True: 0, None: 1, False: 2},
         "cutters": [(c, entry, bars[c.id]) for c, entry in sorted(rows, key=lambda each: each[1] is not shown)],
-        "label": label,
-        "failing": [c for c in first if c.failing][:_CUTTERS],
-        "verdicts": _VERDICTS,
+        "failing": [c for c in first if c.failing][:_CUTTERS], "verdicts": _VERDICTS,
         "reasons": [REASONS[word] for word in plan.reasons if word in reasons and word in REASONS],
         "spots": [
             (c, witnesses)
             for c in first
             if (witnesses := [(k, s.witness, cutters.spot(s.witness)) for k, s in enumerate(spots) if s.cutter == c.id])
         ],
-        "more": more,
-        "faces": faces[:_FACES],
-        "unlisted": len(faces[_FACES:]),
-        "warnings": warnings,
+        "more": more, "faces": faces[:_FACES], "unlisted": len(faces[_FACES:]), "warnings": warnings,
         "doubts": [line for each in story.doubts.values() for line in each],
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
-        "effective": _effective(plan),
-        "drawing": drawing,
-        "left": omitted,
-        "empty": headline.not_sampled(plan),
-        "operations": tables(plan, story),
+        "effective": [
+            (name.replace("_", " "), _value(name, value))
+            for name, value in plan.effective.model_dump(mode="json").items()
+            if value not in (None, [], {}, "")
+        ],
+        "drawing": drawing, "left": omitted, "empty": headline.not_sampled(plan), "operations": tables(plan, story),
         "stepped": lambda of, name: stepped(plan, of, name),
-    }
-
-
-def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
-    return [*story.process.own, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
+    }  # fmt: skip
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
@@ -322,20 +280,12 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
         area = face.area_mm2 if math.isfinite(face.area_mm2) else 0.0
         return not face.target, -area * share.not_reached if share else 0.0
 
-    return [
-        (face, reached(shown.faces[face.id], shares[face.id]), cutters.reason(cutters.main_reason(shares[face.id])))
-        if face.id in shares
-        else (face, "", "")
-        for face in sorted(plan.faces, key=rank)
-    ]
+    def row(face: FaceEntry) -> tuple[FaceEntry, str, str]:
+        if (share := shares.get(face.id)) is None:
+            return face, "", ""
+        return face, reached(shown.faces[face.id], share), cutters.reason(cutters.main_reason(share))
 
-
-def _effective(plan: Plan) -> list[tuple[str, str]]:
-    return [
-        (name.replace("_", " "), _value(name, value))
-        for name, value in plan.effective.model_dump(mode="json").items()
-        if value not in (None, [], {}, "")
-    ]
+    return [row(face) for face in sorted(plan.faces, key=rank)]
 
 
 def _value(name: str, value: Any) -> str:

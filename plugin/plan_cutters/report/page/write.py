@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
 
 from cad_io.write.render_mesh import render_mesh
@@ -10,8 +11,8 @@ from plan_cutters.domain.figures import reporting
 from plan_cutters.domain.verdicts import depths
 from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.report.page import arrays, tables
-from plan_cutters.report.page.arrays import Arrays, atlas_of, box_of, joined, spots_of, surface_of
-from plan_cutters.report.page.steps import step_arrays, step_of
+from plan_cutters.report.page.arrays import Arrays, Stored, atlas_of, box_of, joined, spots_of, surface_of
+from plan_cutters.report.page.steps import step_of
 from plan_cutters.report.page.tables import Drawing, meta_of, operation_arrays
 from plan_cutters.report.protocol import Judged
 
@@ -60,7 +61,7 @@ def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) 
         **arrays.posture_arrays(result, result.shown),
         **scalars,
         **operation_arrays(result),
-        **step_arrays(result, number),
+        "step": Stored.of(number.astype(np.uint8 if number.max(initial=0) < 256 else np.uint16)),
     }
     others = Arrays()
     for name in result.reaches:
@@ -88,13 +89,9 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
     script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("page.js", "page.css"))
     script = with_three(script)
     return _TEMPLATE.render(
-        policy=policy(script, style, "data: blob:"),
-        script=Markup(script),
-        style=Markup(style),
-        meta=Markup(embedded(meta)),
-        data=Markup(data),
-        **shown,
-    ).encode()
+        policy=policy(script, style, "data: blob:"), script=Markup(script), style=Markup(style), meta=Markup(embedded(meta)),
+        data=Markup(data), **shown,
+    ).encode()  # fmt: skip
 
 
 _TEMPLATE = template(_HERE / "page.html.jinja")
