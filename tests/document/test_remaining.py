@@ -15,6 +15,7 @@ from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.process import process_story, with_process_words
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, cone, cut, rod
+from tests.support.profiles import extruded
 
 HOW = {"area_budget": 0, "jobs": 2, "faces": "all", "setup": (0, 0, 1), "machine": "tilt:90", "drill_below": 0}
 GOUGES = ("local_gouge", "rear_gouge", "collision")
@@ -75,6 +76,15 @@ def test_sizes_grow_with_the_part():
     assert [fit.diameter_mm for fit in large.fits] == [12.0, 8.0]
     assert [fit.share for fit in small.fits] == pytest.approx([fit.share for fit in large.fits], abs=0.03)
     assert (radii, twice) == (pytest.approx([2.0, 3.0]), pytest.approx([4.0, 6.0]))
+
+
+def test_what_a_finer_cutter_leaves_for_another_cause_is_no_sharp_edge():
+    """A V-groove in the side of a block: from above no cutter sees it, and a fillet at its bottom would not help."""
+    corners = [(-20, 0), (20, 0), (20, 6), (11, 9), (11, 13), (20, 16), (20, 22), (-20, 22)]
+    flanks = "F3,F5"
+    result = plan(Part(extruded(corners)), cutters=["R8L60", "R3L60"], spacing=5, **HOW | {"machine": "3-axis", "faces": flanks})
+    assert (result.reaches["R8L60"].reason == REASONS.index("sharp_edge")).any()
+    assert "sharp_edge" not in {each.cause for each in result.plan.process.left}
 
 
 def test_a_tiny_face_changes_no_word_on_the_others():
