@@ -16,7 +16,7 @@ from plan_cutters.domain.stock import Stock
 from plan_cutters.pipeline import prepare
 from plan_cutters.setups.clamping import NothingToGripError, refuse_ungripped
 from plan_cutters_base import stage_cache
-from tests.support.cad_parts import box, compound, rod, write_step
+from tests.support.cad_parts import box, compound, real, rod, write_step
 
 HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
 WORDS = ("table", "vise", "chuck")
@@ -109,6 +109,14 @@ def test_a_plan_says_what_is_below_where_nothing_holds_the_part():
     assert (setup.held, setup.clamping, setup.grips) == (None, None, [])
     assert len(setup.stands_on) == 1
     assert setup.text == f"Setup 1: +Z up, nothing holds it yet; {setup.stands_on[0]} is below."
+
+
+def test_a_part_cut_aslant_stands_on_the_plane_of_the_cut():
+    """Beside it triangles of the curved wall lie a little lower, by their chord error."""
+    (file,) = real("axom_sliced_cylinder.step")
+    up = (0.15794873, -0.25364426, -0.95431483)
+    setup = plan(file, **HOW | {"faces": "F1", "fixtures": "table", "setup": up, "cutters": "R8L60"}).plan.process.setups[0]
+    assert setup.stands_on == ["F2"]
 
 
 def test_what_gripped_stock_first_grips_the_part_where_it_comes_later():

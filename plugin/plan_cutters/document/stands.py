@@ -26,7 +26,8 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
         every = (surroundings.alone or surroundings).certain.triangles
         triangles = every.take(every.face > 0) if (every.face <= 0).any() else every
         up = vector(conditions.setup)
-        part = Workpiece.of(triangles.vertex, triangles.face, ready.scene.orientation.sign, planes, (), up)
+        sign, chord = ready.scene.orientation.sign, triangles.chord_error
+        part = Workpiece.of(triangles.vertex, triangles.face, sign, planes, (), up, chord=chord)
         blank = next((each.fixture for each in surroundings.fixtures if each.fixture.kind == STOCK), None)
         gripping = next((each for each in surroundings.fixtures if each.fixture.clamping is not None), None)
         on: list[str] | Literal["stock"] | None = "stock"
