@@ -27,9 +27,7 @@ def proposed(shape, words=WORDS, stock=None, **options):
     ready = prepare(shape, Options(**{**HOW, **options}))
     ready = ready.__class__(**{**_fields(ready), "scene": ready.scene.for_targets(ready.chosen.targets)})
     ranking = ranked(ready, 3, words, stock)
-    chosen = ranking.choose(3)
-    ranking.settle(chosen)
-    return ranking, ranking.completed(chosen, 3)
+    return ranking, ranking.chosen_and_held(3)
 
 
 def _fields(record):
@@ -102,6 +100,20 @@ def test_the_first_setup_grips_the_stock_and_the_last_one_faces_the_bottom():
     assert len(last.grips) == 2
     assert np.allclose(ranking.candidates.axis[chosen[0]], -ranking.candidates.axis[chosen[1]])
     assert (ranking.served(chosen[0]) | ranking.served(chosen[1]))[ranking.free].all()
+
+
+def clevis():
+    body = cq.Workplane().box(40, 40, 70, centered=(True, True, False)).edges("|Y and >Z").fillet(19.9)
+    return body.cut(cq.Workplane().box(60, 16, 40, centered=(True, True, False)).translate((0, 0, 30))).val().wrapped
+
+
+@pytest.mark.parametrize("cutters", [["R8L60F35HR25L30"], ["R8L60F35HR25L30", "R5L45F25HR25L30", "R3L40rc3F18HR25L30"]])
+def test_no_setup_is_proposed_of_which_others_do_all(cutters):
+    """The first one too: what others hold is not there while the part is in its stock."""
+    ranking, chosen = proposed(clevis(), ("table", "vise"), Stock.of("box"), cutters=cutters, machine="4-axis-a")
+    table = np.stack([ranking.served(k) for k in chosen], axis=1)
+    assert (ranking.share(table & (table.sum(axis=1) == 1)[:, None]) >= 0.005).all()
+    assert [ranking.held[k].stock is not None for k in chosen] == [True, *[False] * (len(chosen) - 1)]
 
 
 def test_a_plan_says_what_is_below_where_nothing_holds_the_part():

@@ -387,10 +387,19 @@ class Ranking:
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def chosen_and_held(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
-        """As `choose`, held by what holds it best, with what this leaves for more setups."""
+        """As `choose`, held by what holds it best, with what this leaves for more setups; none of which others do all."""
         chosen = self.choose(most, without)
         self.settle(chosen)
-        return self.completed(chosen, most)
+        chosen = self.completed(chosen, most)
+        # Where those that came later leave an earlier one nothing to do, they begin with the stock.
+        while len(fewer := self._worth(chosen)) < len(chosen):
+            served = self._together(chosen)
+            self.settle(fewer)
+            if self._together(fewer) < served - _CLAMPED_FOR:
+                self.settle(chosen)
+                break
+            chosen = fewer
+        return chosen
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
