@@ -103,6 +103,18 @@ def test_above_a_chamfer_at_the_bottom_edge_jaws_touch_what_they_touch_without_i
     assert part.hidden == pytest.approx(2 * min(46.0, 60.0 - 2.0 * chamfer) * touched)
 
 
+def test_a_grip_that_is_stated_is_taken_for_a_thin_part_too():
+    assert hold_of(box(60.0, 40.0, 3.0), "vise:46x25x65:2.9").fixture.clamping.grip == 2.9
+
+
+@pytest.mark.parametrize("high", [0.8, 2.0, 3.0, 3.5, 4.0, 12.0])
+@pytest.mark.parametrize("word", ["vise", "chuck"])
+def test_a_thin_part_stands_above_the_jaws(word, high):
+    part = rod(20.0, high) if word == "chuck" else box(60.0, 40.0, high)
+    above = high - hold_of(part, word).fixture.clamping.grip
+    assert above == pytest.approx(max(high - 3.0, min(1.0, 0.5 * high)))
+
+
 def test_a_small_part_is_gripped_as_a_large_one():
     places, _ = vise_places(workpiece([(0, 0, 0), (0.5, 0.5, 0.8)]), requested("vise", "46x25x65:0.2", 1.0, "vise"))
     assert [each.touched for each in places] == pytest.approx([0.1, 0.1])

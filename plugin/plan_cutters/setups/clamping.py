@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cad_io.arrays import FaceInfo, Floats
-from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
+from plan_cutters.domain.clamping import GRIP, VISE, Clamping, Requested, Vise, chuck_for
 from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
@@ -56,6 +56,8 @@ class Hold:
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most, and
 #: of these on the same faces.
 _EVEN, _TRIED, _OF_ONE = 0.05, 12, 4
+#: So much of a part stands above the jaws, mm, or half of its height: a cutter that faces it does not run on them.
+_ABOVE = 1.0
 Overlaps = Callable[[Fixture, Clamping], bool]
 
 
@@ -68,6 +70,8 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
+    if requested.grip == GRIP:
+        requested = replace(requested, grip=min(GRIP, max(part.tall - _ABOVE, 0.5 * part.tall)))
     places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
