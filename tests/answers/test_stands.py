@@ -116,6 +116,23 @@ def test_no_setup_is_proposed_of_which_others_do_all(cutters):
     assert [ranking.held[k].stock is not None for k in chosen] == [True, *[False] * (len(chosen) - 1)]
 
 
+def angle():
+    plates = cq.Workplane("XZ").polyline([(0, 0), (100, 0), (100, 14), (14, 14), (14, 90), (0, 90)]).close().extrude(80)
+    rib = cq.Workplane("XZ", origin=(0, -34, 0)).polyline([(14, 14), (60, 14), (14, 60)]).close().extrude(12)
+    return plates.union(rib).val().wrapped
+
+
+def test_a_setup_holds_what_one_before_it_machines():
+    cutters = ["R8L60F35HR25L30", "R3L40rc3F18HR25L30"]
+    ranking, chosen = proposed(angle(), stock=Stock.of("box"), cutters=cutters, machine="3-axis")
+    assert len(chosen) == 3
+    face, served = ranking.ready.samples.face[ranking.rows], np.zeros(len(ranking.rows), bool)
+    for number, k in enumerate(chosen):
+        held = np.isin(face, ranking.held[k].faces) & (number > 0)
+        assert ranking.area[held & ~served].sum() <= 0.05 * ranking.area[held].sum()
+        served |= ranking.served(k)
+
+
 def test_a_plan_says_what_is_below_where_nothing_holds_the_part():
     setup = plan(cq.Workplane().box(30, 20, 10).val().wrapped, **HOW).plan.process.setups[0]
     assert (setup.held, setup.clamping, setup.grips) == (None, None, [])

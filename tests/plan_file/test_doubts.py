@@ -55,6 +55,20 @@ def test_an_unusual_size_doubts_the_unit_and_is_told_once():
     assert "outside 1 to 3000" not in html[: html.index("<main>")]
 
 
+def test_what_a_setup_holds_before_any_step_comes_to_it_is_named():
+    """A block in its stock: what the second setup grips is machined in the first one, or by none that come before it."""
+    how = {"setup": Z, "other_setups": [(0, 0, -1)], "fixtures": "vise", "stock": "box", "machine": "3-axis"}
+    found = plan(box(40, 30, 20), cutters=["D10L50F30"], operations="fastest", feed=1000, **FEW | how).plan
+    assert doubts(found) == []
+    second = found.process.setups[1]
+    held, steps = {*second.grips, *second.stands_on}, [each for each in found.process.steps if each.setup == 1]
+    # The same faces, all of them in the second setup.
+    steps[0] = steps[0].model_copy(update={"faces": [f"F{n}" for n in range(1, 7)]})
+    (line,) = doubts(found.model_copy(update={"process": found.process.model_copy(update={"steps": steps})}))
+    assert line.startswith("Setup 2 holds raw faces")
+    assert {face for face in held if face in line.replace(",", " ").replace(".", " ").split()} == held
+
+
 def test_a_sheet_beside_a_solid_is_named_with_the_option_that_leaves_it_out():
     part = compound(box(20, 20, 20), sheet())
     line = plan(part, cutters=["D6L60"], **FEW).plan.process.doubts[-1]

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -399,7 +400,19 @@ class Ranking:
                 self.settle(chosen)
                 break
             chosen = fewer
-        return chosen
+        # What a later setup grips and stands on is finished before, if any order of them does that.
+        return min(((*chosen[:1], *rest) for rest in permutations(chosen[1:])), key=self._raw)
+
+    def _raw(self, chosen: tuple[int, ...]) -> float:
+        """The area, in steps, that later setups hold while it is raw, and that another one serves."""
+        raw, served, any_of = 0.0, np.zeros(len(self.rows), bool), np.logical_or.reduce([self.served(k) for k in chosen])
+        for number, k in enumerate(chosen):
+            held = self.held[k]
+            assert held is not None, "what is chosen is held"
+            faces = () if number == 0 else (*held.faces, *self.candidates.stands_on[k])
+            raw += float(self.share((np.isin(self.ready.samples.face[self.rows], faces) & any_of & ~served)[:, None])[0])
+            served |= held.served
+        return round(raw / _EVEN)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.

@@ -258,7 +258,7 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    for doubt in (_unit, _travel, _held, _moving, _unheld, _side):
+    for doubt in (_unit, _travel, _raw, _held, _moving, _unheld, _side):
         lines += doubt(plan)
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
@@ -309,6 +309,21 @@ def _travel(plan: Plan) -> Iterator[str]:
     if entry is not None and entry.outside:
         by = " and ".join(f"{each.axis} by up to {mm(each.beyond_mm)}" for each in entry.worst)
         yield f"Beyond the travel of {name} at {entry.outside:,} of {count(entry.judged, 'posture')}: {by}."
+
+
+def _raw(plan: Plan) -> Iterator[str]:
+    """Faces that a setup grips or stands on before any step comes to them, where the part begins as stock."""
+    process = plan.process
+    if not process.setups or process.setups[0].stands_on != "stock":
+        return
+    done, every = set[str](), {face for step in process.steps for face in step.faces}
+    for setup in process.setups:
+        mine = [step for step in process.steps if step.setup == setup.number - 1]
+        on = [] if setup.stands_on in (None, "stock") else setup.stands_on
+        raw = [face for face in dict.fromkeys([*setup.grips, *on]) if face in every - done]
+        if raw and mine:
+            yield f"Setup {setup.number} holds raw faces: no step before it machines {listed(raw, _FACES)}."
+        done.update(face for step in mine for face in step.faces)
 
 
 def _held(plan: Plan) -> Iterator[str]:
