@@ -175,9 +175,9 @@ def test_points_and_no_size_in_words(plate):
 
     fits, point = gouged(plate)[0].fits, PointsEntry(faces=["F7", "F8", "F9"], share=0.9)
     nothing = [fits[0].model_copy(update={"share": 0.004})]
-    assert told(fits=nothing) == "no usual size fits"
+    assert told(fits=nothing) == "no usual size fits: an undercut cutter or another direction may"
     assert told(fits=nothing, points=point) == "no end fits a cone's point (F7, F8 and 1 more): left for a drill or by hand"
-    assert told(fits=[]) == "no usual size fits"
+    assert told(fits=[]) == "no usual size fits: an undercut cutter or another direction may"
     assert told(fits=None) == "a smaller radius or corner radius"
     assert told(fits=fits[:1], points=point.model_copy(update={"share": 0.01})).startswith("flat end D6 fits 6")
     # A file may say a step that its answer does not have.

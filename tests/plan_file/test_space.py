@@ -5,6 +5,7 @@ import re
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.words.process import with_process_words
 from plan_cutters.plan_file.words.text import process_lines, story_of, with_text
 from tests.support.cad_parts import box
 
@@ -29,3 +30,19 @@ def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
         assert any(line.startswith("Next: ") for line in lines)
         assert rows == 9 if most == 30 else rows < 9 or most > 13
         assert rows == 9 or any("smaller steps for " in line for line in lines)
+
+
+@pytest.mark.parametrize("sharp", [0.002, 0.008])
+def test_the_next_step_is_about_what_is_left_most_and_a_little_is_named_too(planned, sharp):
+    """Of what is left a part is at sharp edges: their advice comes first where they are the most of it."""
+    process = planned.process
+    entry = process.left[0]
+    left = [
+        entry.model_copy(update={"cause": cause, "share": share}) for cause, share in (("holder", 0.005), ("sharp_edge", sharp))
+    ]
+    left.sort(key=lambda each: -each.share)
+    process = process.model_copy(update={"left": left, "finished_share": 0.995 - sharp})
+    found = with_text(with_process_words(planned.model_copy(update={"process": process})))
+    assert (found.process.next[0].argv == ["--sharp-edges", "left"]) == (sharp > 0.005)
+    assert ["--sharp-edges", "left"] in [each.argv for each in found.process.next]
+    assert any(line.startswith("Left, 0.") for line in process_lines(found, story_of(found), most=14))

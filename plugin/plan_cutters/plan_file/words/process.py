@@ -5,11 +5,12 @@ import shlex
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.clamping import Vise
-from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
+from plan_cutters.domain.figures import INCH, area, count, duration, in_inches, listed, mm, percent, place, size
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.holes import DrillingStep
@@ -273,10 +274,11 @@ def roughing(process: ProcessEntry) -> str:
     if stock is None:
         return ""
     took = "" if stock.seconds is None else f", {duration(stock.seconds)}"
+    times, unit = (INCH**-3, "in³") if in_inches() else (0.001, "cm³")
     removed, whole = (
-        f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (0.001 * stock.remove_mm3, 0.001 * stock.volume_mm3)
+        f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (times * stock.remove_mm3, times * stock.volume_mm3)
     )
-    return f"Roughing: {removed} of {whole} cm³ of stock{took}."
+    return f"Roughing: {removed} of {whole} {unit} of stock{took}."
 
 
 def _besides(process: ProcessEntry) -> str:
@@ -334,14 +336,23 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
     """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
     if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
-    advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
-    sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
+    left, sharp = 1.0 - process.finished_share, sum(each.share for each in process.left if each.cause == "sharp_edge")
+    rounded = list[NextEntry]()
     if sharp >= WORTH and plan.effective.sharp_edges == "asked":
         # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
         words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
-        yield NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        rounded.append(NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None))
         if left - sharp < WORTH:
+            yield from rounded
             return
+    others = _found_entries(plan, process, left)
+    # What helps most of what is left comes first.
+    yield from chain(rounded, others) if process.left[0].cause == "sharp_edge" else chain(others, rounded)
+
+
+def _found_entries(plan: Plan, process: ProcessEntry, left: float) -> Iterator[NextEntry]:
+    """The next steps that the answers know of, or the answer to ask for; `left`: the share that the process leaves."""
+    advice = shown_cutter(plan).mend
     if advice is None:
         if "mend" not in plan.effective.answers:
             yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
