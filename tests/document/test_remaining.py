@@ -132,6 +132,21 @@ def test_next_and_left_tell_of_the_same_step(mended):
     assert 1.0 - process.finished_share - step.left_share >= 0.001
 
 
+@pytest.mark.parametrize("gain", [0.003, 0.008])
+def test_a_further_setup_is_advised_where_it_is_worth_its_clamping(mended, gain):
+    """As proposals leave out what serves less than 0.5 % of the area alone."""
+    found = mended.plan
+    shown = next(each for each in found.cutters if each.id == found.shown)
+    step, lost = shown.mend.steps[0], 1.0 - found.process.finished_share - gain
+    step = step.model_copy(update={"changes": [step.changes[0].model_copy(update={"thing": "second_setup"})], "lost_after": lost})
+    mend = shown.mend.model_copy(update={"steps": [step]})
+    cutters = [shown.model_copy(update={"mend": mend}) if each.id == shown.id else each for each in found.cutters]
+    left = [each.model_copy(update={"helped": []}) for each in found.process.left]
+    process = found.process.model_copy(update={"left": left})
+    again = with_process_words(found.model_copy(update={"cutters": cutters, "process": process}))
+    assert (step.why in [each.words for each in again.process.next]) == (gain > 0.005)
+
+
 def test_what_an_answer_refuted_is_not_proposed(mended):
     shown = next(each for each in mended.plan.cutters if each.mend is not None)
     mend = shown.mend

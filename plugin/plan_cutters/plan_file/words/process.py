@@ -44,7 +44,7 @@ WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
 _ROUNDING = 1e-6
 #: Changes that come beside what there is, and take nothing away.
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
-#: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn.
+#: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn, nor a setup its clamping.
 _LITTLE = 0.005
 #: Columns for the angles of a step that is repeated.
 _ANGLES = 34
@@ -369,7 +369,8 @@ def _found_entries(plan: Plan, process: ProcessEntry, left: float) -> Iterator[N
         # What changes less comes first where it does as much.
         fewer = [(things[j], after[j]) for j in after if things[j] < things[k]]
         alike = any(each <= things[k] and then - after[k] < WORTH for each, then in (*reported, *fewer))
-        if left - after[k] >= WORTH - _ROUNDING and not alike:
+        least = _LITTLE if "second_setup" in things[k] else WORTH
+        if left - after[k] >= least - _ROUNDING and not alike:
             reported.append((things[k], after[k]))
             option = advice.steps[k].option
             yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
