@@ -243,6 +243,8 @@ def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
+#: Cosine from which on a rotary axis turns about the spindle.
+_ALONG = 0.999
 #: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
 _LONG = 1000.0
 _WRONG = "is its unit wrong? `--unit` gives the right one."
@@ -258,7 +260,7 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    for doubt in (_unit, _travel, _raw, _held, _moving, _unheld, _side):
+    for doubt in (_unit, _travel, _raw, _held, _across, _moving, _unheld, _side):
         lines += doubt(plan)
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
@@ -324,6 +326,22 @@ def _raw(plan: Plan) -> Iterator[str]:
         if raw and mine:
             yield f"Setup {setup.number} holds raw faces: no step before it machines {listed(raw, _FACES)}."
         done.update(face for step in mine for face in step.faces)
+
+
+def _across(plan: Plan) -> Iterator[str]:
+    """Chucks, which are placed along the spindle, where the rotary axis next to the part turns them about another direction."""
+    process, rotary = plan.process, plan.machine.rotary
+    if not rotary or rotary[0].carries != "part" or not process.setups:
+        return
+    # The axis of the machine is given in the frame of the first setup.
+    along = abs(sum(one * other for one, other in zip(rotary[0].direction, process.setups[0].up, strict=True)))
+    turned = {step.setup for step in process.steps if step.mode == "simultaneous" or any((step.angles_deg or {}).values())}
+    numbers = [str(each.number) for each in process.setups if each.held == "chuck" and each.number - 1 in turned]
+    if numbers and along < _ALONG:
+        yield (
+            f"In setup{'s' if len(numbers) > 1 else ''} {listed(numbers)} the chuck stands along the spindle, on a plate that "
+            f"{rotary[0].name} turns: of one on {rotary[0].name} itself give the bodies (`--fixture FILE`)."
+        )
 
 
 def _held(plan: Plan) -> Iterator[str]:
