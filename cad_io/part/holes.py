@@ -408,9 +408,9 @@ class _Finder:
         return any(n not in rings and not self.hollow(n) for n in self.part.neighbours[floor.number - 1])
 
     def _closed(
-        self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int], beside: set[int]
+        self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int], neighbours: set[int]
     ) -> set[bool] | None:
-        """At which ends something closes a hole; None where something stands in it, or one of the faces `beside` it closes it."""
+        """At which ends something closes a hole; None where something stands in it, or one of these neighbours closes it."""
         longest = max(core, key=lambda ring: ring.high - ring.low)
         start, near = 0.5 * (longest.low + longest.high), max(self.near(radius), 2.0 * self.triangles.chord_error)
         span = min(ring.low for ring in core), max(ring.high for ring in core)
@@ -431,7 +431,7 @@ class _Finder:
                     return None
                 if int(face[first]) in own and ends[up] is not None:
                     shut.add(up)
-                elif beyond <= _DEEP * radius and int(face[first]) in beside:
+                elif beyond <= _DEEP * radius and int(face[first]) in neighbours:
                     return None
             return frozenset(shut)
 

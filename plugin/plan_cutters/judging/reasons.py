@@ -234,8 +234,8 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
                 continue
             open_rows = losses[rows] & (result[rows] < 0)
             mine, rows, at = rows, rows[open_rows], at[open_rows]
-            near, beyond = _NEAR * gaps.get(number, 0.0), np.setdiff1d(whole, mine)
-            served = _served(samples, reached, tree, edge, side, wide, near, beyond[verdicts.not_reached[beyond]])
+            close, beyond = _NEAR * gaps.get(number, 0.0), np.setdiff1d(whole, mine)
+            served = _served(samples, reached, tree, edge, side, wide, close, beyond[verdicts.not_reached[beyond]])
             result[rows[served[at]]] = place
     if cutter.shape == "end" and not cutter.taper and not cutter.corner_radius:
         near = {number: _NEAR * gaps.get(number, 0.0) for number in rows_of}
@@ -331,15 +331,15 @@ def _corner(
 
 def _served(
     samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float,
-    lost: NDArray[np.int64],
+    blocked: NDArray[np.int64],
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
-    ball touches both faces, and nearer than any sample of the face that it loses beyond the strip (`lost`).
+    ball touches both faces, and nearer than any sample of the face that it does not reach beyond the strip (`blocked`).
     """
     served, sharp = np.zeros(len(wide), bool), np.flatnonzero(edge.sharp)
     rise = 0.5 * edge.curvature[side, sharp] * wide[sharp] ** 2
     place = edge.point[sharp] + wide[sharp, None] * edge.inward[side, sharp] + rise[:, None] * edge.normal[side, sharp]
-    far = np.minimum(near, cKDTree(samples.point[lost]).query(place)[0]) if len(lost) else np.full(len(place), near)
+    far = np.minimum(near, cKDTree(samples.point[blocked]).query(place)[0]) if len(blocked) else np.full(len(place), near)
     for k, at, rows in zip(sharp.tolist(), place, tree.query_ball_point(place, far), strict=True):
         mine, normal = reached[rows], edge.normal[side, k]
         # Another wall that faces the same way, above an undercut, is not what the ball touches.

@@ -345,12 +345,12 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
         if left - sharp < WORTH:
             yield from rounded
             return
-    others = _found_entries(plan, process, left)
+    others = _answered_entries(plan, process, left)
     # What helps most of what is left comes first.
     yield from chain(rounded, others) if process.left[0].cause == "sharp_edge" else chain(others, rounded)
 
 
-def _found_entries(plan: Plan, process: ProcessEntry, left: float) -> Iterator[NextEntry]:
+def _answered_entries(plan: Plan, process: ProcessEntry, left: float) -> Iterator[NextEntry]:
     """The next steps that the answers know of, or the answer to ask for; `left`: the share that the process leaves."""
     advice = shown_cutter(plan).mend
     if advice is None:
