@@ -107,6 +107,18 @@ def test_a_grip_that_is_stated_is_taken_for_a_thin_part_too():
     assert hold_of(box(60.0, 40.0, 3.0), "vise:46x25x65:2.9").fixture.clamping.grip == 2.9
 
 
+@pytest.mark.parametrize("rim", [1.5, 3.0, 4.0, 9.0])
+def test_jaws_at_a_rim_do_not_reach_as_high_as_the_part(rim):
+    """A disk on a hub: where nothing of its rim would stand above the jaws, it is not gripped."""
+    part = BRepAlgoAPI_Fuse(rod(20.0, 2.0), rod(31.0, rim, (0, 0, 2.0))).Shape()
+    if rim < 4.0:
+        with pytest.raises(FixtureError, match="nothing to grip"):
+            hold_of(part, "chuck")
+        return
+    hold = hold_of(part, "chuck")
+    assert hold.fixture.shift[2] + hold.fixture.clamping.grip <= 2.0 + rim - 1.0 + 1e-3
+
+
 @pytest.mark.parametrize("high", [0.8, 2.0, 3.0, 3.5, 4.0, 12.0])
 @pytest.mark.parametrize("word", ["vise", "chuck"])
 def test_a_thin_part_stands_above_the_jaws(word, high):

@@ -70,9 +70,11 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
-    if requested.grip == GRIP:
-        requested = replace(requested, grip=min(GRIP, max(part.tall - _ABOVE, 0.5 * part.tall)))
+    most = max(part.tall - _ABOVE, 0.5 * part.tall) if requested.grip == GRIP else math.inf
+    requested = replace(requested, grip=min(requested.grip, most))
     places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
+    refused += [Refused(each.rank, "its jaws would reach as high as the part") for each in places if each.high > most + part.flat]
+    places = [each for each in places if each.high <= most + part.flat]
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
     places.sort(

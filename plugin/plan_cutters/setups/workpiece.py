@@ -184,6 +184,11 @@ class Place:
         return isinstance(self.clamping, Vise) and self.clamping.bored
 
     @property
+    def high(self) -> float:
+        """Height of the upper end of its jaws over the part's lowest point, mm."""
+        return self.above + self.clamping.grip
+
+    @property
     def rank(self) -> tuple[bool, float]:
         """Its place among all that could be gripped, the best ones first: those that begin at the bottom, the largest of them."""
         return self.above > 0.0, -self.size
