@@ -5,6 +5,7 @@ import re
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.operations import HelpEntry
 from plan_cutters.plan_file.words.process import with_process_words
 from plan_cutters.plan_file.words.text import process_lines, story_of, with_text
 from tests.support.cad_parts import box
@@ -34,12 +35,11 @@ def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
 
 @pytest.mark.parametrize("sharp", [0.002, 0.008])
 def test_the_next_step_is_about_what_is_left_most_and_a_little_is_named_too(planned, sharp):
-    """Of what is left a part is at sharp edges: their advice comes first where they are the most of it."""
+    """Of what is left a part is at sharp edges: their advice comes first but where more is left that a step helps."""
     process = planned.process
     entry = process.left[0]
-    left = [
-        entry.model_copy(update={"cause": cause, "share": share}) for cause, share in (("holder", 0.005), ("sharp_edge", sharp))
-    ]
+    more, causes = {"helped": [HelpEntry(step=0, share=1.0)]}, {"holder": 0.005, "sharp_edge": sharp}
+    left = [entry.model_copy(update={"cause": cause, "share": share} | more) for cause, share in causes.items()]
     left.sort(key=lambda each: -each.share)
     process = process.model_copy(update={"left": left, "finished_share": 0.995 - sharp})
     found = with_text(with_process_words(planned.model_copy(update={"process": process})))

@@ -46,6 +46,8 @@ _ROUNDING = 1e-6
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
 #: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn, nor a setup its clamping.
 _LITTLE = 0.005
+#: Share of what is left for a cause from which on a step helps against it.
+_HELPED = 0.5
 #: Columns for the angles of a step that is repeated.
 _ANGLES = 34
 #: An area that is left, and less than that and hardly a share, has no line of its own, mm2.
@@ -345,9 +347,10 @@ def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[Remaini
         if left - sharp < WORTH:
             yield from rounded
             return
-    others = _answered_entries(plan, process, left)
-    # What helps most of what is left comes first.
-    yield from chain(rounded, others) if process.left[0].cause == "sharp_edge" else chain(others, rounded)
+    others, most = _answered_entries(plan, process, left), process.left[0]
+    # It comes second where a step is known that helps most of what is left for another cause.
+    known = most.cause != "sharp_edge" and any(each.share >= _HELPED for each in most.helped)
+    yield from chain(others, rounded) if known else chain(rounded, others)
 
 
 def _answered_entries(plan: Plan, process: ProcessEntry, left: float) -> Iterator[NextEntry]:
