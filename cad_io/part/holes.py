@@ -3,13 +3,13 @@
 A hole is known by its narrowest cylinder. Faces next to it that are turned about its axis with air inside belong to it: its
 bottom (a plane, a cone, a sphere, or a torus that rounds the corner), countersinks, and counterbores with their floors. Faces of
 one cylinder count as one wall, whether they share edges, only touch, or are parted by another hole that crosses. Nothing stands
-in a hole: lines along its axis meet no face between its ends, and whatever ends it is a bottom that is known. So pockets with
-islands, slots, fillets, bosses, pipes with bends, and walls of closed cavities are none.
+in a hole: lines along its axis meet no face between its ends, and whatever ends it is a bottom that is known, or a hole that it
+crosses. So pockets with islands, slots, fillets, bosses, pipes with bends, and walls of closed cavities are none.
 """
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
@@ -136,6 +136,7 @@ class _Finder:
     orientation: Orientation
     triangles: Triangles
     ignored: frozenset[int] = frozenset()
+    _boxes: dict[bytes, tuple[Floats, Floats]] = field(default_factory=dict)
 
     @cached_property
     def size(self) -> float:
@@ -280,6 +281,17 @@ class _Finder:
             return False
         return not _parallel(np.array(info.carrier.direction), line.direction)
 
+    def _opens_into(self, number: int, line: _Line, radius: float) -> float | None:
+        """Height at which the axis of a hole passes that crosses this one and goes on to both sides; None of other faces."""
+        if not self._crosses(number, line):
+            return None
+        carrier: Any = self.info(number).carrier
+        other, cosine = _Line(np.array(carrier.point), np.array(carrier.direction)), float(line.direction @ carrier.direction)
+        middle = (other.heights(line.point) - cosine * ((line.point - other.point) @ line.direction)) / (1.0 - cosine * cosine)
+        heights, near = other.heights(self._known(number)) - middle, self.near(radius)
+        through = heights.min() <= near - radius and heights.max() >= radius - near
+        return float(line.heights(other.point + middle * other.direction)) if through else None
+
     def holes(self) -> list[Hole]:
         """All holes, those with the lowest face number first."""
         walls = self.walls()
@@ -343,12 +355,16 @@ class _Finder:
         if any(self._bends(n, radius, near) for ring in core for n in self.part.neighbours[ring.number - 1] if n not in rings):
             return None
         ends = {up: _bottom(each, radius, near, up) for up, each in beyond.items()}
-        closed = self._closed(line, radius, ends, core, {*rings})
+        neighbours = {m for ring in core for m in self.part.neighbours[ring.number - 1]} - {*rings}
+        crossed = {m: height for m in neighbours if (height := self._opens_into(m, line, radius)) is not None}
+        closed = self._closed(line, radius, ends, core, {*rings}, neighbours - {*crossed})
         # A bottom that a cavity breaks through ends the hole all the same.
         if closed is None or all(up in closed for up in ends):
             return None
         wide = {up: max((ring.wide for ring in beyond[up] if ring.wide > radius + near), default=0.0) for up in ends}
-        mouth = (False in closed) if closed else wide[True] >= wide[False] - near
+        # Into another hole nothing comes from there.
+        inside = {height > high for height in crossed.values() if not low + near < height < high - near}
+        mouth = False in (closed or inside) if closed or len(inside) == 1 else wide[True] >= wide[False] - near
         # From here on heights are those over the mouth, and negative.
         way, far = 1.0 if mouth else -1.0, beyond[not mouth]
         top = max(way * end for ring in (*core, *beyond[mouth]) for end in (ring.low, ring.high))
@@ -392,13 +408,12 @@ class _Finder:
         return any(n not in rings and not self.hollow(n) for n in self.part.neighbours[floor.number - 1])
 
     def _closed(
-        self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int]
+        self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int], neighbours: set[int]
     ) -> set[bool] | None:
-        """At which ends something closes a hole; None where something stands in it, or closes it that is no bottom."""
+        """At which ends something closes a hole; None where something stands in it, or one of these neighbours closes it."""
         longest = max(core, key=lambda ring: ring.high - ring.low)
         start, near = 0.5 * (longest.low + longest.high), max(self.near(radius), 2.0 * self.triangles.chord_error)
         span = min(ring.low for ring in core), max(ring.high for ring in core)
-        neighbours = {m for ring in core for m in self.part.neighbours[ring.number - 1]} - own
         rows, across, closed = self._within(line, radius), _across(line.direction), set[bool]()
 
         def ended(place: Floats) -> frozenset[bool] | None:
@@ -445,10 +460,6 @@ class _Finder:
             self._boxes[key] = flat.min(axis=1), flat.max(axis=1)
         return self._boxes[key]
 
-    @cached_property
-    def _boxes(self) -> dict[bytes, tuple[Floats, Floats]]:
-        return {}
-
     def _met(self, rows: NDArray[np.int64], place: Floats, direction: Floats) -> tuple[Floats, Any, Floats]:
         """Heights (k,) over a place at which a line meets some triangles, their faces (k,), and their sides (k,)."""
         vertex = self.triangles.vertex[rows] - place
@@ -471,8 +482,7 @@ class _Finder:
 
 def _parallel(one: Floats, other: Floats) -> bool:
     """Whether two unit directions are one, or opposite."""
-    cosine = float(one @ other)
-    return 1.0 - cosine * cosine <= _PARALLEL**2
+    return 1.0 - float(one @ other) ** 2 <= _PARALLEL**2
 
 
 def _across(direction: Floats) -> Floats:

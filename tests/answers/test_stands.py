@@ -16,7 +16,7 @@ from plan_cutters.domain.stock import Stock
 from plan_cutters.pipeline import prepare
 from plan_cutters.setups.clamping import NothingToGripError, refuse_ungripped
 from plan_cutters_base import stage_cache
-from tests.support.cad_parts import box, compound, rod, write_step
+from tests.support.cad_parts import box, compound, real, rod, write_step
 
 HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 5, "area_budget": 0, "machine": "trunnion-ac"}
 WORDS = ("table", "vise", "chuck")
@@ -61,13 +61,6 @@ def test_a_part_that_stands_is_turned_over_before_it_is_stood_on_a_side(machine)
     ranking, chosen = proposed(stepped(), stock=Stock.of("usual"), machine=machine, cutters="D16L60F32S16", grid=9)
     assert sorted(ranking.candidates.axis[k].tolist() for k in chosen) == [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]
     assert np.logical_or.reduce([ranking.served(k) for k in chosen]).all()
-
-
-def test_no_setup_is_kept_for_what_others_serve():
-    ranking, served, table = proposed(chamfered())[0], np.eye(4, dtype=bool), Fixture.each_of("table")[0]
-    for rows, left in (((0, 1), (0, 1)), ((0, 0), (0,)), ((0, 1, 0), (0, 1)), ((0, 0, 1), (0, 2))):
-        ranking.held = {k: Held(table, np.resize(served[row], len(ranking.rows))) for k, row in enumerate(rows)}
-        assert ranking._worth(tuple(range(len(rows))), staying=1) == left
 
 
 @pytest.mark.parametrize("shape", [bracket, spiked, chamfered])
@@ -122,11 +115,50 @@ def test_the_first_setup_grips_the_stock_and_the_last_one_faces_the_bottom():
     assert (ranking.served(chosen[0]) | ranking.served(chosen[1]))[ranking.free].all()
 
 
+def clevis():
+    body = cq.Workplane().box(40, 40, 70, centered=(True, True, False)).edges("|Y and >Z").fillet(19.9)
+    return body.cut(cq.Workplane().box(60, 16, 40, centered=(True, True, False)).translate((0, 0, 30))).val().wrapped
+
+
+@pytest.mark.parametrize("cutters", [["R8L60F35HR25L30"], ["R8L60F35HR25L30", "R5L45F25HR25L30", "R3L40rc3F18HR25L30"]])
+def test_no_setup_is_proposed_of_which_others_do_all(cutters):
+    """The first one too: what others hold is not there while the part is in its stock."""
+    ranking, chosen = proposed(clevis(), ("table", "vise"), Stock.of("box"), cutters=cutters, machine="4-axis-a")
+    table = np.stack([ranking.served(k) for k in chosen], axis=1)
+    assert (ranking.share(table & (table.sum(axis=1) == 1)[:, None]) >= 0.005).all()
+    assert [ranking.held[k].stock is not None for k in chosen] == [True, *[False] * (len(chosen) - 1)]
+
+
+def angle():
+    plates = cq.Workplane("XZ").polyline([(0, 0), (100, 0), (100, 14), (14, 14), (14, 90), (0, 90)]).close().extrude(80)
+    rib = cq.Workplane("XZ", origin=(0, -34, 0)).polyline([(14, 14), (60, 14), (14, 60)]).close().extrude(12)
+    return plates.union(rib).val().wrapped
+
+
+def test_a_setup_holds_what_one_before_it_machines():
+    cutters = ["R8L60F35HR25L30", "R3L40rc3F18HR25L30"]
+    ranking, chosen = proposed(angle(), stock=Stock.of("box"), cutters=cutters, machine="3-axis")
+    assert len(chosen) == 3
+    face, served = ranking.ready.samples.face[ranking.rows], np.zeros(len(ranking.rows), bool)
+    for number, k in enumerate(chosen):
+        held = np.isin(face, ranking.held[k].faces) & (number > 0)
+        assert ranking.area[held & ~served].sum() <= 0.05 * ranking.area[held].sum()
+        served |= ranking.served(k)
+
+
 def test_a_plan_says_what_is_below_where_nothing_holds_the_part():
     setup = plan(cq.Workplane().box(30, 20, 10).val().wrapped, **HOW).plan.process.setups[0]
     assert (setup.held, setup.clamping, setup.grips) == (None, None, [])
     assert len(setup.stands_on) == 1
     assert setup.text == f"Setup 1: +Z up, nothing holds it yet; {setup.stands_on[0]} is below."
+
+
+def test_a_part_cut_aslant_stands_on_the_plane_of_the_cut():
+    """Beside it triangles of the curved wall lie a little lower, by their chord error."""
+    (file,) = real("axom_sliced_cylinder.step")
+    up = (0.15794873, -0.25364426, -0.95431483)
+    setup = plan(file, **HOW | {"faces": "F1", "fixtures": "table", "setup": up, "cutters": "R8L60"}).plan.process.setups[0]
+    assert setup.stands_on == ["F2"]
 
 
 def test_what_gripped_stock_first_grips_the_part_where_it_comes_later():

@@ -15,6 +15,7 @@ from plan_cutters.plan_file.words.answers import first_tries
 from plan_cutters.plan_file.words.process import process_story, with_process_words
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, cone, cut, rod
+from tests.support.profiles import extruded
 
 HOW = {"area_budget": 0, "jobs": 2, "faces": "all", "setup": (0, 0, 1), "machine": "tilt:90", "drill_below": 0}
 GOUGES = ("local_gouge", "rear_gouge", "collision")
@@ -77,6 +78,15 @@ def test_sizes_grow_with_the_part():
     assert (radii, twice) == (pytest.approx([2.0, 3.0]), pytest.approx([4.0, 6.0]))
 
 
+def test_what_a_finer_cutter_leaves_for_another_cause_is_no_sharp_edge():
+    """A V-groove in the side of a block: from above no cutter sees it, and a fillet at its bottom would not help."""
+    corners = [(-20, 0), (20, 0), (20, 6), (11, 9), (11, 13), (20, 16), (20, 22), (-20, 22)]
+    flanks = "F3,F5"
+    result = plan(Part(extruded(corners)), cutters=["R8L60", "R3L60"], spacing=5, **HOW | {"machine": "3-axis", "faces": flanks})
+    assert (result.reaches["R8L60"].reason == REASONS.index("sharp_edge")).any()
+    assert "sharp_edge" not in {each.cause for each in result.plan.process.left}
+
+
 def test_a_tiny_face_changes_no_word_on_the_others():
     """A dimple of less than 1 mm2 in which no usual size fits."""
     (without, radii), (entry, others) = in_pockets(), in_pockets(1.0, ball(0.2, (24, 10, 10)))
@@ -122,6 +132,21 @@ def test_next_and_left_tell_of_the_same_step(mended):
     assert 1.0 - process.finished_share - step.left_share >= 0.001
 
 
+@pytest.mark.parametrize("gain", [0.003, 0.008])
+def test_a_further_setup_is_advised_where_it_is_worth_its_clamping(mended, gain):
+    """As proposals leave out what serves less than 0.5 % of the area alone."""
+    found = mended.plan
+    shown = next(each for each in found.cutters if each.id == found.shown)
+    step, lost = shown.mend.steps[0], 1.0 - found.process.finished_share - gain
+    step = step.model_copy(update={"changes": [step.changes[0].model_copy(update={"thing": "second_setup"})], "lost_after": lost})
+    mend = shown.mend.model_copy(update={"steps": [step]})
+    cutters = [shown.model_copy(update={"mend": mend}) if each.id == shown.id else each for each in found.cutters]
+    left = [each.model_copy(update={"helped": []}) for each in found.process.left]
+    process = found.process.model_copy(update={"left": left})
+    again = with_process_words(found.model_copy(update={"cutters": cutters, "process": process}))
+    assert (step.why in [each.words for each in again.process.next]) == (gain > 0.005)
+
+
 def test_what_an_answer_refuted_is_not_proposed(mended):
     shown = next(each for each in mended.plan.cutters if each.mend is not None)
     mend = shown.mend
@@ -165,9 +190,9 @@ def test_points_and_no_size_in_words(plate):
 
     fits, point = gouged(plate)[0].fits, PointsEntry(faces=["F7", "F8", "F9"], share=0.9)
     nothing = [fits[0].model_copy(update={"share": 0.004})]
-    assert told(fits=nothing) == "no usual size fits"
+    assert told(fits=nothing) == "no usual size fits: an undercut cutter or another direction may"
     assert told(fits=nothing, points=point) == "no end fits a cone's point (F7, F8 and 1 more): left for a drill or by hand"
-    assert told(fits=[]) == "no usual size fits"
+    assert told(fits=[]) == "no usual size fits: an undercut cutter or another direction may"
     assert told(fits=None) == "a smaller radius or corner radius"
     assert told(fits=fits[:1], points=point.model_copy(update={"share": 0.01})).startswith("flat end D6 fits 6")
     # A file may say a step that its answer does not have.

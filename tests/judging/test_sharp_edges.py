@@ -138,6 +138,18 @@ def test_a_dovetail_is_named_within_its_strips_alone():
     assert mine[floor].all()
 
 
+def test_walls_of_a_t_groove_are_not_lost_to_its_edges():
+    """The wall of the slot above faces as they do, and is reached: it is not where a fillet of the radius would end."""
+    shape = cut(cut(box(60, 40, 30), box(60, 10, 20, (0, 15, 10))), box(60, 18, 8, (0, 11, 10)))
+    result = planned(shape, "R8L60", "all", 3.0)
+    x, y, _ = result.samples.point.T
+    # At the ends of the groove a cutter beside the block reaches the border of its walls.
+    walls = (np.abs(np.abs(y - 20.0) - 9.0) < 1e-6) & (np.abs(result.samples.normal[:, 1]) > 0.9) & (np.abs(x - 30.0) < 12.0)
+    assert walls.any()
+    assert not result.reaches["R8L60"].reached[walls].any()
+    assert not named(result, "R8L60")[walls].any()
+
+
 def test_names_change_no_verdict():
     ready = prepare(Part(pocket()), Options(cutters=("R3L40rc3",), faces="7-11", spacing=1.0, **HOW))
     result = planned(pocket(), "R3L40rc3", "7-11", 1.0)

@@ -16,7 +16,7 @@ from plan_cutters.plan_file.words.names import as_fields
 from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.text import text_of
 from plan_cutters.report.page.write import page
-from tests.support.cad_parts import box, compound, patch
+from tests.support.cad_parts import box, compound, patch, rod
 
 FEW = {"faces": "all", "grid": 5, "area_budget": 0}
 X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
@@ -53,6 +53,35 @@ def test_an_unusual_size_doubts_the_unit_and_is_told_once():
     html = page(result).decode()
     assert as_fields(line) in html
     assert "outside 1 to 3000" not in html[: html.index("<main>")]
+
+
+@pytest.mark.parametrize("machine", ["4-axis-a", "trunnion-ac"])
+def test_a_chuck_across_the_axis_that_turns_it_is_named(machine):
+    """A disk with a pin: on a fourth axis nobody stands its chuck along the spindle; on a trunnion it stands on C."""
+    how = {"setup": Z, "fixtures": "chuck", "operations": "fastest"}
+    placed = plan(rod(20, 30), cutters=["D10L50rc5F30"], feed=1000, machine="trunnion-ac", **FEW | how).plan.process.setups[0]
+    how |= {"fixtures": placed.clamping, "machine": machine}
+    found = plan(rod(20, 30), cutters=["D10L50rc5F30"], feed=1000, **FEW | how).plan
+    process = found.process
+    steps = [each.model_copy(update={"angles_deg": {"A": 30.0}}) for each in process.steps]
+    turned = doubts(found.model_copy(update={"process": process.model_copy(update={"steps": steps})}))
+    upright = [each.model_copy(update={"angles_deg": {"A": 0.0}, "mode": "fixed"}) for each in process.steps]
+    assert any("the chuck stands along the spindle" in line for line in turned) == (machine == "4-axis-a")
+    assert doubts(found.model_copy(update={"process": process.model_copy(update={"steps": upright})})) == []
+
+
+def test_what_a_setup_holds_before_any_step_comes_to_it_is_named():
+    """A block in its stock: what the second setup grips is machined in the first one, or by none that come before it."""
+    how = {"setup": Z, "other_setups": [(0, 0, -1)], "fixtures": "vise", "stock": "box", "machine": "3-axis"}
+    found = plan(box(40, 30, 20), cutters=["D10L50F30"], operations="fastest", feed=1000, **FEW | how).plan
+    assert doubts(found) == []
+    second = found.process.setups[1]
+    held, steps = {*second.grips, *second.stands_on}, [each for each in found.process.steps if each.setup == 1]
+    # The same faces, all of them in the second setup.
+    steps[0] = steps[0].model_copy(update={"faces": [f"F{n}" for n in range(1, 7)]})
+    (line,) = doubts(found.model_copy(update={"process": found.process.model_copy(update={"steps": steps})}))
+    assert line.startswith("Setup 2 holds raw faces")
+    assert {face for face in held if face in line.replace(",", " ").replace(".", " ").split()} == held
 
 
 def test_a_sheet_beside_a_solid_is_named_with_the_option_that_leaves_it_out():

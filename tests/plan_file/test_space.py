@@ -5,6 +5,8 @@ import re
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.operations import HelpEntry
+from plan_cutters.plan_file.words.process import with_process_words
 from plan_cutters.plan_file.words.text import process_lines, story_of, with_text
 from tests.support.cad_parts import box
 
@@ -29,3 +31,18 @@ def test_steps_give_way_to_what_is_left_and_the_next_step(planned):
         assert any(line.startswith("Next: ") for line in lines)
         assert rows == 9 if most == 30 else rows < 9 or most > 13
         assert rows == 9 or any("smaller steps for " in line for line in lines)
+
+
+@pytest.mark.parametrize("sharp", [0.002, 0.008])
+def test_the_next_step_is_about_what_is_left_most_and_a_little_is_named_too(planned, sharp):
+    """Of what is left a part is at sharp edges: their advice comes first but where more is left that a step helps."""
+    process = planned.process
+    entry = process.left[0]
+    more, causes = {"helped": [HelpEntry(step=0, share=1.0)]}, {"holder": 0.005, "sharp_edge": sharp}
+    left = [entry.model_copy(update={"cause": cause, "share": share} | more) for cause, share in causes.items()]
+    left.sort(key=lambda each: -each.share)
+    process = process.model_copy(update={"left": left, "finished_share": 0.995 - sharp})
+    found = with_text(with_process_words(planned.model_copy(update={"process": process})))
+    assert (found.process.next[0].argv == ["--sharp-edges", "left"]) == (sharp > 0.005)
+    assert ["--sharp-edges", "left"] in [each.argv for each in found.process.next]
+    assert any(line.startswith("Left, 0.") for line in process_lines(found, story_of(found), most=14))

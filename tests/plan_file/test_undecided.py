@@ -50,6 +50,15 @@ def test_share_and_faces_are_the_plans(coarse):
     assert story_of(found).scope[:2] == (first, cause)
 
 
+def test_what_the_process_finishes_with_another_cutter_is_not_undecided():
+    face_entry, entry = face(1), cutter("R1L40", {"F1": verdicts(undecided=1.0)})
+    found = made([face_entry], [entry])
+    left = [each.model_copy(update={"faces": ["F2"]}) for each in found.process.left]
+    process = found.process.model_copy(update={"left": left})
+    assert said(found) != []
+    assert said(found.model_copy(update={"process": process})) == []
+
+
 def test_nothing_is_sought_that_no_change_decides(coarse, monkeypatch):
     calls = []
     monkeypatch.setattr(mending, "steps", lambda *given, **words: calls.append(given))

@@ -2,6 +2,7 @@
 
 import json
 import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -11,11 +12,19 @@ from plan_cutters.domain import figures as numbers
 from plan_cutters.domain.figures import Notation, in_inches, reported_in
 from plan_cutters.library import read_library
 from plan_cutters.plan_file.words.names import called
+from plan_cutters.plan_file.words.process import roughing
 from tests.support.cad_parts import pocketed
 
 HOW = {"faces": "all", "spacing": 6.0, "area_budget": 0, "machine": "tilt:40"}
 MM = re.compile(r"\d ?mm²?\b")
 INCHES = re.compile(r"\d in²?(?!\w)")
+
+
+def test_what_is_roughed_has_cubic_inches():
+    process = SimpleNamespace(stock=SimpleNamespace(seconds=None, remove_mm3=25.4**3, volume_mm3=2.0 * 25.4**3))
+    assert roughing(process) == "Roughing: 16.4 of 32.8 cm³ of stock."
+    with reported_in("in"):
+        assert roughing(process) == "Roughing: 1 of 2 in³ of stock."
 
 
 @pytest.mark.parametrize("length", [0.0123, 1.0, 25.4, 6.35, 812.8])

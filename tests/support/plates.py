@@ -109,6 +109,17 @@ def _into_another():
     return made, [(12.0, 40.0, True, "open", None, None), (3.0, 20.0 - (36.0 - 2.25) ** 0.5, True, "open", None, None)]
 
 
+def _manifold():
+    """A gallery D10 that goes on past ports of nearly its size from three sides, one with a counterbore."""
+    made = block(80, 40, 40).cut(cq.Workplane("YZ").circle(5).extrude(60).translate((-20, 0, -20)))
+    made = made.cut(cq.Workplane("XY").circle(4).extrude(-20)).cut(cq.Workplane("XY").circle(7).extrude(-6))
+    made = made.cut(cq.Workplane("XZ").circle(4.25).extrude(20).translate((12, 0, -20)))
+    made = made.cut(cq.Workplane("XZ").circle(3.4).extrude(-20).translate((25, 0, -20)))
+    ports = {4.0: (14.0, 6.0), 4.25: None, 3.4: None}
+    deep = {r: 20.0 - (25.0 - r * r) ** 0.5 for r in ports}
+    return made, [(10.0, 60.0, False, "flat", None, None), *((2 * r, deep[r], True, "open", None, ports[r]) for r in ports)]
+
+
 def _slanted():
     made = block()
     tool = cq.Workplane("XY").circle(2.5).extrude(60, both=True).rotate((0, 0, 0), (0, 1, 0), 30).translate((0, 0, -8))
@@ -217,12 +228,20 @@ PLATES = {
     "crossing": _crossing, "crossing_alike": _crossing_alike, "into_another": _into_another, "slanted": _slanted,
     "from_sides": _from_sides, "stacked": _stacked, "groove": _groove, "in_a_pocket": _in_a_pocket, "clevis": _clevis,
     "broken": _broken, "in_a_shaft": _in_a_shaft, "in_a_ball": _in_a_ball, "three_ways": _three_ways, "opposite": _opposite,
-    "bolted": _bolted, "halves_with_a_floor": _halves_with_a_floor, "broken_out": _broken_out,
+    "bolted": _bolted, "halves_with_a_floor": _halves_with_a_floor, "broken_out": _broken_out, "manifold": _manifold,
 }  # fmt: skip
 
 
 def _slot():
     return block().slot2D(20, 6).cutThruAll()
+
+
+def _mitre():
+    """A pipe whose two legs end in the plane between them: no drill ends so."""
+    leg = cq.Workplane("XY").circle(4).extrude(-60).translate((0, 0, 30))
+    leg = leg.intersect(cq.Workplane().box(200, 200, 100).translate((0, 0, 50)).rotate((0, 0, 0), (0, 1, 0), -45))
+    both = leg.union(leg.rotate((0, 0, 0), (1, 0, 1), 180))
+    return block(40, 40, 40).cut(both.translate((0, 0, -20)))
 
 
 def _pocket():
@@ -279,7 +298,7 @@ NONE = {
     "bowl": _bowl, "void": _void, "sphere": lambda: cq.Workplane("XY").sphere(10),
     "rod": lambda: cq.Workplane("XY").circle(5).extrude(30),
     "round_plate": lambda: cq.Workplane("XY").box(60, 40, 16).edges("|Z").fillet(6).faces(">Z").edges().fillet(1),
-    "pipe": lambda: _pipe(20.0), "tight_pipe": lambda: _pipe(12.0), "channel": _channel, "bow": _bow,
+    "pipe": lambda: _pipe(20.0), "tight_pipe": lambda: _pipe(12.0), "channel": _channel, "mitre": _mitre, "bow": _bow,
     "torus": lambda: cq.Workplane(obj=cq.Solid.makeTorus(20, 5)), "taper": lambda: block().cut(turned((3.0, -17.0), (4.0, 1.0))),
     "half_round": lambda: block().cut(cq.Workplane("XZ").circle(5).extrude(60, both=True)),
 }  # fmt: skip

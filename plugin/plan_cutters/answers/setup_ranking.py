@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -442,13 +443,33 @@ class Ranking:
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def chosen_and_held(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
-        """As `choose`, held by what holds it best, with what this leaves for more setups."""
+        """As `choose`, held by what holds it best, with what this leaves for more setups; none of which others do all."""
         chosen = self.choose(most, without)
         self.settle(chosen)
         if self._turned(chosen):
             chosen = chosen[:1]  # what it leaves is served where it is turned round
-        # What was added may serve what one before it was chosen for; the first one holds the stock, and stays.
-        return self._worth(self.completed(chosen, most), staying=1)
+        chosen = self.completed(chosen, most)
+        # Where those that came later leave an earlier one nothing to do, they begin with the stock.
+        while len(fewer := self._worth(chosen)) < len(chosen):
+            served = self._together(chosen)
+            self.settle(fewer)
+            if self._together(fewer) < served - _CLAMPED_FOR:
+                self.settle(chosen)
+                break
+            chosen = fewer
+        # What a later setup grips and stands on is finished before, if any order of them does that.
+        return min(((*chosen[:1], *rest) for rest in permutations(chosen[1:])), key=self._raw)
+
+    def _raw(self, chosen: tuple[int, ...]) -> float:
+        """The area, in steps, that later setups hold while it is raw, and that another one serves."""
+        raw, served, any_of = 0.0, np.zeros(len(self.rows), bool), np.logical_or.reduce([self.served(k) for k in chosen])
+        for number, k in enumerate(chosen):
+            held = self.held[k]
+            assert held is not None, "what is chosen is held"
+            faces = () if number == 0 else (*held.faces, *self.candidates.stands_on[k])
+            raw += float(self.share((np.isin(self.ready.samples.face[self.rows], faces) & any_of & ~served)[:, None])[0])
+            served |= held.served
+        return round(raw / _EVEN)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
@@ -477,15 +498,11 @@ class Ranking:
                     break
         return tuple(chosen)
 
-    def _worth(self, chosen: tuple[int, ...], staying: int = 0) -> tuple[int, ...]:
-        """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again.
-
-        So many of the first ones stay.
-        """
+    def _worth(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
+        """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again."""
         while len(chosen) > 1:
             table = np.stack([self.served(k) for k in chosen], axis=1)
             alone = self.share(table & (table.sum(axis=1) == 1)[:, None])
-            alone[:staying] = np.inf
             least = int(alone.argmin())
             if alone[least] >= _CLAMPED_FOR:
                 break

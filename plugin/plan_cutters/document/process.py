@@ -196,14 +196,24 @@ class Reasons(NamedTuple):
 def reasons(
     entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[schema.ProcessStep], done: NDArray[np.bool_]
 ) -> Reasons:
-    """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any."""
-    used = {each.cutter for each in steps}
-    finest_first = sorted(entries, key=lambda e: (e.id not in used, e.radius, e.corner_radius))
-    reason, by = np.full(len(done), NO_REASON, np.int32), np.full(len(done), -1, np.int32)
-    for k, entry in enumerate(finest_first):
-        verdicts = over.reaches[entry.id]
-        open_ = ~done & (reason == NO_REASON) & verdicts.not_reached
-        reason[open_], by[open_] = verdicts.reason[open_], k
+    """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any.
+
+    A sharp inside edge is no cause of what a finer cutter leaves for another one: it enters the edge farther.
+    """
+    used, finest_first = {each.cutter for each in steps}, sorted(entries, key=lambda e: (e.radius, e.corner_radius))
+
+    def first_of(some: Sequence[CutterEntry]) -> tuple[Ints, Ints]:
+        reason, by = np.full(len(done), NO_REASON, np.int32), np.full(len(done), -1, np.int32)
+        for entry in some:
+            verdicts = over.reaches[entry.id]
+            open_ = ~done & (reason == NO_REASON) & verdicts.not_reached
+            reason[open_], by[open_] = verdicts.reason[open_], finest_first.index(entry)
+        return reason, by
+
+    reason, by = first_of(sorted(finest_first, key=lambda e: e.id not in used))
+    finest, by_finest = first_of(finest_first)
+    finer = (reason == SHARP_EDGE) & ~np.isin(finest, (SHARP_EDGE, NO_REASON))
+    reason, by = np.where(finer, finest, reason), np.where(finer, by_finest, by)
     return Reasons(reason, by, [entry.id for entry in finest_first])
 
 

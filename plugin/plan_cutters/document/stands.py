@@ -28,7 +28,8 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
         blank = next((each.fixture for each in surroundings.fixtures if each.fixture.kind == STOCK), None)
         gripping = next((each for each in surroundings.fixtures if each.fixture.clamping is not None), None)
         along = up if gripping is None else gripping.fixture.stands_along(up)
-        part = Workpiece.of(triangles.vertex, triangles.face, ready.scene.orientation.sign, planes, (), along)
+        sign, chord = ready.scene.orientation.sign, triangles.chord_error
+        part = Workpiece.of(triangles.vertex, triangles.face, sign, planes, (), along, chord=chord)
         on: list[str] | Literal["stock"] | None = "stock"
         if blank is None:
             on = _named(part.face[part.level(0.0)].tolist()) if gripping is None else _rests_on(part, gripping.fixture, triangles)

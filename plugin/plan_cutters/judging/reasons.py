@@ -217,12 +217,14 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
             rows = rows_of.get(number)
             if rows is None or not losses[rows].any():
                 continue
-            rows, at = _within(samples, rows, edge, side, radius, wide)
+            whole = rows
+            rows, at = _within(samples, whole, edge, side, radius, wide)
             if not len(rows) or verdicts.reached[rows].mean() > _ENTERS:
                 continue
             open_rows = losses[rows] & (result[rows] < 0)
-            rows, at = rows[open_rows], at[open_rows]
-            served = _served(samples, reached, tree, edge, side, wide, _NEAR * gaps.get(number, 0.0))
+            mine, rows, at = rows, rows[open_rows], at[open_rows]
+            close, beyond = _NEAR * gaps.get(number, 0.0), np.setdiff1d(whole, mine)
+            served = _served(samples, reached, tree, edge, side, wide, close, beyond[verdicts.not_reached[beyond]])
             result[rows[served[at]]] = place
     if cutter.shape == "end" and not cutter.taper and not cutter.corner_radius:
         near = {number: _NEAR * gaps.get(number, 0.0) for number in rows_of}
@@ -317,14 +319,21 @@ def _corner(
 
 
 def _served(
-    samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float
-) -> NDArray[np.bool_]:
-    """Points (k,) of an edge about which the cutter reaches the surface where the ball touches both faces."""
+    samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float,
+    blocked: NDArray[np.int64],
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
+    ball touches both faces, and nearer than any sample of the face that it does not reach beyond the strip (`blocked`).
+    """
     served, sharp = np.zeros(len(wide), bool), np.flatnonzero(edge.sharp)
     rise = 0.5 * edge.curvature[side, sharp] * wide[sharp] ** 2
     place = edge.point[sharp] + wide[sharp, None] * edge.inward[side, sharp] + rise[:, None] * edge.normal[side, sharp]
-    for k, rows in zip(sharp.tolist(), tree.query_ball_point(place, near), strict=True):
-        served[k] = bool(rows) and bool((samples.normal[reached[rows]] @ edge.normal[side, k] > _FACING).any())
+    far = np.minimum(near, cKDTree(samples.point[blocked]).query(place)[0]) if len(blocked) else np.full(len(place), near)
+    for k, at, rows in zip(sharp.tolist(), place, tree.query_ball_point(place, far), strict=True):
+        mine, normal = reached[rows], edge.normal[side, k]
+        # Another wall that faces the same way, above an undercut, is not what the ball touches.
+        on = (samples.face[mine] == edge.faces[side]) | (np.abs((samples.point[mine] - at) @ normal) <= _LEVEL * wide[k])
+        served[k] = bool((on & (samples.normal[mine] @ normal > _FACING)).any())
     if not served.any():
         return served
     # Where edges meet, strips cross: there the place lies in the strip of another edge.

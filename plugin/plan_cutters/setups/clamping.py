@@ -50,8 +50,8 @@ class Hold:
 _EVEN, _TRIED, _OF_ONE = 0.05, 12, 4
 #: Of what of a bar is below the part jaws grip so much.
 _OF_A_BAR = 0.8
-#: How far jaws stay below the top of a thin part, if they can, mm.
-_FACED = 1.0
+#: So much of a part stands above the jaws, mm, or half of its height: a cutter that faces it does not run on them.
+_ABOVE = 1.0
 Overlaps = Callable[[Fixture, Clamping], bool]
 
 
@@ -66,10 +66,12 @@ def held(
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
-    if requested.sizes is None and requested.grip == GRIP:
-        # Jaws as high as a thin plate would be in the way of the tool that faces it.
-        requested = replace(requested, grip=deep or min(GRIP, max(0.5 * part.tall, part.tall - _FACED)))
+    usual = requested.sizes is None and requested.grip == GRIP
+    most = max(part.tall - _ABOVE, 0.5 * part.tall) if requested.grip == GRIP else math.inf
+    requested = replace(requested, grip=min(deep if usual and deep else requested.grip, most))
     places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
+    refused += [Refused(each.rank, "its jaws would reach as high as the part") for each in places if each.high > most + part.flat]
+    places = [each for each in places if each.high <= most + part.flat]
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones about the middle of the part, then on the larger faces.
     places.sort(

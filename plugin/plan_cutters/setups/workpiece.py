@@ -142,17 +142,18 @@ class Workpiece(Record):
         targets: Collection[int],
         setup: Sequence[float],
         bodies: Sequence[frozenset[int]] = (),
+        chord: float = 0.0,
     ) -> "Workpiece":
         """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
 
-        Without targets, all faces are.
+        Without targets, all faces are. `chord`: the error of the triangles, mm; the lowest point may be off by it.
         """  # fmt: skip
         frame = frame_of(np.asarray(setup, float))
         local = vertex @ frame.T
         lowest = float(local[..., 2].min())
         local[..., 2] -= lowest
         normal = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) * sign[face - 1][:, None]
-        flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6
+        flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6 + chord
         wanted = frozenset(targets) or frozenset(np.unique(face).tolist())
         return cls(frame, lowest, local, normal, face, frozenset(planes), wanted, flat, tuple(bodies))
 
@@ -250,6 +251,11 @@ class Place:
     def bored(self) -> bool:
         """Whether soft jaws are bored to a cylinder that lies in them."""
         return isinstance(self.clamping, Vise) and self.clamping.bored
+
+    @property
+    def high(self) -> float:
+        """Height of the upper end of its jaws over the part's lowest point, mm."""
+        return self.above + self.clamping.grip
 
     @property
     def rank(self) -> tuple[bool, float]:

@@ -71,6 +71,14 @@ def test_a_hole_knows_its_faces_its_axis_and_its_mouth():
     assert wide == {("cylinder", 4.0), ("cylinder", 8.0), ("plane", 8.0), ("cone", 10.0)}
 
 
+def test_a_hole_that_comes_out_in_another_one_has_its_mouth_outside():
+    made, _ = PLATES["manifold"]()
+    for hole in found(made.val().wrapped):
+        mouth, half = np.add(hole.place, (0.0, 0.0, 20.0)), (40.0, 20.0, 20.0)
+        assert np.abs(mouth / half).max() == pytest.approx(1.0)
+        assert mouth / half @ hole.axis == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize("name", ["both", "crossing", "corner", "points"])
 def test_surfaces_of_another_form_change_nothing(name):
     """Other systems write cylinders as splines."""

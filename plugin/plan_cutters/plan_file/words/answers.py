@@ -222,7 +222,9 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
     else:
         first, share = hint or "no change that was tried helps", 0.0
     points = _points(entry, share)
-    return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
+    return "; ".join(
+        filter(None, (first or ("" if points else "no usual size fits: an undercut cutter or another direction may"), points))
+    )
 
 
 def _fillets(plan: Plan, entry: RemainingEntry) -> str:

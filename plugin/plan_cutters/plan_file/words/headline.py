@@ -109,9 +109,9 @@ _FINER = 2.0
 
 
 def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
-    """Two sentences, how much and where, and why with what would decide it; none where no sample is undecided."""
-    entry = headline_cutter(plan)
-    if not entry.undecided:
+    """Two sentences, how much and where, and why with what would decide it; none where the process leaves none of these faces."""
+    entry, left = headline_cutter(plan), {face for each in plan.process.left for face in each.faces}
+    if not any(face.undecided and name in left for name, face in entry.faces.items()):
         return []
     share = part_of(entry, entry.area_share, ["undecided"])
     where = (

@@ -21,6 +21,7 @@ from plan_cutters.domain.figures import (
     ranges,
     size,
 )
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words.headline import shown_cutter
@@ -243,6 +244,8 @@ def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
+#: Cosine from which on a rotary axis turns about the spindle.
+_ALONG = 0.999
 #: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
 _LONG = 1000.0
 _WRONG = "is its unit wrong? `--unit` gives the right one."
@@ -258,7 +261,7 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    lines += [text for doubt in (_unit, _travel, _held, _moving, _unheld, _side) for text in doubt(plan)]
+    lines += [text for doubt in (_unit, _travel, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
         lines.append(
@@ -308,6 +311,39 @@ def _travel(plan: Plan) -> Iterator[str]:
     if entry is not None and entry.outside:
         by = " and ".join(f"{each.axis} by up to {mm(each.beyond_mm)}" for each in entry.worst)
         yield f"Beyond the travel of {name} at {entry.outside:,} of {count(entry.judged, 'posture')}: {by}."
+
+
+def _raw(plan: Plan) -> Iterator[str]:
+    """Faces that a setup grips or stands on before any step comes to them, where the part begins as stock."""
+    process = plan.process
+    if not process.setups or process.setups[0].stands_on != "stock":
+        return
+    done, every = set[str](), {face for step in process.steps for face in step.faces}
+    for setup in process.setups:
+        mine = [step for step in process.steps if step.setup == setup.number - 1]
+        on = [] if setup.stands_on in (None, "stock") else setup.stands_on
+        raw = [face for face in dict.fromkeys([*setup.grips, *on]) if face in every - done]
+        if raw and mine:
+            yield f"Setup {setup.number} holds raw faces: no step before it machines {listed(raw, _FACES)}."
+        done.update(face for step in mine for face in step.faces)
+
+
+def _across(plan: Plan) -> Iterator[str]:
+    """Chucks that stand along the spindle, where the rotary axis next to the part turns them about another direction."""
+    process, rotary = plan.process, plan.machine.rotary
+    if not rotary or rotary[0].carries != "part" or not process.setups:
+        return
+    # The axis of the machine is given in the frame of the first setup.
+    along = abs(sum(one * other for one, other in zip(rotary[0].direction, process.setups[0].up, strict=True)))
+    turned = {step.setup for step in process.steps if step.mode == "simultaneous" or any((step.angles_deg or {}).values())}
+    chucks = [(each, Fixture.parse(each.clamping)) for each in process.setups if each.held == "chuck" and each.clamping]
+    upright = [each for each, chuck in chucks if chuck.stands_along(each.up) is each.up]
+    numbers = [str(each.number) for each in upright if each.number - 1 in turned]
+    if numbers and along < _ALONG:
+        yield (
+            f"In setup{'s' if len(numbers) > 1 else ''} {listed(numbers)} the chuck stands along the spindle, on a plate that "
+            f"{rotary[0].name} turns: `--setup auto` lays a bar along {rotary[0].name}."
+        )
 
 
 def _held(plan: Plan) -> Iterator[str]:

@@ -5,11 +5,12 @@ import shlex
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.clamping import Vise
-from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place, size
+from plan_cutters.domain.figures import INCH, area, count, duration, in_inches, listed, mm, percent, place, size
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file import operations as schema
@@ -31,8 +32,10 @@ WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
 _ROUNDING = 1e-6
 #: Changes that come beside what there is, and take nothing away.
 _ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
-#: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn.
+#: Up to this share what is left comes after the next step, and an orientation is hardly worth its turn, nor a setup its clamping.
 _LITTLE = 0.005
+#: Share of what is left for a cause from which on a step helps against it.
+_HELPED = 0.5
 #: Columns for the angles of a step that is repeated.
 _ANGLES = 34
 #: An area that is left, and less than that and hardly a share, has no line of its own, mm2.
@@ -245,10 +248,11 @@ def roughing(process: schema.ProcessEntry) -> str:
     if stock is None:
         return ""
     took = "" if stock.seconds is None else f", {duration(stock.seconds)}"
+    times, unit = (INCH**-3, "in³") if in_inches() else (0.001, "cm³")
     removed, whole = (
-        f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (0.001 * stock.remove_mm3, 0.001 * stock.volume_mm3)
+        f"{each:,.0f}" if each >= 100.0 else f"{each:.3g}" for each in (times * stock.remove_mm3, times * stock.volume_mm3)
     )
-    return f"Roughing: {removed} of {whole} cm³ of stock{took}."
+    return f"Roughing: {removed} of {whole} {unit} of stock{took}."
 
 
 def _besides(process: schema.ProcessEntry) -> str:
@@ -301,14 +305,24 @@ def _next_entries(
     """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
     if all(each.cause == schema.UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
-    advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
-    sharp = sum(each.share for each in process.left if each.cause == "sharp_edge")
+    left, sharp = 1.0 - process.finished_share, sum(each.share for each in process.left if each.cause == "sharp_edge")
+    rounded = list[schema.NextEntry]()
     if sharp >= WORTH and plan.effective.sharp_edges == "asked":
         # It costs nothing, and no cutter makes a sharp inside edge. How much that leaves out is for the finest cutter to say.
         words = "leave sharp inside edges as the cutter rounds them, if the drawing lets you"
-        yield schema.NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None)
+        rounded.append(schema.NextEntry(words=words, argv=["--sharp-edges", "left"], left_share=None))
         if left - sharp < WORTH:
+            yield from rounded
             return
+    others, most = _answered_entries(plan, process, left), process.left[0]
+    # It comes second where a step is known that helps most of what is left for another cause.
+    known = most.cause != "sharp_edge" and any(each.share >= _HELPED for each in most.helped)
+    yield from chain(others, rounded) if known else chain(rounded, others)
+
+
+def _answered_entries(plan: Plan, process: schema.ProcessEntry, left: float) -> Iterator[schema.NextEntry]:
+    """The next steps that the answers know of, or the answer to ask for; `left`: the share that the process leaves."""
+    advice = shown_cutter(plan).mend
     if advice is None:
         if "mend" not in plan.effective.answers:
             yield schema.NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
@@ -325,7 +339,8 @@ def _next_entries(
         # What changes less comes first where it does as much.
         fewer = [(things[j], after[j]) for j in after if things[j] < things[k]]
         alike = any(each <= things[k] and then - after[k] < WORTH for each, then in (*reported, *fewer))
-        if left - after[k] >= WORTH - _ROUNDING and not alike:
+        least = _LITTLE if "second_setup" in things[k] else WORTH
+        if left - after[k] >= least - _ROUNDING and not alike:
             reported.append((things[k], after[k]))
             option = advice.steps[k].option
             yield schema.NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
