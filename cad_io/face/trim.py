@@ -104,6 +104,22 @@ class Trim(Record):
         result[np.ix_(order_u, order_v)] = self.inside_grid(u[order_u], v[order_v])
         return result.diagonal().copy()
 
+    def at(self, segment: Any, share: Floats) -> Floats:
+        """Parameters (k, 2) on segments (k,), at shares (k,) of them."""
+        start = self.segments[segment, 0]
+        return np.asarray(start + share[:, None] * (self.segments[segment, 1] - start))
+
+    def along(self, exact: int, chord: int, first: float) -> tuple[Any, Floats]:
+        """Places along the border: segments (k,), and shares (k,) of them.
+
+        exact, chord: into how many pieces to part a segment that is the border itself, and one that is a chord of it; a place in
+        each piece, behind its start by the share `first` of it.
+        """
+        pieces = np.where(self.exact, exact, chord)
+        segment = np.repeat(np.arange(len(pieces)), pieces)
+        nth = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        return segment, (nth + first) / pieces[segment]
+
     def _asked(self, u: Floats, v: Floats) -> Bools:
         classifier = BRepTopAdaptor_FClass2d(self.face, float(self.tolerance / self.scale.max()))
         states = [classifier.Perform(gp_Pnt2d(a, b)) for a, b in zip(u.tolist(), v.tolist(), strict=True)]
@@ -211,6 +227,15 @@ def joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
     joins = np.stack([end, start[following]], axis=1)
     gap = np.linalg.norm((end - start[following]) * scale, axis=1)
     return joins[gap > 0], float(gap.max())
+
+
+def nearest(segments: Floats, point: Floats) -> tuple[int, float, float]:
+    """The segment of (n, 2, 2) that is nearest to a point (2,): its number, the share of its length, the distance."""
+    start, step = segments[:, 0], segments[:, 1] - segments[:, 0]
+    share = np.clip(((point - start) * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), 1e-300), 0, 1)
+    away = np.linalg.norm(start + share[:, None] * step - point, axis=1)
+    k = int(away.argmin())
+    return k, float(share[k]), float(away[k])
 
 
 def continuing(start: Floats, end: Floats, scale: Floats) -> NDArray[np.intp]:

@@ -170,6 +170,16 @@ def domain(adaptor: BRepAdaptor_Surface) -> tuple[float, float, float, float]:
     return adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter()
 
 
+def kind_of(adaptor: Any) -> str:
+    """What the kernel calls a surface or a curve: `Plane`, `BSplineSurface`, `Line`."""
+    return str(adaptor.GetType().name).removeprefix("GeomAbs_")
+
+
+def periods(surface: Any) -> tuple[float, float]:
+    """Periods of a surface's parameters u and v, 0 where there is none."""
+    return surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0
+
+
 def interval_ends(count: int, intervals: Any, continuity: Any) -> Floats:
     """Ends (count + 1,) of the intervals in which a curve or surface is that smooth, by its own `...Intervals`."""
     ends = TColStd_Array1OfReal(1, count + 1)

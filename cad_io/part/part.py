@@ -14,7 +14,6 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
-from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_OtherSurface, GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
@@ -26,7 +25,7 @@ from cad_io.errors import ReadError
 from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.trim import Trim, trim_of
-from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, kind_of, may_refuse, shape_map, translated
 from cad_io.kernel.shapes import ENDLESS, Node, PartContent, endless, packed, unpacked
 from cad_io.part.edges import blends
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
@@ -45,14 +44,14 @@ CROSSES = "crosses itself (its curve of revolution crosses its axis)"
 UNMEASURED = (ROUND_TWICE, WRONG_WAY, CROSSES)
 #: A border that encloses more than its box does by more than this share runs round it more than once.
 _ROUNDED = 1e-3
-_TURNED = (GeomAbs_SurfaceOfRevolution, GeomAbs_Torus, GeomAbs_Cone)
+_TURNED = ("SurfaceOfRevolution", "Torus", "Cone")
 #: Points along the curve, halvings of the interval in which it meets the axis, and the share of the face's size that is none.
 _POINTS, _HALVINGS, _NONE = 129, 50, 1e-6
 
 
 def why_unjudged(face: TopoDS_Face, surface: Surface, trim: Trim | None, measured: Measure | None, least: float) -> str | None:
     """Why a face cannot be judged; None if it can. Without a trim it has no border; areas up to `least`, mm2, are none."""
-    if surface.adaptor.GetType() == GeomAbs_OtherSurface:
+    if kind_of(surface.adaptor) == "OtherSurface":
         if BRep_Tool.Triangulation_s(face, TopLoc_Location()) is not None:
             return "holds only triangles, no surface: export exact geometry (B-rep)"
         return "has no surface that can be evaluated"
@@ -78,7 +77,7 @@ def crosses_axis(surface: Surface, trim: Trim) -> bool:
     `dS/du` is as long as the distance from the axis, square to the half plane of the curve, and changes its sign with the side of
     the axis. A curve that ends on the axis, or passes it at a distance, does not cross it.
     """
-    if surface.adaptor.GetType() not in _TURNED:
+    if kind_of(surface.adaptor) not in _TURNED:
         return False
     u0, u1, low, high = trim.box
 
@@ -91,8 +90,7 @@ def crosses_axis(surface: Surface, trim: Trim) -> bool:
         return False
     away = np.linalg.norm(along, axis=1)
     none = _NONE * max(float(away.max()), float(trim.scale[1] * (high - low)))
-    side = along @ along[int(away.argmax())]
-    side = np.sign(side) * (away > none)
+    side = np.sign(along @ along[int(away.argmax())]) * (away > none)
     known = np.flatnonzero(side)
     return any(side[a] != side[b] and _least(across, along[a], v[a], v[b]) <= none for a, b in pairwise(known.tolist()))
 
@@ -334,7 +332,7 @@ class Part:
             far = range(2, count + 1, 2) if jobs > 1 and count >= _MANY_FACES else range(0)
             _ = self.size  # which all of them ask
             with SideProcess(partial(self._described, far), _MEASURING, worth=bool(far)) as side:
-                infos = {number: self._describe_at(number, at) for number in range(1, count + 1) if number not in far}
+                infos = {number: self._describe(number, at) for number in range(1, count + 1) if number not in far}
                 if far:
                     described, measures, trims = side.result(partial(self._described, far, at))
                     infos |= described
@@ -343,15 +341,11 @@ class Part:
             self._infos = tuple(infos[number] for number in range(1, count + 1))
         return self._infos
 
-    def _describe_at(self, number: int, at: Callable[[int], None]) -> FaceInfo:
-        at(number)
-        return self._describe(number)
-
     def _described(
         self, numbers: Sequence[int], at: Callable[[int], None] = lambda face: None
     ) -> tuple[dict[int, FaceInfo], dict[int, Measure | None], dict[int, Trim | None]]:
         """What measuring tells of some faces, without anything of the kernel's."""
-        infos = {number: self._describe_at(number, at) for number in numbers}
+        infos = {number: self._describe(number, at) for number in numbers}
         mine = {number: each for number, each in self._measures.items() if number in infos}
         return infos, mine, {number: trim for number, trim in self._without_faces().items() if number in infos}
 
@@ -382,8 +376,7 @@ class Part:
 
     @cached_property
     def size(self) -> tuple[float, float, float]:
-        low, high = self._box
-        return tuple((high - low).tolist())
+        return tuple(np.subtract(*self._box[::-1]).tolist())
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -445,8 +438,7 @@ class Part:
     @cached_property
     def middle(self) -> Floats:
         """Middle (3,) of the part's box, mm."""
-        low, high = self._box
-        return 0.5 * (low + high)
+        return 0.5 * np.add(*self._box)
 
     @cached_property
     def looseness(self) -> float:
@@ -506,14 +498,14 @@ class Part:
             raise IndexError(f"face numbers run from 1 to {len(self._faces)}, not {number}")
         return number
 
-    def _describe(self, number: int) -> FaceInfo:
+    def _describe(self, number: int, at: Callable[[int], None]) -> FaceInfo:
+        at(number)
         surface, shape, area, reason, carrier = "other", "sculptured", 0.0, self.aside.get(number), None
         name, colour = self._names.get(number, ""), self._colours.get(number)
         if reason is not None:
             return FaceInfo(number, name, surface, shape, area, colour, reason)
         try:
-            kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
-            surface = _KINDS.get(kind, "other")
+            surface = _KINDS.get(kind_of(self.adaptor(number)), "other")
             shape = surface if surface in SIMPLE_KINDS else "sculptured"
             reason, area = self._judgeable(number)
             trim = self.trim(number)
@@ -533,7 +525,7 @@ class Part:
 
     def _judgeable(self, number: int) -> tuple[str | None, float]:
         """Why the face cannot be judged (None if it can), and its area, mm2: 0 where that is not to be believed."""
-        readable = bool(edges_of(self.face(number))) and self.surface(number).adaptor.GetType() != GeomAbs_OtherSurface
+        readable = bool(edges_of(self.face(number))) and kind_of(self.adaptor(number)) != "OtherSurface"
         trim, measured = (self.trim(number), self.measure(number)) if readable else (None, None)
         least = _LEAST_AREA * float(np.dot(self.size, self.size))
         reason = why_unjudged(self.face(number), self.surface(number), trim, measured, least)

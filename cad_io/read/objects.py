@@ -15,12 +15,13 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 from OCP.Quantity import Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, shape_map, translated
 from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
+from cad_io.kernel.shapes import children as children_of
 from cad_io.part import Part
 from cad_io.read.document import FaceMarks
 
@@ -188,10 +189,7 @@ def _item(source: Any, held: Held, shape: TopoDS_Shape | None = None) -> Item:
     children = getattr(source, "children", ())
     inner: tuple[Item, ...] = ()
     if children and isinstance(children, tuple | list):
-        stand, each = list[TopoDS_Shape](), TopoDS_Iterator(shape, True, False)
-        while each.More():  # sub-shapes one level down, located as in the shape without its own location
-            stand.append(each.Value())
-            each.Next()
+        stand = children_of(shape, located=False)
         if [_face_count(s) for s in stand] == [_face_count(_wrapped(child)) for child in children]:
             pairs = list(zip(children, stand, strict=True))
             moved = [c for c, s in pairs if not same_place(_wrapped(c).Location(), s.Location())]

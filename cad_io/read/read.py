@@ -42,27 +42,18 @@ def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -
     """Result of `find()`, which may crash or hang, in a forked copy of this process; where the system cannot fork (Windows),
     here.
 
-    Raises ReadError of what `find` raised, or where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
+    Raises what `find` raised, or ReadError where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
     file.
     """
 
-    def answered() -> dict[str, Any]:
-        try:
-            return packed(find())
-        except CadIoError as error:
-            return {"error": (error.cause, error.file, error.face)}
-
     try:
-        answer = limited(answered, timeout)
+        answer = limited(lambda: packed(find()), timeout, passing=(CadIoError,))
     except TimeLimit:
         raise ReadError(
             f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
         ) from None
     except ChildDied as died:
         raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
-    if "error" in answer:
-        cause, where, face = answer["error"]
-        raise ReadError(cause, file=where, face=face)
     with translated("taking over what it made of the file", error=ReadError, file=file):
         return unpacked(answer)
 
@@ -141,25 +132,19 @@ def _miss(referred: Referred, name: str, why: str) -> None:
 def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:
     """How many faces a file itself has, what is missing there, and whether it is risky; in a copy of the process."""
 
-    def look() -> str | tuple[int, list[tuple[str, str, str]], bool]:
-        try:
-            with translated("reading the file", error=ReadError, file=file):
-                loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
-                read = loaded.transfer()
-                count = step.distinct_faces(read.shape) - foreign
-                return count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky
-        except ReadError as error:
-            return error.cause
+    def look() -> tuple[int, list[tuple[str, str, str]], bool]:
+        with translated("reading the file", error=ReadError, file=file):
+            loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
+            read = loaded.transfer()
+            count = step.distinct_faces(read.shape) - foreign
+            return count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky
 
     try:
-        answer = limited(look, timeout)
+        return limited(look, timeout, passing=(ReadError,))
     except TimeLimit:
         raise ReadError(f"is not read within {timeout:g} s", file=file) from None
     except ChildDied as died:
         raise ReadError(f"cannot be read by the CAD kernel ({died})", file=file) from None
-    if isinstance(answer, str):
-        raise ReadError(answer, file=file)
-    return answer
 
 
 Loaded = step.Loaded | iges.Loaded

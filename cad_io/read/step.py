@@ -114,7 +114,8 @@ class Loaded:
         self.faults = self.model.faults()
         if any(fault.text.startswith("DATA NOT AVAILABLE") for fault in self.faults):
             raise ReadError("is not valid STEP (syntax): export it again", file=file)
-        self.risky = bool(self.faults) or _has_huge(data)
+        huge = (data[at.start() - 1 : at.start()] for pattern in _HUGE for at in pattern.finditer(data))
+        self.risky = bool(self.faults) or any(before in _BEFORE for before in huge)
         self._refuse()
         self._refuse_unnoticed()
 
@@ -325,10 +326,6 @@ def _only(names: dict[Any, set[str]]) -> dict[Any, str]:
 def _at(idents: list[str]) -> str:
     known = list(filter(None, idents))
     return f" ({known[0]}{_more(len(known) - 1)})" if known else ""
-
-
-def _has_huge(data: bytes) -> bool:
-    return any(data[at.start() - 1 : at.start()] in _BEFORE for huge in _HUGE for at in huge.finditer(data))
 
 
 def _is_length(entity: Any) -> bool:

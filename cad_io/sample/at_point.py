@@ -17,6 +17,7 @@ from cad_io.arrays import Floats, Orientation, SurfaceSamples
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
+from cad_io.face.trim import nearest as nearest_segment
 from cad_io.kernel import translated
 from cad_io.kernel.shapes import compound
 from cad_io.part import Part
@@ -146,7 +147,4 @@ def _on_face(trim: Trim, u: float, v: float, within: float) -> bool:
     """True if (u, v) lies in the trim, or at most `within` mm beside it: a point on an edge is on both its faces."""
     if trim.inside(np.array([u]), np.array([v]))[0]:
         return True
-    start, along = trim.segments[:, 0] * trim.scale, (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
-    offset = np.array([u, v]) * trim.scale - start
-    share = np.clip((offset * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
-    return bool(np.linalg.norm(offset - share[:, None] * along, axis=1).min() <= within)
+    return nearest_segment(trim.segments * trim.scale, np.array([u, v]) * trim.scale)[2] <= within

@@ -14,8 +14,8 @@ from OCP.gp import gp_Pnt2d, gp_Vec2d
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
-from cad_io.face.trim import inside, interior_point, nodes_inside
-from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, left_of, nearest
+from cad_io.face.trim import inside, interior_point, nearest, nodes_inside
+from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, left_of
 from cad_io.split.contour import LabelGrid, Spline
 
 if TYPE_CHECKING:
@@ -494,5 +494,5 @@ def _nearest_label(region: Region, scale: Floats, grid: LabelGrid, known: Ints) 
         for x, line in zip(interior_point(region.ring / scale), (grid.u, grid.v), strict=True)
     ]
     i, j = np.nonzero(known >= 0)
-    nearest = int(np.argmin(np.hypot(i - at[0], j - at[1])))
-    return int(known[i[nearest], j[nearest]])
+    k = int(np.argmin(np.hypot(i - at[0], j - at[1])))
+    return int(known[i[k], j[k]])

@@ -11,7 +11,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Vertex, TopoDS_Wire
 
 from cad_io.arrays import Floats
 from cad_io.kernel import cubic, edges_of
-from cad_io.kernel.shapes import children
+from cad_io.kernel.shapes import children, with_edges
 from cad_io.split.arrangement import Arrangement, Half, Region
 from cad_io.split.border import CannotSplit
 from cad_io.split.contour import Spline
@@ -128,20 +128,15 @@ def rewired(net: Net, face: Any) -> Any:
     """A face that is not split, with its cut edges; itself if none is cut."""
     if not any(net.edges.FindIndex(edge) in net.cuts for edge in edges_of(face)):
         return face
-    builder, plain = BRep_Builder(), face.Oriented(TopAbs_FORWARD)
-    new = TopoDS.Face_s(plain.EmptyCopied())
-    for wire in children(plain):
-        along = wire.Oriented(TopAbs_FORWARD)
-        fresh = along.EmptyCopied()
-        for edge in children(along):
-            cut = net.cuts.get(net.edges.FindIndex(edge))
-            mine = [part.Oriented(edge.Orientation()) for part in cut.parts] if cut else [edge]
-            for part in mine if edge.Orientation() == TopAbs_FORWARD else mine[::-1]:
-                builder.Add(fresh, part)
-        fresh.Closed(wire.Closed())
-        builder.Add(new, fresh.Oriented(wire.Orientation()))
-    builder.NaturalRestriction(new, BRep_Tool.NaturalRestriction_s(face))
-    return TopoDS.Face_s(new.Oriented(face.Orientation()))
+
+    def parts(edge: Any) -> list[Any]:
+        cut = net.cuts.get(net.edges.FindIndex(edge))
+        mine = [part.Oriented(edge.Orientation()) for part in cut.parts] if cut else [edge]
+        return mine if edge.Orientation() == TopAbs_FORWARD else mine[::-1]
+
+    new = with_edges(face, parts)
+    BRep_Builder().NaturalRestriction(new, BRep_Tool.NaturalRestriction_s(face))
+    return new
 
 
 def placed(

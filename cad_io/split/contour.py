@@ -85,19 +85,13 @@ def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
     """
     out = np.zeros_like(field)
     low = int(field.min())
+    along_u, along_v = ("wrap" if closed else "constant" for closed in (closed_u, closed_v))  # beyond the border is nobody
     for k in range(low, int(field.max())):
         above = field > k
         for value in (True, False):
-            alone = above == value
-            for axis, closed in ((0, closed_u), (1, closed_v)):
-                for way in (1, -1):
-                    neighbour = np.roll(above, way, axis)
-                    if not closed:
-                        edge = [slice(None), slice(None)]
-                        edge[axis] = slice(0, 1) if way == 1 else slice(-1, None)
-                        neighbour[tuple(edge)] = not value  # beyond the border is nobody
-                    alone &= neighbour != value
-            above = above ^ alone
+            same = above == value
+            u, v = np.pad(same, ((1, 1), (0, 0)), along_u), np.pad(same, ((0, 0), (1, 1)), along_v)  # type: ignore[call-overload]
+            above ^= same & ~(u[2:] | u[:-2] | v[:, 2:] | v[:, :-2])
         out += above
     return out + low
 

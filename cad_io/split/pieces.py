@@ -13,6 +13,7 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from types import SimpleNamespace
 from typing import Any
 
@@ -22,7 +23,8 @@ from OCP.BRep import BRep_Tool
 
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.face.trim import nodes_inside, outline
-from cad_io.split.cut_faces import cut_faces
+from cad_io.kernel import periods
+from cad_io.split.cut_faces import Job, cut_faces
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
@@ -80,7 +82,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
     faces = {info.number: part.face(info.number) for info in part.faces}
     shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
     mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, cut = cut_faces(part.shape, faces, mixed, part.surface, worst, seconds)
+    shape, cut = cut_faces(Job(part.shape, faces, mixed, part.surface, worst), seconds)
     pieces: list[Piece] = []
     for number, face in faces.items():
         shapes = cut.faces.get(number, [face])
@@ -221,18 +223,10 @@ def _on(labels: FaceLabels, face: Any) -> NDArray[np.bool_]:
     segments = outline(face)
     if not len(segments):
         return np.ones(labels.label.shape, bool)
-    surface = BRep_Tool.Surface_s(face)
-    turns = [
-        [0.0, period, -period] if closed else [0.0]
-        for closed, period in (
-            (surface.IsUPeriodic(), surface.UPeriod() if surface.IsUPeriodic() else 0.0),
-            (surface.IsVPeriodic(), surface.VPeriod() if surface.IsVPeriodic() else 0.0),
-        )
-    ]
+    turns = ([0.0, period, -period] if period else [0.0] for period in periods(BRep_Tool.Surface_s(face)))
     on_face = np.zeros(labels.label.shape, bool)
-    for du in turns[0]:
-        for dv in turns[1]:
-            on_face |= nodes_inside(segments, labels.u + du, labels.v + dv)
+    for du, dv in product(*turns):
+        on_face |= nodes_inside(segments, labels.u + du, labels.v + dv)
     return on_face
 
 

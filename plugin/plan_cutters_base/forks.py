@@ -138,12 +138,15 @@ def tell(pipe: BinaryIO, answer: object) -> None:
     pipe.flush()
 
 
-def limited(call: Callable[[], Done], seconds: float, *, processor: bool = False) -> Done:
+def limited(
+    call: Callable[[], Done], seconds: float, *, processor: bool = False, passing: tuple[type[Exception], ...] = ()
+) -> Done:
     """Result of `call()`, made in a copy for at most `seconds`, which also survives a crash of the kernel.
 
     By the clock a busy machine may get another result than an idle one; by processor time (`processor`) it gets the same, later.
     A copy that does nothing at all for a minute, waiting for a lock for one, is ended then, too (only on Linux: elsewhere nothing
-    tells). Where `seconds` are not positive, nothing is run. A TimeLimit or ChildDied where there is no result.
+    tells). Where `seconds` are not positive, nothing is run. A TimeLimit or ChildDied where there is no result; errors of the
+    kinds in `passing` are raised as they are.
     """
     if seconds <= 0:
         raise TimeLimit
@@ -152,16 +155,19 @@ def limited(call: Callable[[], Done], seconds: float, *, processor: bool = False
 
     def work(pipe: BinaryIO) -> None:
         try:
-            tell(pipe, call())
+            answer: object = call()
+        except passing as error:
+            answer = error
         except Exception as error:
-            tell(pipe, ChildDied(f"{type(error).__name__} {error}"))
+            answer = ChildDied(f"{type(error).__name__} {error}")
+        tell(pipe, answer)
 
     # By the clock this side ends it.
     until = math.inf if processor else time.monotonic() + seconds
     with Copy(work, seconds if processor else seconds + 2) as copy:
         try:
             for answer in copy.answers(until=until):
-                if isinstance(answer, ChildDied):
+                if isinstance(answer, (ChildDied, *passing)):
                     raise answer
                 return cast(Done, answer)
         except TimeoutError:
