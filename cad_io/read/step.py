@@ -36,10 +36,9 @@ from cad_io.kernel import explore, faces
 from cad_io.kernel.shapes import as_one, unwrapped
 from cad_io.read import size_notes
 from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
-from cad_io.read.faults import Model, open_border, type_of
+from cad_io.read.faults import Model, UnreadFaces, is_face, is_whole, name_of, open_border, repair, type_of
 from cad_io.read.step_text import adopted, readable
 from cad_io.read.step_text import names as referred_names
-from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import UNITS, UnitReading, in_mm
 from plan_cutters_base import user_files as files
 

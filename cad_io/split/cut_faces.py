@@ -27,9 +27,8 @@ from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
 from cad_io.kernel.shapes import as_bytes, as_one, children, components, compound, of_bytes
 from cad_io.split.arrangement import Arrangement, Judged, joined, judged, regions_of, slivers
 from cad_io.split.border import Border, CannotSplit
-from cad_io.split.build import pieces, placed, rewired
+from cad_io.split.build import Net, pieces, placed, repair, rewired, valid
 from cad_io.split.contour import Line, curves, label_grid, smoothed
-from cad_io.split.net import Net, repair, valid
 from cad_io.surface import Surface
 from plan_cutters_base.forks import ChildDied, TimeLimit, end_within, limited
 
