@@ -1,7 +1,7 @@
 """The arrays that cross the CAD boundary: mm, part coordinates, radians; frozen, no kernel here."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -283,14 +283,11 @@ class Triangles(Record):
 
     def without(self, faces: Collection[int]) -> "Triangles":
         """The same without the triangles of some faces."""
-        if not faces:
-            return self
-        return self.take(~np.isin(self.face, list(faces)))
+        return self.take(~np.isin(self.face, list(faces))) if faces else self
 
     def take(self, rows: NDArray[Any]) -> "Triangles":
         """Some of them, by their rows or by a mask (t,)."""
-        rest = self.chord_error, self.missing, self.measured, self.loose, self.errors
-        return Triangles(self.vertex[rows], self.face[rows], *rest)
+        return replace(self, vertex=self.vertex[rows], face=self.face[rows])
 
     @property
     def measured_share(self) -> float:

@@ -402,15 +402,9 @@ class UnreadFaces:
         """A face that is not in the part: once for each place at which its shell is."""
         entity = self.model.entities[number]
         shells = [n for n in self.model.users(number) if isinstance(self.model.entities[n], StepShape_ConnectedFaceSet)]
-        if number in self.mended:
-            why = self.mended[number]
-        elif number in self.results:
-            why = "it was read, but stands in no product"
-        elif not shells:
-            why = "no shell takes it"
-        else:
-            why = "the CAD kernel could not make it"
-        why = self._said(why, number)
+        why = "the CAD kernel could not make it" if shells else "no shell takes it"
+        why = "it was read, but stands in no product" if number in self.results else why
+        why = self._said(self.mended.get(number, why), number)
         siblings = [self.model.entities[n] for n in shells if self.model.entities[n].CfsFaces() is not None]
         inner = [self.model.number(s.CfsFacesValue(i + 1)) for s in siblings for i in range(s.NbCfsFaces())]
         places: list[TopLoc_Location] = []
@@ -418,10 +412,8 @@ class UnreadFaces:
             place = self.shapes[n - 1].Location()
             if not any(place.IsEqual(other) for other in places):
                 places.append(place)
-        for place in places:
-            yield LostFace(self.ident(number), name_of(entity), why, box=self._box(entity, place))
-        if not places:
-            yield LostFace(self.ident(number), name_of(entity), why)
+        for box in [self._box(entity, place) for place in places] or [None]:
+            yield LostFace(self.ident(number), name_of(entity), why, box=box)
 
     def _said(self, why: str, number: int) -> str:
         """With the first cause that is known."""
@@ -461,7 +453,9 @@ class UnreadFaces:
             return "an edge of it is missing"
         if any(self._beyond_proof(fault, number) for fault in felt):
             return "its geometry is not as written"
-        return misfit(shape, self._fine)
+        # Beside some that had no trouble.
+        quiet = [ns[0] for n, ns in self.numbers.items() if ns and n not in self.felt and n not in self.failed]
+        return misfit(shape, [self.shapes[n - 1] for n in quiet[:_OTHERS]])
 
     def _beyond_proof(self, fault: Fault, number: int) -> bool:
         """Faults whose effect no border can show: in topology, and between the borders of free-form surfaces."""
@@ -472,12 +466,6 @@ class UnreadFaces:
             return False
         # By a curve in its parameters, a surface is used for the face on its other side, too.
         return number in self.model.users(fault.number, lambda user: is_face(user) or isinstance(user, StepGeom_Pcurve))
-
-    @property
-    def _fine(self) -> list[TopoDS_Face]:
-        """Some faces that had no trouble."""
-        quiet = (ns for n, ns in self.numbers.items() if n not in self.felt and n not in self.failed)
-        return [self.shapes[ns[0] - 1] for ns, _ in zip((ns for ns in quiet if ns), range(_OTHERS), strict=False)]
 
     def _places(self) -> Iterator[LostFace]:
         """Instances of products, and bare surfaces, that something harmless to any face has moved."""

@@ -55,6 +55,7 @@ _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 #: What shapes are made of, or placed by.
 _SHAPES = (StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap)
 _ASCII = re.compile("[!-~]")
+_NO_LENGTH = re.compile("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived")
 _SUBSHAPES = "read.stepcaf.subshapes.name"
 #: Entities named in one warning.
 _MOST_NAMED = 3
@@ -178,7 +179,8 @@ class Loaded:
                         "cannot read to an end; export it again",
                         file=self.file,
                     )
-            if self.unit is None and _is_length(entity) and fault.parameter != "dimensions":
+            length = isinstance(entity, StepBasic_NamedUnit) and not _NO_LENGTH.search(type(entity).__name__)
+            if self.unit is None and length and fault.parameter != "dimensions":
                 raise ReadError(
                     f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)", file=self.file
                 )
@@ -325,11 +327,6 @@ def _only(names: dict[Any, set[str]]) -> dict[Any, str]:
 def _at(idents: list[str]) -> str:
     known = list(filter(None, idents))
     return f" ({known[0]}{_more(len(known) - 1)})" if known else ""
-
-
-def _is_length(entity: Any) -> bool:
-    other = re.search("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived", type(entity).__name__)
-    return isinstance(entity, StepBasic_NamedUnit) and not other
 
 
 def _more(count: int) -> str:
