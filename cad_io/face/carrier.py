@@ -52,17 +52,16 @@ def stored_carrier(kind: str, adaptor: Any) -> Carrier | None:
 
 def carrier_of(kind: str, place: Floats, direction: Floats, sizes: tuple[float, ...] = ()) -> Carrier:
     """The carrier of a kind about a place, with its axis or normal, and its sizes as `closed_form` has them."""
-    numbers = tuple(map(float, sizes))
+    names = {"cylinder": ("radius",), "cone": ("half_angle",), "sphere": ("radius",), "torus": ("radius", "minor_radius")}
+    numbers: dict[str, Any] = dict(zip(names.get(kind, ()), map(float, sizes), strict=True))
     if kind == "sphere":
-        return Carrier(_point(place), None, *numbers)
+        return Carrier(_point(place), **numbers)
     direction = _signed(direction)
     if kind == "plane":
         place = (place @ direction) * direction
     elif kind == "cylinder":
         place = place - (place @ direction) * direction
-    elif kind == "cone":
-        return Carrier(_point(place), _point(direction), half_angle=numbers[0])
-    return Carrier(_point(place), _point(direction), *numbers)
+    return Carrier(_point(place), _point(direction), **numbers)
 
 
 def sided(carrier: Carrier | None, surface: Surface, box: tuple[float, float, float, float]) -> Carrier | None:

@@ -20,7 +20,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, shape_map, translated
-from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
+from cad_io.kernel.shapes import Node, PartContent, as_one, compound, turned, unwrapped
 from cad_io.kernel.shapes import children as children_of
 from cad_io.part import Part
 from cad_io.read.document import FaceMarks
@@ -291,8 +291,8 @@ def _rgb(colour: Any) -> Colour | None:
     return round(red, 6), round(green, 6), round(blue, 6)
 
 
-def from_object(source: Any) -> dict[str, Any]:
-    """Return the arguments that make a `Part` of an object, by the names of its parameters.
+def from_object(source: Any) -> PartContent:
+    """Return what makes a `Part` of an object.
 
     The object is a kernel shape; one with `.wrapped` (CadQuery, build123d); a CadQuery Workplane or Assembly; a build123d
     builder; a list or tuple of such. Faces that know the shape which they were taken from are picked on it.
@@ -312,15 +312,8 @@ def from_object(source: Any) -> dict[str, Any]:
     walk.mark(held.picked, TopLoc_Location())
     picked = {walk.map.FindIndex(mark.shape) for mark in held.picked}
     named = any(item.name or item.inner for item in held.items)
-    return {
-        "shape": shape,
-        "names": walk.names,
-        "colours": walk.colours,
-        "layers": walk.layers,
-        "tree": tree if named else (),
-        "picked": tuple(sorted(picked)),
-        "warnings": tuple(held.warnings),
-    }
+    return PartContent(shape, names=walk.names, colours=walk.colours, layers=walk.layers, tree=tree if named else (),
+                       picked=tuple(sorted(picked)), warnings=held.warnings)  # fmt: skip
 
 
 def face_numbers(part: Part, value: Any) -> tuple[int, ...]:

@@ -24,7 +24,6 @@ from cad_io.kernel import explore, faces, silence, translated
 from cad_io.kernel.shapes import ENDLESS, Node, PartContent, bound_naturally, comes_back, endless, packed, unpacked, unwrapped
 from cad_io.part import Part
 from cad_io.read import iges, step
-from cad_io.read.document import Read
 from cad_io.read.objects import from_object
 from cad_io.read.sniff import load, sniff
 from cad_io.read.step_text import DOCUMENTS, followed, in_folder_of, names
@@ -215,34 +214,33 @@ def read_part(
         return source
     timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part.of(_find(source, unit, timeout, cache) | {"unit": unit})
+        return Part.of(replace(_find(source, unit, timeout, cache), unit=unit))
 
     def find() -> PartContent:
         source_part = _find(source, unit, timeout, cache)
         Part.of(source_part)  # which asks the kernel more, better here than outside
-        return source_part | {"unit": unit}
+        return replace(source_part, unit=unit)
 
     return Part.of(in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
 def _find(source: Any, unit: str | None, timeout: float, cache: Cache) -> PartContent:
-    """Return the arguments that make the part, by the names of its parameters."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit, timeout, cache)
-    shape = from_object(source)
-    bound_naturally(shape["shape"])
-    tree = tuple(_scaled_node(node, unit) for node in shape["tree"])
-    return shape | {"shape": _scaled(shape["shape"], unit), "tree": tree}
+    content = from_object(source)
+    bound_naturally(content.shape)
+    tree = tuple(_scaled_node(node, unit) for node in content.tree)
+    return replace(content, shape=_scaled(content.shape, unit), tree=tree)
 
 
 def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> PartContent:
     kind, data = load(file)
-    known: PartContent = {"file": file, "sha256": checksum(data)}
+    known: dict[str, Any] = {"file": file, "sha256": checksum(data)}
     if kind not in _LOADERS:
         with translated("reading the file", error=ReadError, file=file):
             whole = _read_brep(file, kind)
             bound_naturally(whole)
-            return known | _content(Read(_scaled(whole, unit)))
+            return replace(_content(PartContent(_scaled(whole, unit))), **known)
     loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
     if kind == "step" and names(data):
         if unit is not None:
@@ -267,12 +265,12 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
         lambda made: made is not None and loaded.alone and comes_back(made) and checksum(load(file)[1]) == known["sha256"],
     )  # fmt: skip
     if stored is not None:
-        return known | (content or unpacked(stored))
+        return replace(content or unpacked(stored), **known)
     # A crash costs no more than a copy: try with less and less.
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):
         try:
-            return known | in_copy(partial(_transferred, reload, others), timeout, file)
+            return replace(in_copy(partial(_transferred, reload, others), timeout, file), **known)
         except Crashed as error:
             crash = error
     raise crash
@@ -287,13 +285,13 @@ def _transferred(load_again: Callable[[], Loaded], others: Referred) -> PartCont
             raise ReadError(f"{error.cause}; {others.lost[0]}", file=error.file) if others.lost else error from None
 
 
-def _content(read: Read, others: Referred | None = None) -> PartContent:
+def _content(read: PartContent, others: Referred | None = None) -> PartContent:
     read.lost += [] if others is None else others.lost
     reported = {each.face for each in read.lost}
     for n, face in enumerate(faces(read.shape), 1):
         if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:
             read.lost.append(LostFace("", read.names.get(n, ""), f"it {ENDLESS if endless(face) else 'has no edges'}", n))
-    return vars(read) | {"warnings": tuple(read.warnings), "lost": tuple(read.lost)}
+    return read
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

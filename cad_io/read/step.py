@@ -33,9 +33,9 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from cad_io.arrays import LostFace, SizeNote
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
-from cad_io.kernel.shapes import as_one, unwrapped
+from cad_io.kernel.shapes import PartContent, as_one, unwrapped
 from cad_io.read import size_notes
-from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
+from cad_io.read.document import DroppedNames, add_attributes, each, roots
 from cad_io.read.faults import Model, UnreadFaces, is_face, is_whole, name_of, open_border, repair, type_of
 from cad_io.read.step_text import adopted, readable
 from cad_io.read.step_text import names as referred_names
@@ -119,7 +119,7 @@ class Loaded:
         self._refuse()
         self._refuse_unnoticed()
 
-    def transfer(self, *, traced: bool = False) -> Read:
+    def transfer(self, *, traced: bool = False) -> PartContent:
         """Make the shape; `traced`: find out which face was which entity, too; a file with faults is traced in any case.
 
         Raises ReadError where it holds no face that can be read.
@@ -205,7 +205,7 @@ class Loaded:
                     f"refers to {name} in a form that is not known here: save the assembly as one file", file=self.file
                 )
 
-    def _shape(self) -> Read:
+    def _shape(self) -> PartContent:
         nothing = "holds no shape that can be read"
         if self.faults:
             nothing += f" ({self.faults[0].short}{_more(len(self.faults) - 1)})"
@@ -218,7 +218,7 @@ class Loaded:
         shapes = [XCAFDoc_ShapeTool.GetShape_s(label) for label in each(roots(document))] if done else []
         if not any(any(explore(shape, TopAbs_FACE)) for shape in shapes):
             raise NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
-        result = Read(unwrapped(as_one(shapes)), encoding=self.encoding, unit_readings=tuple(self._unit_readings()))
+        result = PartContent(unwrapped(as_one(shapes)), encoding=self.encoding, unit_readings=tuple(self._unit_readings()))
         add_attributes(document, result, self._dropped_names())
         if self._adopted:
             solids = self._adopted.solids
@@ -271,7 +271,7 @@ class Loaded:
                 entity.SetName(TCollection_HAsciiString(f"@{number}"))
         return real
 
-    def _unmark(self, result: Read, shapes: list[TopoDS_Face], real: dict[int, str]) -> dict[int, list[int]]:
+    def _unmark(self, result: PartContent, shapes: list[TopoDS_Face], real: dict[int, str]) -> dict[int, list[int]]:
         """Put the names back; the numbers that each face entity has got in the part."""
         numbers: dict[int, list[int]] = defaultdict(list)
         for n, mark in list(result.names.items()):

@@ -86,7 +86,7 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
         turned, caps = _enclosing(np.concatenate(list(own.values())))
         weight[-len(own) :] = [turned]
         add(caps, 0, 1)
-    return StandIns(*map(np.concatenate, (vertex, owner, weight)), how)
+    return StandIns(np.concatenate(vertex), np.concatenate(owner), np.concatenate(weight), how)
 
 
 def _boxed(corners: Floats) -> Floats:

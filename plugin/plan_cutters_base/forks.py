@@ -155,7 +155,7 @@ def limited(
     with Copy(work, seconds if processor else seconds + 2) as copy:
         try:
             for answer in copy.answers(until=until):
-                if isinstance(answer, (ChildDied, *passing)):
+                if isinstance(answer, Exception) and isinstance(answer, (ChildDied, *passing)):
                     raise answer
                 return cast(Done, answer)
         except TimeoutError:
