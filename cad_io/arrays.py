@@ -1,7 +1,7 @@
 """The arrays that cross the CAD boundary: mm, part coordinates, radians; frozen, no kernel here."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -287,7 +287,8 @@ class Triangles(Record):
 
     def take(self, rows: NDArray[Any]) -> "Triangles":
         """Some of them, by their rows or by a mask (t,)."""
-        return replace(self, vertex=self.vertex[rows], face=self.face[rows])
+        rest = self.chord_error, self.missing, self.measured, self.loose, self.errors
+        return Triangles(self.vertex[rows], self.face[rows], *rest)
 
     @property
     def measured_share(self) -> float:

@@ -112,14 +112,12 @@ def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()
             continue
         below = referred(path, content, timeout, above)
         try:
-            count, unread, risky = _alone(path, content, below.foreign, timeout)
+            alone = _alone(path, name, content, below.foreign, timeout)
         except ReadError as error:
             _miss(result, name, f"the file refers to it, and it {error.cause}")
             continue
         result.add(below)
-        result.add(
-            Referred({path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky)
-        )
+        result.add(alone)
     return result
 
 
@@ -128,15 +126,15 @@ def _miss(referred: Referred, name: str, why: str) -> None:
         referred.lost.append(LostFace("", name, why))
 
 
-def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:
-    """How many faces a file itself has, what is missing there, and whether it is risky; in a copy of the process."""
+def _alone(file: str, name: str, data: bytes, foreign: int, timeout: float) -> Referred:
+    """What a file itself has, of which the name is written, without what it refers to; in a copy of the process."""
 
-    def look() -> tuple[int, list[tuple[str, str, str]], bool]:
+    def look() -> Referred:
         with translated("reading the file", error=ReadError, file=file):
             loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
             read = loaded.transfer()
-            count = step.distinct_faces(read.shape) - foreign
-            return count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky
+            lost = [LostFace("", " ".join(filter(None, (name, each.entity, each.name))), each.why) for each in read.lost]
+            return Referred({file: step.distinct_faces(read.shape) - foreign}, lost, loaded.risky)
 
     try:
         return limited(look, timeout, passing=(ReadError,))

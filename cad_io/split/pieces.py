@@ -11,10 +11,9 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.face.trim import nodes_inside, outline
 from cad_io.kernel import periods
 from cad_io.split.cut_faces import Job, cut_faces
+from cad_io.surface import Surface
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
@@ -57,8 +57,6 @@ class Split:
     #: Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the border
     #: that their boundary runs outside.
     dropped: dict[int, int]
-    #: Face number -> the labels of a face left whole.
-    labels: dict[int, FaceLabels] = field(default_factory=dict)
     #: Face number -> how many slivers joined a worse label around them.
     joined: dict[int, int] = field(default_factory=dict)
 
@@ -73,16 +71,27 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
 
     Raises ValueError where a face has two label fields, or a field does not fit its grid.
     """
+    return _split(part.shape, {info.number: part.face(info.number) for info in part.faces}, part.surface, labels, worst, seconds)
+
+
+def _split(
+    whole: Any,
+    faces: dict[int, Any],
+    surface_of: Callable[[int], Surface],
+    labels: Sequence[FaceLabels],
+    worst: int,
+    seconds: float,
+) -> Split:
+    """Split faces, by their numbers, of a whole shape."""
     fields = {f.face: f for f in labels}
     if len(fields) < len(labels):
         raise ValueError("a face has two label fields")
     for f in labels:
         if f.label.shape != (len(f.u), len(f.v)):
             raise ValueError(f"F{f.face}: labels {f.label.shape} on a grid of {len(f.u)} x {len(f.v)}")
-    faces = {info.number: part.face(info.number) for info in part.faces}
     shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
     mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, cut = cut_faces(Job(part.shape, faces, mixed, part.surface, worst), seconds)
+    shape, cut = cut_faces(Job(whole, faces, mixed, surface_of, worst), seconds)
     pieces: list[Piece] = []
     for number, face in faces.items():
         shapes = cut.faces.get(number, [face])
@@ -93,8 +102,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
         else:
             label = MIXED if number in mixed else max(shares[number], key=lambda k: shares[number][k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares[number]) for piece in shapes]
-    failed = {number: fields[number] for number in sorted(cut.failed)}
-    return Split(shape, tuple(pieces), cut.failed, cut.missed, failed, cut.joined)
+    return Split(shape, tuple(pieces), cut.failed, cut.missed, cut.joined)
 
 
 def _shares(label: Ints) -> dict[int, float]:
@@ -102,27 +110,8 @@ def _shares(label: Ints) -> dict[int, float]:
     return {int(k): float(n / count.sum()) for k, n in zip(value, count, strict=True)}
 
 
-@dataclass(slots=True)
-class _Stage:
-    """The pieces so far, as `split` takes a part: the number of a face is the place of a piece, from 1."""
-
-    part: Any
-    shape: Any
-    pieces: list[tuple[Piece, tuple[int, ...]]]
-
-    @property
-    def faces(self) -> list[Any]:
-        return [SimpleNamespace(number=i) for i in range(1, len(self.pieces) + 1)]
-
-    def face(self, number: int) -> Any:
-        return self.pieces[number - 1][0].shape
-
-    def surface(self, number: int) -> Any:
-        return self.part.surface(self.pieces[number - 1][0].face)
-
-
 def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, tuple[int, ...]]:
-    """A piece of the original face, and the labels on it, from a piece of the stage and what it was cut from."""
+    """A piece of the original face, and the labels on it, from a piece of this turn and what it was cut from."""
     if len(group) <= 1:
         return Piece(before.face, before.label, each.shape, before.shares), group
     middle = len(group) // 2
@@ -141,27 +130,29 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     fields = {each.face: each for each in labels}
     roomy = {number: with_margin(each) for number, each in fields.items()}
     start = split(part, [])
-    stage = _Stage(part, start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces])
-    whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
-    while any(len(group) > 1 for _, group in stage.pieces):
-        # Labels that part each piece of several labels into two halves of them.
-        taken, requests = _taken(stage.pieces, roomy), []
-        for i, (piece, group) in enumerate(stage.pieces, 1):
+    shape, pieces = start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces]
+    whole, joined = dict[int, str](), Counter[int]()
+    while any(len(group) > 1 for _, group in pieces):
+        # Labels that part each piece of several labels into two halves of them; the pieces are faces by their places, from 1.
+        taken, requests, owner = _taken(pieces, roomy), [], [0, *(piece.face for piece, _ in pieces)]
+        for i, (piece, group) in enumerate(pieces, 1):
             if len(group) > 1:
                 field = roomy[piece.face]
                 off = np.isin(taken[piece.face], [0, i], invert=True)
                 requests.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
-        done = split(stage, requests, seconds=seconds)
-        pieces = [_halved(each, *stage.pieces[each.face - 1]) for each in done.pieces]
-        for i, why in done.whole.items():
-            whole[stage.pieces[i - 1][0].face] = why
-            remaining[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
+
+        def surface_of(i: int, owner: list[int] = owner) -> Surface:
+            surface: Surface = part.surface(owner[i])
+            return surface
+
+        done = _split(shape, {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}, surface_of, requests, -1, seconds)
+        shape, pieces = done.shape, [_halved(each, *pieces[each.face - 1]) for each in done.pieces]
+        whole |= {owner[i]: why for i, why in done.whole.items()}
         for i, n in done.joined.items():
-            joined[stage.pieces[i - 1][0].face] += n
-        stage = _Stage(part, done.shape, pieces)
-    last = tuple(each for each, _ in stage.pieces)
+            joined[owner[i]] += n
+    last = tuple(each for each, _ in pieces)
     strays = {number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()}
-    return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
+    return Split(shape, last, whole, {k: n for k, n in strays.items() if n}, dict(joined))
 
 
 def with_margin(labels: FaceLabels) -> FaceLabels:
