@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from types import MappingProxyType
 from typing import NamedTuple
 
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -23,14 +22,11 @@ Colour = tuple[float, float, float]
 class DroppedNames(NamedTuple):
     """Names that a document has not: of products by what stands there instead, of instances by both that stand there."""
 
-    products: Mapping[str, str] = MappingProxyType({})
-    instances: Mapping[tuple[str, str], str] = MappingProxyType({})
+    products: Mapping[str, str]
+    instances: Mapping[tuple[str, str], str]
 
 
-_NONE_DROPPED = DroppedNames()
-
-
-def add_attributes(document: TDocStd_Document, result: PartContent, dropped: DroppedNames = _NONE_DROPPED) -> None:
+def add_attributes(document: TDocStd_Document, result: PartContent, dropped: DroppedNames) -> None:
     """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
     walk, start = _Walk(result, dropped), _Inherited(TopLoc_Location())
     result.tree = tuple(walk.node(label, start) for label in each(roots(document)))

@@ -160,14 +160,6 @@ def faults_of(checks: Any, *, fails: bool) -> list[Fault]:
     return faults
 
 
-def by_number(faults: Iterable[Fault]) -> dict[int, list[Fault]]:
-    """Faults of each entity."""
-    numbered: dict[int, list[Fault]] = defaultdict(list)
-    for fault in faults:
-        numbered[fault.number].append(fault)
-    return dict(numbered)
-
-
 def type_of(entity: Any) -> str:
     """A STEP entity's type as files write it: `EDGE_CURVE`."""
     return _WORD.sub("_", type(entity).__name__.split("_", 1)[-1]).upper()
@@ -272,7 +264,10 @@ def touched(model: Model, faults: Iterable[Fault]) -> tuple[dict[int, list[Fault
     """Faults by the face entities that use what is faulty, and those that no face feels."""
     result: dict[int, list[Fault]] = {}
     harmless = []
-    for number, each in by_number(faults).items():
+    of_entity = defaultdict[int, list[Fault]](list)
+    for fault in faults:
+        of_entity[fault.number].append(fault)
+    for number, each in of_entity.items():
         felt = [n for n in model.users(number, is_face) if n and is_face(model.entities[n])]
         geometry = [fault for fault in each if fault.parameter not in _WORDS]
         for n in felt:

@@ -22,7 +22,7 @@ from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import faces, shape_map
 from cad_io.kernel.shapes import PartContent, children, unwrapped
-from cad_io.read.document import add_attributes
+from cad_io.read.document import DroppedNames, add_attributes
 from cad_io.read.faults import Fault, Model, edge_count, misfit, open_border
 from cad_io.read.step_text import CALLED, decoded, encoding_of
 from cad_io.units import UNITS, UnitReading
@@ -334,7 +334,7 @@ class Loaded:
         if shape.IsNull():
             raise ReadError(f"nothing in it could be read{text}: export it again, or as STEP", file=self.file)
         result = PartContent(unwrapped(shape), unit_readings=self.unit.readings)
-        add_attributes(document, result)
+        add_attributes(document, result, DroppedNames({}, {}))
         result.tree = ()  # its roots are surfaces rather than products
         # Two lines an entity: the first starts with its number.
         directory = self.sections[b"D"]

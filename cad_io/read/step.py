@@ -243,9 +243,8 @@ class Loaded:
         """Names without a letter of ASCII, of which the kernel shows the identifier."""
         products: dict[str, set[str]] = defaultdict(set)
         instances: dict[tuple[str, str], set[str]] = defaultdict(set)
-        if self.data.isascii() and b"\\X" not in self.data:
-            return DroppedNames()
-        for entity in self.model.entities.values():
+        plain = self.data.isascii() and b"\\X" not in self.data
+        for entity in () if plain else self.model.entities.values():
             with suppress(AttributeError, UnicodeDecodeError):  # of a damaged file
                 if isinstance(entity, StepBasic_Product):
                     products[_shown(entity)].add(name_of(entity))

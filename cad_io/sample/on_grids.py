@@ -288,7 +288,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
     weight = _density(derivatives) * width_u[i] * width_v[j]
     if not inside.all():
         weight *= _share_inside(trim, lines)[i, j]
-    pairs = [_adjacent(index), _adjacent(index.T)]
+    pairs = [_linked(each[:-1].ravel(), each[1:].ravel()) for each in (index, index.T)]
     if lines.closed_u:
         pairs.append(_linked(index[-1], index[0]))
     if lines.closed_v:
@@ -397,10 +397,6 @@ def _gap(point: Floats, pairs: Ints) -> float:
 def _linked(first: Ints, second: Ints) -> Ints:
     both = (first >= 0) & (second >= 0)
     return np.stack([first[both], second[both]], axis=1)
-
-
-def _adjacent(index: Ints) -> Ints:
-    return _linked(index[:-1].ravel(), index[1:].ravel())
 
 
 def _widest(samples: _FaceSamples, lines: Lines) -> Floats:

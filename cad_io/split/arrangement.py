@@ -331,7 +331,7 @@ def judged(regions: list[Region], scale: Floats, grid: LabelGrid, known: Ints) -
 
     Raises CannotSplit where too many nodes off the boundary lie in a region of another label: a curve did not cut.
     """
-    modes = ["wrap" if closed else "nearest" for closed in (grid.closed_u, grid.closed_v)]
+    modes = ["wrap" if closed else "nearest" for closed in grid.closed]
     calm = (known >= 0) & (maximum_filter(grid.field, 3, mode=modes) == minimum_filter(grid.field, 3, mode=modes))
     astray = 0
     out = []
@@ -478,9 +478,9 @@ def _inside(region: Region, scale: Floats, grid: LabelGrid) -> tuple[Ints, Ints]
     ring = region.ring / scale
     low, high = ring.min(axis=(0, 1)), ring.max(axis=(0, 1))
     shape = grid.field.shape
-    first = [max(int(np.searchsorted(line, low[a])) - 1, 0) for a, line in enumerate((grid.u, grid.v))]
-    last = [min(int(np.searchsorted(line, high[a])) + 1, shape[a]) for a, line in enumerate((grid.u, grid.v))]
-    u, v = grid.u[first[0] : last[0]], grid.v[first[1] : last[1]]
+    first = [max(int(np.searchsorted(line, low[a])) - 1, 0) for a, line in enumerate(grid.lines)]
+    last = [min(int(np.searchsorted(line, high[a])) + 1, shape[a]) for a, line in enumerate(grid.lines)]
+    u, v = (line[a:b] for line, a, b in zip(grid.lines, first, last, strict=True))
     if not (len(u) and len(v)):
         return np.empty(0, np.int32), np.empty(0, np.int32)
     rows, columns = np.nonzero(nodes_inside(ring, u, v))
@@ -489,10 +489,8 @@ def _inside(region: Region, scale: Floats, grid: LabelGrid) -> tuple[Ints, Ints]
 
 def _nearest_label(region: Region, scale: Floats, grid: LabelGrid, known: Ints) -> int:
     """The label of the known node that is nearest to a place inside, in cells."""
-    at = [
-        float(np.interp(x, line, np.arange(len(line))))
-        for x, line in zip(interior_point(region.ring / scale), (grid.u, grid.v), strict=True)
-    ]
+    place = zip(interior_point(region.ring / scale), grid.lines, strict=True)
+    at = [float(np.interp(x, line, np.arange(len(line)))) for x, line in place]
     i, j = np.nonzero(known >= 0)
     k = int(np.argmin(np.hypot(i - at[0], j - at[1])))
     return int(known[i[k], j[k]])

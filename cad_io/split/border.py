@@ -134,7 +134,7 @@ class Border:
     def __init__(self, face: Any, surface: Surface, grid: LabelGrid, edges: Any, vertices: Any) -> None:
         """Read the border of a face; `edges` and `vertices` are the part's maps of them."""
         self.face = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-        cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in (grid.u, grid.v)])
+        cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in grid.lines])
         self.scale = _speeds(surface, grid)
         self.size = float((cell * self.scale).min())
         self.sides = [self._side(edge, edges, vertices) for edge in edges_of(self.face)]
@@ -237,7 +237,7 @@ def parameter_curve(edge: Any, face: Any) -> tuple[Any, float, float]:
 
 def _speeds(surface: Surface, grid: LabelGrid) -> Floats:
     """Mean mm per unit of u and v."""
-    u, v = (np.linspace(g[0], g[-1], 7)[1:-1] for g in (grid.u, grid.v))
+    u, v = (np.linspace(g[0], g[-1], 7)[1:-1] for g in grid.lines)
     first = surface.first(*(x.ravel() for x in np.meshgrid(u, v, indexing="ij")))
     speed = np.linalg.norm(first[:, 1:], axis=2)
     speed = speed[np.isfinite(speed).all(axis=1)].mean(axis=0) if np.isfinite(speed).all(axis=1).any() else np.zeros(2)
