@@ -155,65 +155,51 @@ class _Drawing(NamedTuple):
     d: Floats
 
 
-class _Kernel(NamedTuple):
-    """The kernel's curve of an edge, and where its smooth parts end."""
-
-    curve: BRepAdaptor_Curve
-    ends: Floats
-
-    @classmethod
-    def of(cls, edge: TopoDS_Edge) -> "_Kernel | None":
-        ends = np.zeros(0)
-        with may_refuse():
-            curve = BRepAdaptor_Curve(edge)
-            low, high = curve.FirstParameter(), curve.LastParameter()
-            if not (low < high and max(-low, high) < _INFINITE):
-                return None
-            if curve.GetType() == GeomAbs_Line:
-                return cls(curve, np.array([low, high]))
-            count = curve.NbIntervals(GeomAbs_C2)
-            if not 0 < count <= _MOST_INTERVALS:
-                return None
-            ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
-        if len(ends) < 2:
-            return None
-        each = max(_FIRST // (len(ends) - 1), 1)
-        share = np.arange(each) / each
-        t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
-        return cls(curve, np.append(t, ends[-1]))
-
-    def at(self, t: Floats) -> tuple[Floats, Floats] | None:
-        """Points and derivatives (k, 3); None where the kernel has none."""
-        with may_refuse():
-            derivatives = along(self.curve, t, 3)
-            if np.isfinite(derivatives).all():
-                return derivatives[:, 0], derivatives[:, 1]
+def _first_ends(curve: BRepAdaptor_Curve) -> Floats | None:
+    """Ends (k,) of the pieces of a curve to begin with: of its smooth parts, at least; None where it has no end, or too many."""
+    low, high = curve.FirstParameter(), curve.LastParameter()
+    if not (low < high and max(-low, high) < _INFINITE):
         return None
+    if curve.GetType() == GeomAbs_Line:
+        return np.array([low, high])
+    count = curve.NbIntervals(GeomAbs_C2)
+    if not 0 < count <= _MOST_INTERVALS:
+        return None
+    ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
+    each = max(_FIRST // max(len(ends) - 1, 1), 1)
+    return np.append((ends[:-1, None] + np.arange(each) / each * np.diff(ends)[:, None]).ravel(), ends[-1])
+
+
+def _places(curve: BRepAdaptor_Curve, t: Floats) -> tuple[Floats, Floats] | None:
+    """Points and derivatives (k, 3); None where the kernel has none."""
+    with may_refuse():
+        derivatives = along(curve, t, 3)
+        if np.isfinite(derivatives).all():
+            return derivatives[:, 0], derivatives[:, 1]
+    return None
 
 
 def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
     """The curve of an edge in pieces; None where it cannot be followed."""
-    kernel = _Kernel.of(edge)
-    if kernel is None:
-        return None
-    t, points = kernel.ends, kernel.at(kernel.ends)
-    if points is None:
+    t: Floats | None = None
+    with may_refuse():
+        curve = BRepAdaptor_Curve(edge)
+        t = _first_ends(curve)
+    if t is None or len(t) < 2 or (points := _places(curve, t)) is None:
         return None
     p, d = points
     doubtful = np.ones(len(t) - 1, bool)
     for _ in range(_HALVINGS):
         i = np.flatnonzero(doubtful)
-        h = t[i + 1] - t[i]
-        points = kernel.at(0.5 * (t[i] + t[i + 1]))
-        if points is None:
+        h, halves = t[i + 1] - t[i], 0.5 * (t[i] + t[i + 1])
+        if (points := _places(curve, halves)) is None:
             return None
         (middle, along), across = points, h[:, None]
         guess = 0.5 * (p[i] + p[i + 1]) + across * (d[i] - d[i + 1]) / 8
         slope = 1.5 * (p[i + 1] - p[i]) - across * (d[i] + d[i + 1]) / 4
         off = np.maximum(np.linalg.norm(guess - middle, axis=1), np.linalg.norm(slope - across * along, axis=1) / 8)
         # Both halves are kept in any case.
-        at = i + 1
-        t, p, d = _with(t, at, 0.5 * (t[i] + t[i + 1])), _with(p, at, middle), _with(d, at, along)
+        t, p, d = (np.insert(rows, i + 1, more, axis=0) for rows, more in ((t, halves), (p, middle), (d, along)))
         where, bad = i + np.arange(len(i)), off > _HALVES * chord
         doubtful = np.zeros(len(t) - 1, bool)
         doubtful[where], doubtful[where + 1] = bad, bad
@@ -222,16 +208,6 @@ def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
         if len(t) > MOST_PIECES:
             return None
     return None
-
-
-def _with(rows: Floats, at: Indices, more: Floats) -> Floats:
-    """Rows with more of them, each before the row that it names."""
-    result = np.empty((len(rows) + len(more), *rows.shape[1:]))
-    fresh = at + np.arange(len(at))
-    old = np.ones(len(result), bool)
-    old[fresh] = False
-    result[fresh], result[old] = more, rows
-    return result
 
 
 #: Ends next to each other: more of them are no edges of faces, and the ladder ends.
