@@ -106,14 +106,7 @@ def bounding(face: TopoDS_Face) -> tuple[TopoDS_Face, list[tuple[TopoDS_Edge, in
 
 def values(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
     """Surface points, (n, 3) mm, at parameters u, v of shape (n,); NaN where the kernel refuses."""
-    places = list(zip(u.tolist(), v.tolist(), strict=True))
-    with may_refuse():
-        return np.array([adaptor.Value(a, b).Coord() for a, b in places], dtype=float).reshape(-1, 3)
-    points = np.full((len(places), 3), np.nan)
-    for i, (a, b) in enumerate(places):
-        with may_refuse():
-            points[i] = adaptor.Value(a, b).Coord()
-    return points
+    return _derivatives(adaptor.D0, u, v, 0)[:, 0]
 
 
 def first_derivatives(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:

@@ -461,17 +461,9 @@ def _across(direction: Floats) -> Floats:
 
 
 def holes(part: Any, orientation: Orientation, triangles: Triangles, ignored: Collection[int] = ()) -> tuple[Hole, ...]:
-    """Find the holes of a part.
+    """Find the holes of a part, with the side of each face that is out of the material.
 
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-        The side of each face that is out of the material.
-    triangles : Triangles
-        Close to the part: whatever may stand in a hole.
-    ignored : collection of int
-        Numbers of faces that are not there.
+    triangles: close to the part: whatever may stand in a hole. ignored: numbers of faces that are not there.
     """
     usable = (triangles.face >= 1) & (triangles.face <= len(part.faces))
     return tuple(_Finder(part, orientation, triangles.take(usable), frozenset(ignored)).holes())
