@@ -439,7 +439,6 @@ def _cut(segments: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _OFF = 1e-7  # of the grid, that rows are moved by
-_FEW = 50  # places of a curve that are asked of the kernel one by one
 _ARCS = 8  # intervals that a curve without knots (conic) is cut into
 
 
@@ -494,23 +493,8 @@ def _integral(curve: Any) -> float:
         ends = ends[[0, -1]]
     half = 0.5 * np.diff(ends)
     t = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES).ravel()
-    place, slope = _followed(curve, t)
+    place, slope = np.moveaxis(along(curve, t), 1, 0)
     return float(((half[:, None] * _WEIGHTS).ravel() * place[:, 0] * slope[:, 1]).sum())
-
-
-def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
-    if curve.GetType() == GeomAbs_BSplineCurve and len(t) > _FEW:
-        spline = curve.BSpline()
-        if not (spline.IsRational() or spline.IsPeriodic()):
-            poles = np.array([spline.Pole(i).Coord() for i in range(1, spline.NbPoles() + 1)])
-            flat = spline.KnotSequence()
-            knots = np.array([flat.Value(i) for i in range(flat.Lower(), flat.Upper() + 1)])
-            from scipy.interpolate import BSpline  # half a second to load
-
-            known = BSpline(knots, poles, spline.Degree())
-            return known(t), known.derivative()(t)
-    points = along(curve, t)
-    return points[:, 0], points[:, 1]
 
 
 def nodes_inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
