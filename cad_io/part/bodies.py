@@ -174,7 +174,7 @@ def _orient_rest(part: Part, rest: Sequence[int], sign: Floats, notes: list[str]
             sign[index] = relative * np.sign(enclosed)
             notes.append("closed shells outward")
             continue
-        area, vector = vector_area(part, index, relative)
+        area, vector, _ = totals(part, index, relative)
         if not area:  # no surface, no side
             sign[index] = relative
             continue
@@ -256,22 +256,20 @@ def volume(part: Part, index: Sequence[int] | NDArray[np.int_], sign: Floats, ca
     face is not measured: without it, even the sign would be a guess."""
     if part.unmeasured & {int(i) + 1 for i in index}:
         return 0.0
-    measures = [part.measure(int(i) + 1) for i in index]
-    flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
+    area, _, flux = totals(part, index, sign)
     flux += 0.0 if cap is None else flux_of(cap, part.middle)
-    area = sum(m.area for m in measures if m and np.isfinite(m.area))
     enough = abs(flux) > 3 * _FLAT * area * float(np.linalg.norm(part.size))
     return float(flux) / 3 if enough else 0.0
 
 
-def vector_area(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats]:
-    """Area and vector area of a set of faces, mm2."""
-    area, vector = 0.0, np.zeros(3)
+def totals(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats, float]:
+    """Area and vector area, mm2, and flux about the part's middle, mm3, of a set of faces, of those that are measured."""
+    area, vector, flux = 0.0, np.zeros(3), 0.0
     for i, s in zip(index, sign, strict=True):
         m = part.measure(int(i) + 1)
         if m and np.isfinite(m.area):
-            area, vector = area + m.area, vector + s * m.vector
-    return area, vector
+            area, vector, flux = area + m.area, vector + s * m.vector, flux + s * m.flux
+    return area, vector, flux
 
 
 #: Caps of loose faces of a file that lost some are believed up to this share of the faces' own area.
@@ -355,7 +353,7 @@ def _body(
         outward = -sign if volume(part, index, sign.astype(float)) < 0 else sign
         yield Body(tuple(numbers), tuple(int(s) for s in outward), True, np.zeros((0, 3, 3)))
         return
-    area, vector = vector_area(part, index, sign.astype(float))
+    area, vector, _ = totals(part, index, sign.astype(float))
     sure = solid or touching or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
     # In a file that lost faces, what is open may have been closed.
     if not (sure or part.lost):

@@ -18,6 +18,7 @@ from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats
+from cad_io.face.trim import continuing
 from cad_io.kernel import edges_of, interval_ends
 from cad_io.split.contour import LabelGrid
 from cad_io.surface import Surface
@@ -220,13 +221,11 @@ class Border:
         here = [end for end, leaving in zip(ends, leaves, strict=True) if not leaving]
         if len(away) != len(here):
             raise CannotSplit("its border does not close")
-        from scipy.optimize import linear_sum_assignment  # half a second to load
-
-        gap = np.array([[np.linalg.norm(place[a] - place[b]) for b in away] for a in here])
-        rows, columns = linear_sum_assignment(gap)
-        if gap[rows, columns].max() > _GAP * size:
+        leaving_at, arriving_at = (np.array([place[end] for end in group]) for group in (away, here))
+        following = continuing(leaving_at, arriving_at, np.ones(2))
+        if np.linalg.norm(arriving_at - leaving_at[following], axis=1).max() > _GAP * size:
             raise CannotSplit("its border does not close in its parameter plane")
-        return [{here[r], away[c]} for r, c in zip(rows.tolist(), columns.tolist(), strict=True)]
+        return [{end, away[k]} for end, k in zip(here, following.tolist(), strict=True)]
 
 
 def parameter_curve(edge: Any, face: Any) -> tuple[Any, float, float]:
