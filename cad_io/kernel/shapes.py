@@ -5,7 +5,7 @@ The annotated model is built up as that tree again.
 
 import io
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,13 +27,12 @@ from OCP.Precision import Precision
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape, TopoDS_Vertex
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cad_io.arrays import Floats, LostFace, SizeNote
+from cad_io.arrays import Floats
 from cad_io.graphs import connected
 from cad_io.kernel import edges_of, faces, may_refuse, shape_map, translated
-from cad_io.units import UnitReading
 
 
 def components(shape: Any) -> list[Any]:
@@ -300,66 +299,3 @@ def faces_of(tree: Sequence[Node], name: str) -> set[int]:
         node for node, path in nodes if path.endswith(f"/{name}") or node.name == name
     ]
     return {number for node in result for number in node.numbers()}
-
-
-@dataclass(slots=True)
-class PartContent:
-    """What a reader has found, and a `Part` is made of."""
-
-    #: One shape, located, lengths in mm.
-    shape: Any
-    #: Where it was read from, and the checksum of those bytes.
-    file: str | None = None
-    sha256: str | None = None
-    #: The unit that its lengths were taken to be in, where that is not what the source says.
-    unit: str | None = None
-    #: By face number: names, sRGB colours (0 to 1) and layers in the file.
-    names: dict[int, str] = field(default_factory=dict)
-    colours: dict[int, tuple[float, float, float]] = field(default_factory=dict)
-    layers: dict[int, tuple[str, ...]] = field(default_factory=dict)
-    #: The products in the file; default one without a name.
-    tree: tuple[Any, ...] = ()
-    #: What the reader found odd; odd sizes are added by the part.
-    warnings: list[str] = field(default_factory=list)
-    #: Numbers of the faces that were picked on the object which the part was made from.
-    picked: tuple[int, ...] = ()
-    #: Faces written in the file that are not here, or not as written; the part adds those without a finite size.
-    lost: list[LostFace] = field(default_factory=list)
-    #: Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
-    references: tuple[tuple[str, str | None], ...] = ()
-    #: What is doubtful of what the file says about its unit.
-    unit_readings: tuple[UnitReading, ...] = ()
-    #: What the encoding of its names is called, where the file has an older one.
-    encoding: str = ""
-    #: Diameters with tolerances and notes that the file states of faces.
-    sizes: tuple[SizeNote, ...] = ()
-
-
-def packed(content: PartContent) -> PartContent:
-    """Without kernel objects: the shape as bytes, and behind it one vertex for the place of each node of the tree."""
-    vertex = TopoDS_Vertex()
-    BRep_Builder().MakeVertex(vertex, gp_Pnt(), 1e-7)
-    places = (vertex.Located(node.place) for root in content.tree for node, *_ in root.walk())
-    return replace(content, shape=as_bytes(compound([content.shape, *places])), tree=tuple(map(_bare, content.tree)))
-
-
-def unpacked(packed: PartContent) -> PartContent:
-    """Return what was given to `packed`, with new copies of the shape and of the locations."""
-    shape, *vertices = children(of_bytes(packed.shape))
-    places = iter([vertex.Location() for vertex in vertices])
-    return replace(packed, shape=shape, tree=tuple(_placed(bare, places) for bare in packed.tree))
-
-
-def comes_back(packed_content: PartContent) -> bool:
-    """Whether what is unpacked is what was packed to the last bit: the kernel makes directions unit vectors again as it reads."""
-    return bool(packed(unpacked(packed_content)).shape == packed_content.shape)
-
-
-def _bare(node: Node) -> tuple[Any, ...]:
-    return node.name, node.instance, [_bare(child) for child in node.children], node.faces
-
-
-def _placed(bare: tuple[Any, ...], places: Iterator[TopLoc_Location]) -> Node:
-    name, instance, inner, numbers = bare
-    place = next(places)
-    return Node(name, instance, place, tuple(_placed(child, places) for child in inner), numbers)

@@ -367,8 +367,8 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     for edge, users in enumerate(faces) if any(own) else ():
         for face in users:
             edges_of[face].append(edge)
-    around = [[edge for face in faces[e] for edge in edges_of[face]] for e in table.edge[i[near]].tolist()]
-    rows = zip(own, i[near].tolist(), around, strict=True)
+    own_edges = [[edge for face in faces[e] for edge in edges_of[face]] for e in table.edge[i[near]].tolist()]
+    rows = zip(own, i[near].tolist(), own_edges, strict=True)
     near = near[np.array([not it or _is_wide(curves, edges, table, row, tolerance) for it, row, edges in rows], bool)]
     order = near[np.argsort(distance[near], kind="stable")]
     allowed: dict[tuple[int, int], set[int]] = {}

@@ -26,7 +26,8 @@ from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.trim import Trim, trim_of
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, kind_of, may_refuse, shape_map, translated
-from cad_io.kernel.shapes import ENDLESS, Node, PartContent, endless, packed, unpacked
+from cad_io.kernel.shapes import ENDLESS, Node, endless
+from cad_io.part.content import PartContent, packed, unpacked
 from cad_io.part.edges import blends
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface

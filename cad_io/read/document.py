@@ -14,7 +14,8 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cad_io.kernel import explore, shape_map
-from cad_io.kernel.shapes import Node, PartContent
+from cad_io.kernel.shapes import Node
+from cad_io.part.content import PartContent
 
 Colour = tuple[float, float, float]
 

@@ -21,7 +21,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import faces, shape_map
-from cad_io.kernel.shapes import PartContent, children, unwrapped
+from cad_io.kernel.shapes import children, unwrapped
+from cad_io.part.content import PartContent
 from cad_io.read.document import DroppedNames, add_attributes
 from cad_io.read.faults import Fault, Model, edge_count, misfit, open_border
 from cad_io.read.step_text import CALLED, decoded, encoding_of

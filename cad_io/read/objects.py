@@ -20,9 +20,10 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, shape_map, translated
-from cad_io.kernel.shapes import Node, PartContent, as_one, compound, turned, unwrapped
+from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
 from cad_io.kernel.shapes import children as children_of
 from cad_io.part import Part
+from cad_io.part.content import PartContent
 from cad_io.read.document import FaceMarks
 
 Colour = tuple[float, float, float]

@@ -21,8 +21,9 @@ from OCP.TopoDS import TopoDS_Shape
 from cad_io.arrays import LostFace
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, silence, translated
-from cad_io.kernel.shapes import ENDLESS, Node, PartContent, bound_naturally, comes_back, endless, packed, unpacked, unwrapped
+from cad_io.kernel.shapes import ENDLESS, Node, bound_naturally, endless, unwrapped
 from cad_io.part import Part
+from cad_io.part.content import PartContent, comes_back, packed, unpacked
 from cad_io.read import iges, step
 from cad_io.read.objects import from_object
 from cad_io.read.sniff import load, sniff

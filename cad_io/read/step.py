@@ -33,7 +33,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from cad_io.arrays import LostFace, SizeNote
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
-from cad_io.kernel.shapes import PartContent, as_one, unwrapped
+from cad_io.kernel.shapes import as_one, unwrapped
+from cad_io.part.content import PartContent
 from cad_io.read import size_notes
 from cad_io.read.document import DroppedNames, add_attributes, each, roots
 from cad_io.read.faults import Model, UnreadFaces, is_face, is_whole, name_of, open_border, repair, type_of

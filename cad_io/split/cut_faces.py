@@ -226,8 +226,8 @@ class Attempt:
             self._works_on(cutters)
             if cutters & self.wrong.keys() or all(map(valid, made)) or not valid(self._given[number]):
                 continue
-            beside = f"with its edges cut there, F{number} next to it is not valid"
-            self.wrong |= dict.fromkeys(cutters, beside if number in neighbours else "a piece of it is not valid")
+            next_to = f"with its edges cut there, F{number} next to it is not valid"
+            self.wrong |= dict.fromkeys(cutters, next_to if number in neighbours else "a piece of it is not valid")
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
         arrangement, regions = drawing.found, [part.region for part in drawing.parts]

@@ -14,7 +14,8 @@ from OCP.TopLoc import TopLoc_Location
 from cad_io import Part, ReadError, read_part
 from cad_io.arrays import LostFace
 from cad_io.kernel import faces
-from cad_io.kernel.shapes import Node, PartContent
+from cad_io.kernel.shapes import Node
+from cad_io.part.content import PartContent
 from cad_io.read import read
 from plan_cutters_base.forks import limited
 from tests.support.cad_parts import box, compound, drilled, moved, real
