@@ -55,7 +55,7 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
     nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
     border = [(edge, net) for edge, net in nets if net]
     polylines = each(partial(polyline, chord=_CHORD * diagonal), [edge for edge, _ in border], seconds=SECONDS)
-    # An edge that cannot be pieces to an end is left out, as one without a curve is.
+    # An edge that cannot be followed to an end is left out, as one without a curve is.
     pieces = [
         (line, net) for line, (_, net) in zip(polylines, border, strict=True) if not isinstance(line, Ended) and len(line) > 1
     ]

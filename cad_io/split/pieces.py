@@ -28,6 +28,8 @@ from cad_io.surface import Surface
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
+#: Processor time after which the work on one face is taken for endless, s.
+SECONDS = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ class Split:
     joined: dict[int, int] = field(default_factory=dict)
 
 
-def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = 5) -> Split:
+def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = SECONDS) -> Split:
     """Split faces along the boundaries of their labels.
 
     labels: at most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces not
@@ -121,8 +123,8 @@ def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, 
     return Piece(before.face, label, each.shape, {label: own} if own else {}), group
 
 
-def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 5) -> Split:
-    """Split faces along the boundaries of labels that have no order; labels and seconds, in each turn, are as for `split`.
+def split_by_turns(part: Any, labels: Sequence[FaceLabels]) -> Split:
+    """Split faces along the boundaries of labels that have no order; labels are as for `split`.
 
     Islands of one node get pieces, too. Slivers without a node join what is around them. `dropped` counts the nodes that lie
     within a piece of another label.
@@ -145,7 +147,7 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
             surface: Surface = part.surface(owner[i])
             return surface
 
-        done = _split(shape, {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}, surface_of, requests, -1, seconds)
+        done = _split(shape, {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}, surface_of, requests, -1, SECONDS)
         shape, pieces = done.shape, [_halved(each, *pieces[each.face - 1]) for each in done.pieces]
         whole |= {owner[i]: why for i, why in done.whole.items()}
         for i, n in done.joined.items():

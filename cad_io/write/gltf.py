@@ -56,7 +56,6 @@ def write_gltf(
     *,
     extras: Callable[[int], dict[str, Any]],
     piece_extras: Callable[[Piece], dict[str, Any]],
-    deflection: float | None = None,
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
@@ -65,7 +64,7 @@ def write_gltf(
     path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
     for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
     facts (JSON values) about a face, by number, in the node `F<number>`, and about a piece, in its node, which has the style's
-    name. deflection: chord error of the triangles, mm; default FINE times the part's diagonal. merged: one node and mesh for
+    name. The triangles' chord error is FINE times the part's diagonal. merged: one node and mesh for
     everything: `extras` of the node holds a list of the faces' facts, and each vertex its face number as `_FACE`. others: bodies
     beside the part, a node each below those that they name.
 
@@ -74,7 +73,7 @@ def write_gltf(
     """
     with whole(path, WriteError) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            meshes = list(meshes_of(split, deflection))
+            meshes = list(meshes_of(split))
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
@@ -96,16 +95,11 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[Piece, Mesh | None]]:
-    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
-
-    `deflection`: chord error, mm; default FINE times the part's diagonal.
-    """
-    if deflection is None:
-        deflection = FINE * diagonal(split.shape)
+def meshes_of(split: Split) -> Iterator[tuple[Piece, Mesh | None]]:
+    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none."""
     surfaces: dict[int, Surface] = {}
     shapes = [piece.shape for piece in split.pieces]
-    for piece, render_mesh in zip(split.pieces, meshed(shapes, deflection, ANGLE), strict=True):
+    for piece, render_mesh in zip(split.pieces, meshed(shapes, FINE * diagonal(split.shape), ANGLE), strict=True):
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
         yield piece, face_mesh(piece.shape, surface, render_mesh)
