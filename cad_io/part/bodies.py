@@ -304,7 +304,7 @@ def _bodies_of_solid(part: Part, solid: Any, without: Collection[int]) -> Iterat
         if not _boundless(mine, sign) and group.relative is not None:
             # The solid contradicts itself, or is open: what the edges say counts, to the side that most faces name.
             sign = group.relative.astype(int) * int(np.sign((sign * group.relative).sum()) or 1)
-        yield from _body(part, [members[i][0] for i in group.members], mine, sign, solid=True)
+        yield from _body(part, [members[i][0] for i in group.members], mine, sign, True)
 
 
 def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
@@ -319,7 +319,7 @@ def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
         if group.relative is not None:
             numbers = [order[i] for i in group.members]
             sign, mine = group.relative.astype(int), [loose[n] for n in numbers]
-            yield from _body(part, numbers, mine, sign, solid=False, touching=group.touching)
+            yield from _body(part, numbers, mine, sign, group.touching)
 
 
 def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
@@ -334,17 +334,11 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
 
 
 def _body(
-    part: Part,
-    numbers: Sequence[int],
-    shapes: Sequence[TopoDS_Face],
-    sign: NDArray[np.int64],
-    *,
-    solid: bool,
-    touching: bool = False,
+    part: Part, numbers: Sequence[int], shapes: Sequence[TopoDS_Face], sign: NDArray[np.int64], sure: bool
 ) -> Iterator[Body]:
     """The body that faces with these signs enclose; none if they are a sheet.
 
-    `solid`: the file calls them one. `touching`: they are open only where other faces meet them at their edges.
+    `sure`: the file calls them one, or they are open only where other faces meet them at their edges.
     """
     index = [n - 1 for n in numbers]
     measured = [None if n in part.unmeasured else part.measure(n) for n in numbers]
@@ -354,7 +348,7 @@ def _body(
         yield Body(tuple(numbers), tuple(int(s) for s in outward), True, np.zeros((0, 3, 3)))
         return
     area, vector, _ = totals(part, index, sign.astype(float))
-    sure = solid or touching or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
+    sure = sure or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
     # In a file that lost faces, what is open may have been closed.
     if not (sure or part.lost):
         return

@@ -11,7 +11,7 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 """
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -73,29 +73,23 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
 
     Raises ValueError where a face has two label fields, or a field does not fit its grid.
     """
-    return _split(part.shape, {info.number: part.face(info.number) for info in part.faces}, part.surface, labels, worst, seconds)
+    faces = {info.number: part.face(info.number) for info in part.faces}
+    return _split(Job(part.shape, faces, {}, part.surface, worst), labels, seconds)
 
 
-def _split(
-    whole: Any,
-    faces: dict[int, Any],
-    surface_of: Callable[[int], Surface],
-    labels: Sequence[FaceLabels],
-    worst: int,
-    seconds: float,
-) -> Split:
-    """Split faces, by their numbers, of a whole shape."""
+def _split(job: Job, labels: Sequence[FaceLabels], seconds: float) -> Split:
+    """Split faces of a job that is without labels yet."""
     fields = {f.face: f for f in labels}
     if len(fields) < len(labels):
         raise ValueError("a face has two label fields")
     for f in labels:
         if f.label.shape != (len(f.u), len(f.v)):
             raise ValueError(f"F{f.face}: labels {f.label.shape} on a grid of {len(f.u)} x {len(f.v)}")
-    shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
-    mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, cut = cut_faces(Job(whole, faces, mixed, surface_of, worst), seconds)
+    shares = {number: _shares(fields[number].label) if number in fields else {} for number in job.faces}
+    mixed = {number: fields[number] for number in job.faces if len(shares[number]) > 1}
+    shape, cut = cut_faces(job._replace(labels=mixed), seconds)
     pieces: list[Piece] = []
-    for number, face in faces.items():
+    for number, face in job.faces.items():
         shapes = cut.faces.get(number, [face])
         if number in cut.labels:
             for (label, counts), piece in zip(cut.labels[number], shapes, strict=True):
@@ -147,7 +141,8 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels]) -> Split:
             surface: Surface = part.surface(owner[i])
             return surface
 
-        done = _split(shape, {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}, surface_of, requests, -1, SECONDS)
+        faces = {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}
+        done = _split(Job(shape, faces, {}, surface_of, -1), requests, SECONDS)
         shape, pieces = done.shape, [_halved(each, *pieces[each.face - 1]) for each in done.pieces]
         whole |= {owner[i]: why for i, why in done.whole.items()}
         for i, n in done.joined.items():
