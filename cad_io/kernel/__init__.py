@@ -164,7 +164,7 @@ def domain(adaptor: BRepAdaptor_Surface) -> tuple[float, float, float, float]:
 
 
 def kind_of(adaptor: Any) -> str:
-    """What the kernel calls a surface or a curve: `Plane`, `BSplineSurface`, `Line`."""
+    """Name a surface or a curve as the kernel does: `Plane`, `BSplineSurface`, `Line`."""
     return str(adaptor.GetType().name).removeprefix("GeomAbs_")
 
 

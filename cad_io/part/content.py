@@ -1,4 +1,4 @@
-"""What a reader has found and a part is made of, and its form without anything of the kernel's."""
+"""A part is made of what a reader has found: its record, and a form of it without anything of the kernel's."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -16,7 +16,7 @@ from cad_io.units import UnitReading
 
 @dataclass(slots=True)
 class PartContent:
-    """What a reader has found, and a `Part` is made of."""
+    """A reader has found this, and a `Part` is made of it."""
 
     #: One shape, located, lengths in mm.
     shape: Any

@@ -62,7 +62,7 @@ def _opened(file: str) -> Iterator[BinaryIO]:
 
 @contextmanager
 def reported(file: str) -> Iterator[None]:
-    """What goes wrong as a user's file is read is a ReadError."""
+    """Turn what goes wrong as a user's file is read into a ReadError."""
     try:
         yield
     except files.IrregularError:
