@@ -222,13 +222,10 @@ class Arrangement:
         return parts
 
 
-def _refined(
-    at: Callable[[float], tuple[Floats, Floats]],
-    side: Side,
-    scale: Floats,
-    start: tuple[float, float],
-    reach: tuple[float, float],
-) -> tuple[float, float]:
+_Pair = tuple[float, float]
+
+
+def _refined(at: Callable[[float], tuple[Floats, Floats]], side: Side, scale: Floats, start: _Pair, reach: _Pair) -> _Pair:
     """Parameters on a curve and a side where they cross, by Newton's steps; those of the chords where these lead away."""
     point, tangent = gp_Pnt2d(), gp_Vec2d()
     x, s = start

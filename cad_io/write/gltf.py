@@ -82,7 +82,13 @@ def write_gltf(
         if merged:
             _fill_merged(glb, pieces, drawings, extras)
         else:
-            _fill(glb, pieces, drawings, style, extras, piece_extras)
+            node_of, root = dict[int, int](), glb.node({"name": "part"})
+            for piece, mesh in zip(pieces, drawings, strict=True):
+                if piece.face not in node_of:
+                    node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
+                name, rgb, kind = style(piece)
+                shown = glb.mesh(name, mesh, kind or name, rgb)
+                glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
         _fill_others(glb, others)
         temporary.write_bytes(glb.bytes())
     return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
@@ -111,24 +117,6 @@ def _draw(mesh: Mesh, vertex_rgb: tuple[float, float, float] | None = None) -> _
         light = np.round(np.array([*linear(vertex_rgb), 1.0]) * 65535).astype(np.uint16)
         attributes["COLOR_0"] = np.tile(light, (len(mesh.point), 1))
     return _Mesh(attributes, mesh.triangle)
-
-
-def _fill(
-    glb: "_Glb",
-    pieces: Sequence[Piece],
-    meshes: Sequence[_Mesh | None],
-    style: Callable[[Piece], Style],
-    extras: Callable[[int], dict[str, Any]],
-    piece_extras: Callable[[Piece], dict[str, Any]],
-) -> None:
-    node_of: dict[int, int] = {}
-    root = glb.node({"name": "part"})
-    for piece, mesh in zip(pieces, meshes, strict=True):
-        if piece.face not in node_of:
-            node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
-        name, rgb, kind = style(piece)
-        shown = glb.mesh(name, mesh, kind or name, rgb)
-        glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
 
 
 def _fill_merged(
