@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.split.pieces import Piece, Split
+from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import meshed
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
@@ -59,7 +59,8 @@ def write_gltf(
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles.
+    """Write all pieces as triangles; triangles of a face left whole are split along the grid of its labels and stand in a node a
+    label.
 
     path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
     for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
@@ -102,13 +103,21 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
 
 
 def meshes_of(split: Split) -> Iterator[tuple[Piece, Mesh | None]]:
-    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none."""
+    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
+
+    Of a face that could not be split, the triangles of each label are a piece.
+    """
     surfaces: dict[int, Surface] = {}
     shapes = [piece.shape for piece in split.pieces]
     for piece, render_mesh in zip(split.pieces, meshed(shapes, FINE * diagonal(split.shape), ANGLE), strict=True):
+        labels = split.labels.get(piece.face) if piece.label == MIXED else None
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
-        yield piece, face_mesh(piece.shape, surface, render_mesh)
+        meshes = face_mesh(piece.shape, surface, render_mesh, labels)
+        for label, mesh in (meshes or {}).items():
+            yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
+        if not meshes:
+            yield piece, None
 
 
 def _draw(mesh: Mesh, vertex_rgb: tuple[float, float, float] | None = None) -> _Mesh:
