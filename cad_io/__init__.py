@@ -8,21 +8,13 @@ importing `cad_io` costs nothing until a name is used. Each room hands on its on
 from importlib import import_module
 from typing import Any
 
-_HOME = {
-    "CadIoError": "errors",
-    "ReadError": "errors",
-    "WriteError": "errors",
-    "Part": "part",
-    "read_part": "read",
-    "Orientation": "arrays",
-    "SurfaceSamples": "arrays",
-    "FaceGrid": "arrays",
-    "FaceInfo": "arrays",
-    "LostFace": "arrays",
-    "Triangles": "arrays",
-    "FaceLabels": "arrays",
-    "Style": "arrays",
+_MODULES = {
+    "arrays": ("FaceGrid", "FaceInfo", "FaceLabels", "LostFace", "Orientation", "Style", "SurfaceSamples", "Triangles"),
+    "errors": ("CadIoError", "ReadError", "WriteError"),
+    "part": ("Part",),
+    "read": ("read_part",),
 }
+_HOME = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = sorted(_HOME)
 
 

@@ -283,9 +283,7 @@ class Triangles(Record):
 
     def without(self, faces: Collection[int]) -> "Triangles":
         """The same without the triangles of some faces."""
-        if not faces:
-            return self
-        return self.take(~np.isin(self.face, list(faces)))
+        return self.take(~np.isin(self.face, list(faces))) if faces else self
 
     def take(self, rows: NDArray[Any]) -> "Triangles":
         """Some of them, by their rows or by a mask (t,)."""

@@ -46,41 +46,22 @@ def stored_carrier(kind: str, adaptor: Any) -> Carrier | None:
     """The carrier of a surface that the kernel stores in closed form, by its kind in `FaceInfo.surface`; None of others."""
     if kind == "plane":
         position = adaptor.Plane().Position()
-        return plane(_array(position.Location()), _array(position.Direction()))
-    if kind not in CLOSED:
-        return None
-    place, direction, radii = closed_form(kind, adaptor)
+        return carrier_of(kind, _array(position.Location()), _array(position.Direction()))
+    return carrier_of(kind, *closed_form(kind, adaptor)) if kind in CLOSED else None
+
+
+def carrier_of(kind: str, place: Floats, direction: Floats, sizes: tuple[float, ...] = ()) -> Carrier:
+    """The carrier of a kind about a place, with its axis or normal, and its sizes as `closed_form` has them."""
+    names = {"cylinder": ("radius",), "cone": ("half_angle",), "sphere": ("radius",), "torus": ("radius", "minor_radius")}
+    numbers: dict[str, Any] = dict(zip(names.get(kind, ()), map(float, sizes), strict=True))
     if kind == "sphere":
-        return sphere(place, *radii)
-    made: Any = {"cylinder": cylinder, "cone": cone, "torus": torus}[kind]
-    return made(place, direction, *radii)
-
-
-def plane(place: Floats, normal: Floats) -> Carrier:
-    """A plane through a place."""
-    direction = _signed(normal)
-    return Carrier(_point((place @ direction) * direction), _point(direction))
-
-
-def cylinder(place: Floats, direction: Floats, radius: float) -> Carrier:
-    """A cylinder about an axis through a place."""
+        return Carrier(_point(place), **numbers)
     direction = _signed(direction)
-    return Carrier(_point(place - (place @ direction) * direction), _point(direction), float(radius))
-
-
-def cone(apex: Floats, direction: Floats, half_angle: float) -> Carrier:
-    """A cone with an apex and an axis."""
-    return Carrier(_point(apex), _point(_signed(direction)), half_angle=float(half_angle))
-
-
-def sphere(centre: Floats, radius: float) -> Carrier:
-    """A sphere about a centre."""
-    return Carrier(_point(centre), radius=float(radius))
-
-
-def torus(centre: Floats, direction: Floats, radius: float, minor_radius: float) -> Carrier:
-    """A tube about a circle."""
-    return Carrier(_point(centre), _point(_signed(direction)), float(radius), float(minor_radius))
+    if kind == "plane":
+        place = (place @ direction) * direction
+    elif kind == "cylinder":
+        place = place - (place @ direction) * direction
+    return Carrier(_point(place), _point(direction), **numbers)
 
 
 def sided(carrier: Carrier | None, surface: Surface, box: tuple[float, float, float, float]) -> Carrier | None:
@@ -176,7 +157,7 @@ def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator
     """Shapes that points with their normals and principal curvatures may lie on."""
     middle = point.mean(axis=0)
     across = np.linalg.svd(point - middle, full_matrices=False)[2][2]
-    yield Fit("plane", lambda p: np.abs((p - middle) @ across), plane(middle, across))
+    yield Fit("plane", lambda p: np.abs((p - middle) @ across), carrier_of("plane", middle, across))
     large = float(np.abs(kappa).max())
     if large * size < 1e-3:
         return
@@ -187,7 +168,8 @@ def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator
         centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
         far = np.linalg.norm(point - centre, axis=1)
         radius = 0.5 * float(far.min() + far.max())
-        yield Fit("sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius), sphere(centre, radius))
+        fitted = carrier_of("sphere", centre, across, (radius,))
+        yield Fit("sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius), fitted)
     elif flat.any():
         yield from _ruled(point, normal)
     else:
@@ -236,11 +218,8 @@ def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
         return
     if abs(float(tilt.mean())) < 1e-4:
         middle, radius = _circle(point @ axes[:2].T)
-        yield Fit(
-            "cylinder",
-            lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius),
-            cylinder(middle @ axes[:2], axis, radius),
-        )
+        fitted = carrier_of("cylinder", middle @ axes[:2], axis, (radius,))
+        yield Fit("cylinder", lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius), fitted)
         return
     # A cone's points stand off its axis along the normals' part across it, by a distance that is linear in the height.
     flat, height = point @ axes[:2].T, point @ axis
@@ -262,7 +241,7 @@ def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
     # Where the radius is zero; without a slope there is no apex, and no number of the carrier is finite.
     with np.errstate(divide="ignore", invalid="ignore"):
         apex = np.asarray(centre) @ axes[:2] - np.divide(r0, k) * axis
-    yield Fit("cone", distance, cone(apex, axis, float(np.arctan(abs(k)))))
+    yield Fit("cone", distance, carrier_of("cone", apex, axis, (float(np.arctan(abs(k))),)))
 
 
 def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
@@ -277,4 +256,5 @@ def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
         outward = np.linalg.norm((p - centre) @ axes[:2].T - middle, axis=1) - radius
         return np.asarray(np.abs(np.hypot(outward, (p - centre) @ axes[2] - spine_height) - 1 / abs(kappa)))
 
-    return Fit("torus", distance, torus(centre + middle @ axes[:2] + spine_height * axes[2], axes[2], radius, 1 / abs(kappa)))
+    place = centre + middle @ axes[:2] + spine_height * axes[2]
+    return Fit("torus", distance, carrier_of("torus", place, axes[2], (radius, 1 / abs(kappa))))

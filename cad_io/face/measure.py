@@ -13,19 +13,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from OCP.BRepGProp import BRepGProp
-from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
+from OCP.GeomAbs import GeomAbs_C2
 from OCP.GProp import GProp_GProps
 
 from cad_io.arrays import Floats, cross
 from cad_io.face.trim import Trim
-from cad_io.kernel import interval_ends
+from cad_io.kernel import interval_ends, kind_of
 from cad_io.surface import Surface
 
 #: Nodes along one direction of a cell, tried in turn until what the last two orders add to the densities is below
 #: ACCURACY. Only quadrics and tori are so tame that the fewest nodes can be trusted.
 _NODES = (4, 8, 14, 24, 48)
 ACCURACY = 3e-6
-_TAME = (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Cone, GeomAbs_Sphere, GeomAbs_Torus)
+_TAME = ("Plane", "Cylinder", "Cone", "Sphere", "Torus")
 _MOST_CELLS = 8  # a direction; with more breaks than that, each is too small to matter
 _MOST_TABLE = 5000  # nodes of all cells together
 _LEAST_TABLE = 200  # nodes that each cell may have nevertheless
@@ -103,7 +103,7 @@ def _border_nodes(segments: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple
 
 def _resolved(surface: Surface, cell: tuple[float, float, float, float], origin: Floats, most: int) -> Floats:
     """The table of a cell with as many nodes each way as the densities |N| and N need, at most so many in all."""
-    turn = [0, 0] if surface.adaptor.GetType() in _TAME else [1, 1]
+    turn = [0, 0] if kind_of(surface.adaptor) in _TAME else [1, 1]
     while True:
         table = _table(surface, cell, origin, _NODES[turn[0]], _NODES[turn[1]])
         size = np.abs(table[..., :4])

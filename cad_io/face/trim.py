@@ -107,6 +107,22 @@ class Trim(Record):
             result[some] = grid[np.argsort(order_u), np.argsort(order_v)]
         return result
 
+    def at(self, segment: Any, share: Floats) -> Floats:
+        """Parameters (k, 2) on segments (k,), at shares (k,) of them."""
+        start = self.segments[segment, 0]
+        return np.asarray(start + share[:, None] * (self.segments[segment, 1] - start))
+
+    def along(self, exact: int, chord: int, first: float) -> tuple[Any, Floats]:
+        """Places along the border: segments (k,), and shares (k,) of them.
+
+        exact, chord: into how many pieces to part a segment that is the border itself, and one that is a chord of it; a place in
+        each piece, behind its start by the share `first` of it.
+        """
+        pieces = np.where(self.exact, exact, chord)
+        segment = np.repeat(np.arange(len(pieces)), pieces)
+        nth = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        return segment, (nth + first) / pieces[segment]
+
     def _asked(self, u: Floats, v: Floats) -> Bools:
         classifier = BRepTopAdaptor_FClass2d(self.face, float(self.tolerance / self.scale.max()))
         states = [classifier.Perform(gp_Pnt2d(a, b)) for a, b in zip(u.tolist(), v.tolist(), strict=True)]
@@ -214,6 +230,15 @@ def joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
     joins = np.stack([end, start[following]], axis=1)
     gap = np.linalg.norm((end - start[following]) * scale, axis=1)
     return joins[gap > 0], float(gap.max())
+
+
+def nearest(segments: Floats, point: Floats) -> tuple[int, float, float]:
+    """The segment of (n, 2, 2) that is nearest to a point (2,): its number, the share of its length, the distance."""
+    start, step = segments[:, 0], segments[:, 1] - segments[:, 0]
+    share = np.clip(((point - start) * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), 1e-300), 0, 1)
+    away = np.linalg.norm(start + share[:, None] * step - point, axis=1)
+    k = int(away.argmin())
+    return k, float(share[k]), float(away[k])
 
 
 def continuing(start: Floats, end: Floats, scale: Floats) -> NDArray[np.intp]:
@@ -417,7 +442,6 @@ def _cut(segments: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _OFF = 1e-7  # of the grid, that rows are moved by
-_FEW = 50  # places of a curve that are asked of the kernel one by one
 _ARCS = 8  # intervals that a curve without knots (conic) is cut into
 
 
@@ -472,23 +496,8 @@ def _integral(curve: Any) -> float:
         ends = ends[[0, -1]]
     half = 0.5 * np.diff(ends)
     t = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES).ravel()
-    place, slope = _followed(curve, t)
+    place, slope = np.moveaxis(along(curve, t), 1, 0)
     return float(((half[:, None] * _WEIGHTS).ravel() * place[:, 0] * slope[:, 1]).sum())
-
-
-def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
-    if curve.GetType() == GeomAbs_BSplineCurve and len(t) > _FEW:
-        spline = curve.BSpline()
-        if not (spline.IsRational() or spline.IsPeriodic()):
-            poles = np.array([spline.Pole(i).Coord() for i in range(1, spline.NbPoles() + 1)])
-            flat = spline.KnotSequence()
-            knots = np.array([flat.Value(i) for i in range(flat.Lower(), flat.Upper() + 1)])
-            from scipy.interpolate import BSpline  # half a second to load
-
-            known = BSpline(knots, poles, spline.Degree())
-            return known(t), known.derivative()(t)
-    points = along(curve, t)
-    return points[:, 0], points[:, 1]
 
 
 def nodes_inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:

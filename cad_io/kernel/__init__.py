@@ -106,14 +106,7 @@ def bounding(face: TopoDS_Face) -> tuple[TopoDS_Face, list[tuple[TopoDS_Edge, in
 
 def values(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
     """Surface points, (n, 3) mm, at parameters u, v of shape (n,); NaN where the kernel refuses."""
-    places = list(zip(u.tolist(), v.tolist(), strict=True))
-    with may_refuse():
-        return np.array([adaptor.Value(a, b).Coord() for a, b in places], dtype=float).reshape(-1, 3)
-    points = np.full((len(places), 3), np.nan)
-    for i, (a, b) in enumerate(places):
-        with may_refuse():
-            points[i] = adaptor.Value(a, b).Coord()
-    return points
+    return _derivatives(adaptor.D0, u, v, 0)[:, 0]
 
 
 def first_derivatives(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
@@ -168,6 +161,16 @@ def along(curve: Any, t: Floats, dimension: int = 2) -> Floats:
 def domain(adaptor: BRepAdaptor_Surface) -> tuple[float, float, float, float]:
     """Ends of a surface's own parameters: u least, u most, v least, v most."""
     return adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter()
+
+
+def kind_of(adaptor: Any) -> str:
+    """Name a surface or a curve as the kernel does: `Plane`, `BSplineSurface`, `Line`."""
+    return str(adaptor.GetType().name).removeprefix("GeomAbs_")
+
+
+def periods(surface: Any) -> tuple[float, float]:
+    """Periods of a surface's parameters u and v, 0 where there is none."""
+    return surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0
 
 
 def interval_ends(count: int, intervals: Any, continuity: Any) -> Floats:

@@ -4,7 +4,7 @@ The annotated model is built up as that tree again.
 """
 
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -27,7 +27,7 @@ from OCP.Precision import Precision
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape, TopoDS_Vertex
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
@@ -67,10 +67,10 @@ def compound(shapes: list[Any]) -> Any:
     return whole
 
 
-def children(shape: Any) -> list[Any]:
-    """Sub-shapes one level down, located and oriented as they stand in the shape."""
+def children(shape: Any, *, located: bool = True) -> list[Any]:
+    """Sub-shapes one level down, located and oriented as they stand in the shape; or without the shape's own location."""
     out = []
-    each = TopoDS_Iterator(shape)
+    each = TopoDS_Iterator(shape, True, located)
     while each.More():
         out.append(each.Value())
         each.Next()
@@ -108,6 +108,20 @@ def unwrapped(shape: Any) -> Any:
     while shape.ShapeType() == TopAbs_COMPOUND and len(inner := children(shape)) == 1:
         shape = inner[0]
     return shape
+
+
+def with_edges(face: TopoDS_Face, instead: Callable[[TopoDS_Shape], Iterable[TopoDS_Shape]]) -> TopoDS_Face:
+    """A face on the same surface, with the edges that `instead` gives for each edge of its borders, as they stand there."""
+    builder, forward = BRep_Builder(), face.Oriented(TopAbs_FORWARD)
+    made = forward.EmptyCopied()
+    for border in children(forward):
+        plain = border.Oriented(TopAbs_FORWARD)
+        fresh = plain.EmptyCopied()
+        for part in (part for edge in children(plain) for part in instead(edge)):
+            builder.Add(fresh, part)
+        fresh.Closed(border.Closed())
+        builder.Add(made, fresh.Oriented(border.Orientation()))
+    return TopoDS.Face_s(made.Oriented(face.Orientation()))
 
 
 class Side(NamedTuple):
@@ -253,22 +267,21 @@ class Node:
     #: Face numbers of a leaf, no number in two leaves.
     faces: tuple[int, ...] = ()
 
-    def leaves(
-        self, path: tuple[str, ...] = (), location: TopLoc_Location | None = None
-    ) -> Iterator[tuple["Node", str, TopLoc_Location]]:
-        """Every leaf with its path of names (`wheel/rim`) and its location in the part."""
-        path = (*path, self.instance or self.name)
+    def walk(self, above: str = "", location: TopLoc_Location | None = None) -> Iterator[tuple["Node", str, TopLoc_Location]]:
+        """Itself and all that is in it, each with its path of names (`wheel/rim`) and its location in the part."""
+        path = "/".join(filter(None, (above, self.instance or self.name)))
         place = location.Multiplied(self.place) if location else self.place
-        if not self.children:
-            yield self, "/".join(filter(None, path)), place
+        yield self, path, place
         for child in self.children:
-            yield from child.leaves(path, place)
+            yield from child.walk(path, place)
+
+    def leaves(self) -> Iterator[tuple["Node", str, TopLoc_Location]]:
+        """Every leaf, as of `walk`."""
+        return (each for each in self.walk() if not each[0].children)
 
     def numbers(self) -> Iterator[int]:
         """Face numbers of all leaves."""
-        yield from self.faces
-        for child in self.children:
-            yield from child.numbers()
+        return (number for node, *_ in self.walk() for number in node.faces)
 
 
 def component_of(tree: Sequence[Node]) -> dict[int, str]:
@@ -281,56 +294,8 @@ def faces_of(tree: Sequence[Node], name: str) -> set[int]:
 
     An exact path counts alone; where there is none, a trailing part of a path (`wheel/rim`) or a product's name.
     """
-    nodes = [(node, path) for root in tree for node, path in _paths(root, "")]
+    nodes = [(node, path) for root in tree for node, path, _ in root.walk()]
     result = [node for node, path in nodes if path == name] or [
         node for node, path in nodes if path.endswith(f"/{name}") or node.name == name
     ]
     return {number for node in result for number in node.numbers()}
-
-
-def _paths(node: Node, above: str) -> Iterator[tuple[Node, str]]:
-    path = "/".join(filter(None, (above, node.instance or node.name)))
-    yield node, path
-    for child in node.children:
-        yield from _paths(child, path)
-
-
-#: What `Part` is made of, by the names of its parameters.
-PartContent = dict[str, Any]
-
-
-def packed(content: PartContent) -> PartContent:
-    """Without kernel objects: the shape as bytes, and behind it one vertex for the place of each node of the tree."""
-    vertex = TopoDS_Vertex()
-    BRep_Builder().MakeVertex(vertex, gp_Pnt(), 1e-7)
-    tree = content.get("tree", ())
-    form = as_bytes(compound([content["shape"], *(vertex.Located(place) for place in _places(tree))]))
-    return content | {"shape": form, "tree": [_bare(node) for node in tree]}
-
-
-def unpacked(packed: PartContent) -> PartContent:
-    """Return the arguments that were given to `packed`, with new copies of the shape and of the locations."""
-    shape, *vertices = children(of_bytes(packed["shape"]))
-    places = iter([vertex.Location() for vertex in vertices])
-    return packed | {"shape": shape, "tree": tuple(_placed(bare, places) for bare in packed["tree"])}
-
-
-def comes_back(packed_content: PartContent) -> bool:
-    """Whether what is unpacked is what was packed to the last bit: the kernel makes directions unit vectors again as it reads."""
-    return bool(packed(unpacked(packed_content))["shape"] == packed_content["shape"])
-
-
-def _places(tree: tuple[Node, ...]) -> Iterator[TopLoc_Location]:
-    for node in tree:
-        yield node.place
-        yield from _places(node.children)
-
-
-def _bare(node: Node) -> tuple[Any, ...]:
-    return node.name, node.instance, [_bare(child) for child in node.children], node.faces
-
-
-def _placed(bare: tuple[Any, ...], places: Iterator[TopLoc_Location]) -> Node:
-    name, instance, inner, numbers = bare
-    place = next(places)
-    return Node(name, instance, place, tuple(_placed(child, places) for child in inner), numbers)

@@ -10,7 +10,7 @@ within is known to lie there perhaps. How a cap runs between its borders is a gu
 sure.
 """
 
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -54,24 +54,23 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
     """
     nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
     border = [(edge, net) for edge, net in nets if net]
-    lines, ways = [], []
     polylines = each(partial(polyline, chord=_CHORD * diagonal), [edge for edge, _ in border], seconds=SECONDS)
-    for line, (_, net) in zip(polylines, border, strict=True):
-        # An edge that cannot be drawn to an end is left out, as one without a curve is.
-        if not isinstance(line, Ended) and len(line) > 1:
-            lines.append(line if net > 0 else line[::-1])
-            ways.append(abs(net))
-    if not lines:
-        return np.zeros((0, 3, 3))
-    return coned(lines, ways, _SAME * diagonal)
+    # An edge that cannot be followed to an end is left out, as one without a curve is.
+    pieces = [
+        (line, net) for line, (_, net) in zip(polylines, border, strict=True) if not isinstance(line, Ended) and len(line) > 1
+    ]
+    return coned(pieces, _SAME * diagonal)
 
 
-def coned(lines: Sequence[Floats], ways: Sequence[int], near: float) -> Floats:
+def coned(pieces: Sequence[tuple[Floats, int]], near: float) -> Floats:
     """Triangles (t, 3, 3) that close openings, of which ends of pieces so near, mm, belong to one.
 
-    The pieces of the openings' borders, lines (k, 3), are each run along as the skin does that they border, as often as `ways`
-    says.
+    The pieces of the openings' borders are lines (k, 3), each with how often the skin that they border runs along it, negative
+    where it does so the other way.
     """
+    if not pieces:
+        return np.zeros((0, 3, 3))
+    lines = [line if net > 0 else line[::-1] for line, net in pieces]
     ends = np.concatenate([line[[0, -1]] for line in lines])
     pairs = cKDTree(ends).query_pairs(near, output_type="ndarray")
     opening = connected(len(ends), np.concatenate([pairs, np.arange(len(ends)).reshape(-1, 2)]))[::2]
@@ -81,7 +80,7 @@ def coned(lines: Sequence[Floats], ways: Sequence[int], near: float) -> Floats:
         apex = np.concatenate([lines[i] for i in mine]).mean(axis=0)
         for i in mine:
             top = np.broadcast_to(apex, (len(lines[i]) - 1, 3))
-            made += [np.stack([top, lines[i][1:], lines[i][:-1]], axis=1)] * ways[i]
+            made += [np.stack([top, lines[i][1:], lines[i][:-1]], axis=1)] * abs(pieces[i][1])
     return np.concatenate(made)
 
 
@@ -137,16 +136,12 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
         return True
     joined = joined_faces([face for _, face in members])
     closed = all(c.closed for c in joined)
-    if closed and all(c.relative is not None for c in joined):
-        disagree = False
+    consistent = all(c.relative is not None for c in joined)
+    # The flags of one shell must all agree, or all disagree, with what its edges say.
+    if closed and consistent and any(np.ptp(flags[c.members] * c.relative) > 0 for c in joined):
         for c in joined:
-            # The flags of one shell must all agree, or all disagree, with what its edges say.
-            ratio = flags[c.members] * c.relative
-            disagree |= bool(np.ptp(ratio) > 0)
-        if disagree:
-            for c in joined:
-                flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
-            notes.append("solids whose faces contradict each other were made consistent")
+            flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
+        notes.append("solids whose faces contradict each other were made consistent")
     enclosed = volume(part, index, flags)
     # Of an open skin the flux says nothing: it depends on where it is taken from.
     if closed and enclosed < 0:
@@ -179,7 +174,7 @@ def _orient_rest(part: Part, rest: Sequence[int], sign: Floats, notes: list[str]
             sign[index] = relative * np.sign(enclosed)
             notes.append("closed shells outward")
             continue
-        area, vector = vector_area(part, index, relative)
+        area, vector, _ = totals(part, index, relative)
         if not area:  # no surface, no side
             sign[index] = relative
             continue
@@ -235,14 +230,11 @@ def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
         if seen[first]:
             continue
         seen[first], members, agree = 1, [first], True
-        queue = deque(members)
-        while queue:
-            i = queue.popleft()
+        for i in members:  # which grow meanwhile
             for j, same in links[i]:
                 if not seen[j]:
                     seen[j] = seen[i] * same
                     members.append(j)
-                    queue.append(j)
                 agree &= bool(seen[j] == seen[i] * same)
         group_of[members] = len(members_of)
         members_of.append(members)
@@ -264,22 +256,20 @@ def volume(part: Part, index: Sequence[int] | NDArray[np.int_], sign: Floats, ca
     face is not measured: without it, even the sign would be a guess."""
     if part.unmeasured & {int(i) + 1 for i in index}:
         return 0.0
-    measures = [part.measure(int(i) + 1) for i in index]
-    flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
+    area, _, flux = totals(part, index, sign)
     flux += 0.0 if cap is None else flux_of(cap, part.middle)
-    area = sum(m.area for m in measures if m and np.isfinite(m.area))
     enough = abs(flux) > 3 * _FLAT * area * float(np.linalg.norm(part.size))
     return float(flux) / 3 if enough else 0.0
 
 
-def vector_area(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats]:
-    """Area and vector area of a set of faces, mm2."""
-    area, vector = 0.0, np.zeros(3)
+def totals(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats, float]:
+    """Area and vector area, mm2, and flux about the part's middle, mm3, of a set of faces, of those that are measured."""
+    area, vector, flux = 0.0, np.zeros(3), 0.0
     for i, s in zip(index, sign, strict=True):
         m = part.measure(int(i) + 1)
         if m and np.isfinite(m.area):
-            area, vector = area + m.area, vector + s * m.vector
-    return area, vector
+            area, vector, flux = area + m.area, vector + s * m.vector, flux + s * m.flux
+    return area, vector, flux
 
 
 #: Caps of loose faces of a file that lost some are believed up to this share of the faces' own area.
@@ -307,14 +297,14 @@ def _bodies_of_solid(part: Part, solid: Any, without: Collection[int]) -> Iterat
     groups = joined_faces(shapes)
     if not all(_boundless([shapes[i] for i in g.members], flags[g.members]) for g in groups):
         # Faces that lie edge to edge without sharing it: joined as loose ones are.
-        shapes = join(shapes, float(np.linalg.norm(part.size))).faces
+        shapes = [*join(dict(enumerate(shapes)), float(np.linalg.norm(part.size))).faces.values()]
         groups = joined_faces(shapes)
     for group in groups:
         mine, sign = [shapes[i] for i in group.members], flags[group.members]
         if not _boundless(mine, sign) and group.relative is not None:
             # The solid contradicts itself, or is open: what the edges say counts, to the side that most faces name.
             sign = group.relative.astype(int) * int(np.sign((sign * group.relative).sum()) or 1)
-        yield from _body(part, [members[i][0] for i in group.members], mine, sign, solid=True)
+        yield from _body(part, [members[i][0] for i in group.members], mine, sign, True)
 
 
 def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
@@ -329,7 +319,7 @@ def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
         if group.relative is not None:
             numbers = [order[i] for i in group.members]
             sign, mine = group.relative.astype(int), [loose[n] for n in numbers]
-            yield from _body(part, numbers, mine, sign, solid=False, touching=group.touching)
+            yield from _body(part, numbers, mine, sign, group.touching)
 
 
 def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
@@ -344,17 +334,11 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
 
 
 def _body(
-    part: Part,
-    numbers: Sequence[int],
-    shapes: Sequence[TopoDS_Face],
-    sign: NDArray[np.int64],
-    *,
-    solid: bool,
-    touching: bool = False,
+    part: Part, numbers: Sequence[int], shapes: Sequence[TopoDS_Face], sign: NDArray[np.int64], sure: bool
 ) -> Iterator[Body]:
     """The body that faces with these signs enclose; none if they are a sheet.
 
-    `solid`: the file calls them one. `touching`: they are open only where other faces meet them at their edges.
+    `sure`: the file calls them one, or they are open only where other faces meet them at their edges.
     """
     index = [n - 1 for n in numbers]
     measured = [None if n in part.unmeasured else part.measure(n) for n in numbers]
@@ -363,8 +347,8 @@ def _body(
         outward = -sign if volume(part, index, sign.astype(float)) < 0 else sign
         yield Body(tuple(numbers), tuple(int(s) for s in outward), True, np.zeros((0, 3, 3)))
         return
-    area, vector = vector_area(part, index, sign.astype(float))
-    sure = solid or touching or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
+    area, vector, _ = totals(part, index, sign.astype(float))
+    sure = sure or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
     # In a file that lost faces, what is open may have been closed.
     if not (sure or part.lost):
         return

@@ -10,6 +10,7 @@ with. A distance is never told too small, so that what is not understood stays a
 the work is bounded by the number of pieces and of ends that lie next to each other.
 """
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import chain, pairwise
 from typing import NamedTuple
@@ -83,7 +84,8 @@ class Curves:
 
     def length(self, which: Indices, t: Floats) -> Floats:
         """Lengths (m,) from the common start of all tables: of use are differences on one curve, mm."""
-        i, share = self._chord(which, t)
+        i = self._piece(self._table_t, self.table_first, which, t)
+        share = np.clip((t - self._table_t[i]) / (self._table_t[i + 1] - self._table_t[i]), 0.0, 1.0)
         return np.asarray(self._table_length[i] + share * (self._table_length[i + 1] - self._table_length[i]))
 
     def at_length(self, which: Indices, length: Floats) -> Floats:
@@ -126,14 +128,14 @@ class Curves:
         least = 1e-6 * (high - low)
         return np.concatenate([[low], own[(own > low + least) & (own < high - least)], [high]])
 
+    def is_cut(self, piece: "Piece") -> bool:
+        """Whether a piece is but a part of its edge."""
+        edge, low, high = piece
+        return bool(self.drawn[edge] and (low > self.low[edge] or high < self.high[edge]))
+
     def count(self, which: Indices) -> Indices:
         """Numbers (m,) of pieces of curves."""
         return np.asarray(np.diff(self._first)[which] - 1)
-
-    def _chord(self, which: Indices, t: Floats) -> tuple[Indices, Floats]:
-        i = self._piece(self._table_t, self.table_first, which, t)
-        step = self._table_t[i + 1] - self._table_t[i]
-        return i, np.clip((t - self._table_t[i]) / step, 0.0, 1.0)
 
     def _piece(self, table: Floats, first: Indices, which: Indices, t: Floats) -> Indices:
         """Places (m,) in a table of the last entry of each curve that is not behind its parameter."""
@@ -153,65 +155,51 @@ class _Drawing(NamedTuple):
     d: Floats
 
 
-class _Kernel(NamedTuple):
-    """The kernel's curve of an edge, and where its smooth parts end."""
-
-    curve: BRepAdaptor_Curve
-    ends: Floats
-
-    @classmethod
-    def of(cls, edge: TopoDS_Edge) -> "_Kernel | None":
-        ends = np.zeros(0)
-        with may_refuse():
-            curve = BRepAdaptor_Curve(edge)
-            low, high = curve.FirstParameter(), curve.LastParameter()
-            if not (low < high and max(-low, high) < _INFINITE):
-                return None
-            if curve.GetType() == GeomAbs_Line:
-                return cls(curve, np.array([low, high]))
-            count = curve.NbIntervals(GeomAbs_C2)
-            if not 0 < count <= _MOST_INTERVALS:
-                return None
-            ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
-        if len(ends) < 2:
-            return None
-        each = max(_FIRST // (len(ends) - 1), 1)
-        share = np.arange(each) / each
-        t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
-        return cls(curve, np.append(t, ends[-1]))
-
-    def at(self, t: Floats) -> tuple[Floats, Floats] | None:
-        """Points and derivatives (k, 3); None where the kernel has none."""
-        with may_refuse():
-            derivatives = along(self.curve, t, 3)
-            if np.isfinite(derivatives).all():
-                return derivatives[:, 0], derivatives[:, 1]
+def _first_ends(curve: BRepAdaptor_Curve) -> Floats | None:
+    """Ends (k,) of the pieces of a curve to begin with: of its smooth parts, at least; None where it has no end, or too many."""
+    low, high = curve.FirstParameter(), curve.LastParameter()
+    if not (low < high and max(-low, high) < _INFINITE):
         return None
+    if curve.GetType() == GeomAbs_Line:
+        return np.array([low, high])
+    count = curve.NbIntervals(GeomAbs_C2)
+    if not 0 < count <= _MOST_INTERVALS:
+        return None
+    ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
+    each = max(_FIRST // max(len(ends) - 1, 1), 1)
+    return np.append((ends[:-1, None] + np.arange(each) / each * np.diff(ends)[:, None]).ravel(), ends[-1])
+
+
+def _places(curve: BRepAdaptor_Curve, t: Floats) -> tuple[Floats, Floats] | None:
+    """Points and derivatives (k, 3); None where the kernel has none."""
+    with may_refuse():
+        derivatives = along(curve, t, 3)
+        if np.isfinite(derivatives).all():
+            return derivatives[:, 0], derivatives[:, 1]
+    return None
 
 
 def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
     """The curve of an edge in pieces; None where it cannot be followed."""
-    kernel = _Kernel.of(edge)
-    if kernel is None:
-        return None
-    t, points = kernel.ends, kernel.at(kernel.ends)
-    if points is None:
+    t: Floats | None = None
+    with may_refuse():
+        curve = BRepAdaptor_Curve(edge)
+        t = _first_ends(curve)
+    if t is None or len(t) < 2 or (points := _places(curve, t)) is None:
         return None
     p, d = points
     doubtful = np.ones(len(t) - 1, bool)
     for _ in range(_HALVINGS):
         i = np.flatnonzero(doubtful)
-        h = t[i + 1] - t[i]
-        points = kernel.at(0.5 * (t[i] + t[i + 1]))
-        if points is None:
+        h, halves = t[i + 1] - t[i], 0.5 * (t[i] + t[i + 1])
+        if (points := _places(curve, halves)) is None:
             return None
         (middle, along), across = points, h[:, None]
         guess = 0.5 * (p[i] + p[i + 1]) + across * (d[i] - d[i + 1]) / 8
         slope = 1.5 * (p[i + 1] - p[i]) - across * (d[i] + d[i + 1]) / 4
         off = np.maximum(np.linalg.norm(guess - middle, axis=1), np.linalg.norm(slope - across * along, axis=1) / 8)
         # Both halves are kept in any case.
-        at = i + 1
-        t, p, d = _with(t, at, 0.5 * (t[i] + t[i + 1])), _with(p, at, middle), _with(d, at, along)
+        t, p, d = (np.insert(rows, i + 1, more, axis=0) for rows, more in ((t, halves), (p, middle), (d, along)))
         where, bad = i + np.arange(len(i)), off > _HALVES * chord
         doubtful = np.zeros(len(t) - 1, bool)
         doubtful[where], doubtful[where + 1] = bad, bad
@@ -220,16 +208,6 @@ def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
         if len(t) > MOST_PIECES:
             return None
     return None
-
-
-def _with(rows: Floats, at: Indices, more: Floats) -> Floats:
-    """Rows with more of them, each before the row that it names."""
-    result = np.empty((len(rows) + len(more), *rows.shape[1:]))
-    fresh = at + np.arange(len(at))
-    old = np.ones(len(result), bool)
-    old[fresh] = False
-    result[fresh], result[old] = more, rows
-    return result
 
 
 #: Ends next to each other: more of them are no edges of faces, and the ladder ends.
@@ -385,9 +363,13 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     near = np.flatnonzero(distance <= tolerance)
     # No two sides of one narrow face.
     own = [set(faces[a]) & set(faces[b]) for a, b in zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)]
-    tubes = _Tubes(curves, faces) if any(own) else None
-    apart = [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, i[near].tolist(), strict=True)]
-    near = near[np.array(apart, bool)]
+    edges_of = defaultdict[int, list[int]](list)
+    for edge, users in enumerate(faces) if any(own) else ():
+        for face in users:
+            edges_of[face].append(edge)
+    own_edges = [[edge for face in faces[e] for edge in edges_of[face]] for e in table.edge[i[near]].tolist()]
+    rows = zip(own, i[near].tolist(), own_edges, strict=True)
+    near = near[np.array([not it or _is_wide(curves, edges, table, row, tolerance) for it, row, edges in rows], bool)]
     order = near[np.argsort(distance[near], kind="stable")]
     allowed: dict[tuple[int, int], set[int]] = {}
     for k in order.tolist():
@@ -458,28 +440,16 @@ def _distances(curves: Curves, table: _Table, i: Indices, j: Indices, way: Indic
     return worst
 
 
-class _Tubes:
-    """May a face be joined with itself? A tube that is slit may, a strip as narrow as the tolerance may not."""
-
-    def __init__(self, curves: Curves, faces: list[tuple[int, ...]]) -> None:
-        self.curves, self.by_face = curves, {}
-        for edge, users in enumerate(faces):
-            for face in users:
-                self.by_face.setdefault(face, []).append(edge)
-        self.faces = faces
-
-    by_face: dict[int, list[int]]
-
-    def wide(self, table: _Table, piece: int, tolerance: float) -> bool:
-        """Whether the face of a piece reaches well away from the piece."""
-        curves, edge = self.curves, int(table.edge[piece])
-        mine = np.array([e for face in self.faces[edge] for e in self.by_face[face] if curves.drawn[e]], np.intp)
-        t = curves.low[mine][:, None] + np.linspace(0.0, 1.0, 9) * (curves.high - curves.low)[mine][:, None]
-        points = curves.at(np.repeat(mine, 9), t.ravel())[0]
-        inner = np.linspace(table.low[piece], table.high[piece], 65)
-        line = curves.at(np.full(65, edge), inner)[0]
-        gap = float(np.linalg.norm(np.diff(line, axis=0), axis=1).max())
-        return bool(cKDTree(line).query(points)[0].max() > gap + _AWAY * tolerance)
+def _is_wide(curves: Curves, edges: list[int], table: _Table, piece: int, tolerance: float) -> bool:
+    """Whether a face with these edges reaches well away from one of its pieces: a tube that is slit does, and may be joined with
+    itself, a strip as narrow as the tolerance does not."""
+    mine = np.array(edges, np.intp)[curves.drawn[edges]]
+    t = curves.low[mine][:, None] + np.linspace(0.0, 1.0, 9) * (curves.high - curves.low)[mine][:, None]
+    points = curves.at(np.repeat(mine, 9), t.ravel())[0]
+    inner = np.linspace(table.low[piece], table.high[piece], 65)
+    line = curves.at(np.full(65, table.edge[piece]), inner)[0]
+    gap = float(np.linalg.norm(np.diff(line, axis=0), axis=1).max())
+    return bool(cKDTree(line).query(points)[0].max() > gap + _AWAY * tolerance)
 
 
 def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group], tolerance: float) -> list[Group]:

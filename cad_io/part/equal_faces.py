@@ -154,15 +154,10 @@ class FaceShape:
     @cached_property
     def normal(self) -> Floats:
         """Unit `dS/du x dS/dv` (k, 3) at the points of the border; nan where there is none."""
-        d = self.surface.first(*self._at(self.segment, self.share).T)
+        d = self.surface.first(*self.trim.at(self.segment, self.share).T)
         normal = np.cross(d[:, 1], d[:, 2])
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(normal / np.linalg.norm(normal, axis=1)[:, None])
-
-    def _at(self, segment: Any, share: Floats) -> Floats:
-        """Parameters (k, 2) on segments of the border."""
-        start = self.trim.segments[segment, 0]
-        return np.asarray(start + share[:, None] * (self.trim.segments[segment, 1] - start))
 
     def off_border(self, point: Floats, enough: float) -> Floats:
         """Distances (k,), mm, of points (k, 3) from the border, not told too small; those within `enough` need be no closer."""
@@ -184,7 +179,7 @@ class FaceShape:
         along = self.trim.segments[segment, 1] - self.trim.segments[segment, 0]
         best = np.full(len(point), np.inf)
         for _ in range(_STEPS):
-            d = self.surface.first(*self._at(segment, share).T)
+            d = self.surface.first(*self.trim.at(segment, share).T)
             away = point - d[:, 0]
             best = np.fmin(best, np.linalg.norm(away, axis=1))
             speed = d[:, 1] * along[:, :1] + d[:, 2] * along[:, 1:]
@@ -198,15 +193,13 @@ def face_shape(part: Part, number: int, size: float) -> FaceShape | None:
     if trim is None or measured is None:
         return None
     surface, side = part.surface(number), -1.0 if part.face(number).Orientation() == TopAbs_REVERSED else 1.0
-    pieces = np.where(trim.exact, _ALONG, _CHORD)
-    if pieces.sum() > _MOST:
+    segment, share = trim.along(_ALONG, _CHORD, 0.5)
+    if len(segment) > _MOST:
         return None
-    segment = np.repeat(np.arange(len(pieces)), pieces)
-    nth = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    share = (nth + 0.5) / pieces[segment]
-    start, along = trim.segments[segment, 0], trim.segments[segment, 1] - trim.segments[segment, 0]
-    d = surface.first(*(start + share[:, None] * along).T)
-    weight = np.linalg.norm(d[:, 1] * along[:, :1] + d[:, 2] * along[:, 1:], axis=1) / pieces[segment]
+    d = surface.first(*trim.at(segment, share).T)
+    along = trim.segments[segment, 1] - trim.segments[segment, 0]
+    pieces = np.where(trim.exact, _ALONG, _CHORD)[segment]
+    weight = np.linalg.norm(d[:, 1] * along[:, :1] + d[:, 2] * along[:, 1:], axis=1) / pieces
     if not (np.isfinite(d[:, 0]).all() and np.isfinite(weight).all() and np.isfinite(measured.area)):
         return None
     # Where an edge is a single point, and where the face goes on behind a seam, there is no border.

@@ -10,7 +10,7 @@ crosses. So pockets with islands, slots, fillets, bosses, pipes with bends, and 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -151,14 +151,9 @@ class _Finder:
         return max(self.same, _OF_RADIUS * radius)
 
     @cached_property
-    def points(self) -> dict[int, Floats | None]:
-        return {}
-
-    def border(self, number: int) -> Floats | None:
-        """Points (k, 3) along the border of a face; None where it has none that are known."""
-        if number not in self.points:
-            self.points[number] = _border(self.part, number)
-        return self.points[number]
+    def border(self) -> Callable[[int], Any]:
+        """`_border` of a face, looked for once."""
+        return cache(partial(_border, self.part))
 
     def info(self, number: int) -> FaceInfo:
         info: FaceInfo = self.part.faces[number - 1]
@@ -199,18 +194,14 @@ class _Finder:
                 low, high = min(low, level), max(high, level)
             at_low, at_high = abs(low - level) * slope, abs(high - level) * slope
         elif info.shape == "sphere" and high - low <= near:
-            up = self._middle(number, line) > level
+            u0, u1, v0, v1 = self.part.trim(number).box
+            middle = self.part.surface(number).values(np.array([0.5 * (u0 + u1)]), np.array([0.5 * (v0 + v1)]))
+            up = line.heights(middle)[0] > level
             pole = level + (1.0 if up else -1.0) * (carrier.radius or 0.0)
             low, high, at_low, at_high = min(low, pole), max(high, pole), away.max() * up, away.max() * (not up)
         else:
             at_low, at_high = (away[np.abs(heights - end) <= near].max() for end in (low, high))
         return _Ring(number, info.shape, float(low), float(high), float(at_low), float(at_high))
-
-    def _middle(self, number: int, line: _Line) -> float:
-        """Height of a point in the middle of a face."""
-        u0, u1, v0, v1 = self.part.trim(number).box
-        middle = self.part.surface(number).values(np.array([0.5 * (u0 + u1)]), np.array([0.5 * (v0 + v1)]))
-        return float(line.heights(middle)[0])
 
     def walls(self) -> list[_Wall]:
         """All walls: cylinders with air inside that turn more than half a turn."""
@@ -221,16 +212,11 @@ class _Finder:
             carrier: Any = self.info(cluster[0]).carrier
             line = _Line(np.array(carrier.point), np.array(carrier.direction))
             for group in self._touching(cluster, line, carrier.radius):
-                heights = line.heights(np.concatenate([self._known(n) for n in group]))
+                heights = line.heights(np.concatenate([self.border(n) for n in group]))
                 full = 2.0 * np.pi * carrier.radius * float(np.ptp(heights))
                 if sum(self.info(n).area for n in group) > _TURNED * full and self._largest_gap(group, line) < _GAP:
                     walls.append(_Wall(tuple(sorted(group)), line, carrier.radius))
         return walls
-
-    def _known(self, number: int) -> Floats:
-        points = self.border(number)
-        assert points is not None
-        return points
 
     def _largest_gap(self, group: Sequence[int], line: _Line) -> float:
         """Largest angle about an axis without a point of some faces, rad."""
@@ -266,7 +252,7 @@ class _Finder:
     def _touching(self, cluster: Sequence[int], line: _Line, radius: float) -> list[list[int]]:
         """Faces of one cylinder that meet along the axis, or are parted by a hole that crosses there."""
         near = self.near(radius)
-        ends = [(float(h.min()), float(h.max())) for h in (line.heights(self._known(n)) for n in cluster)]
+        ends = [(float(h.min()), float(h.max())) for h in (line.heights(self.border(n)) for n in cluster)]
         across = [{m for m in self.part.neighbours[n - 1] if m not in cluster and self._crosses(m, line)} for n in cluster]
         pairs = [
             (i, j)
@@ -288,7 +274,7 @@ class _Finder:
         carrier: Any = self.info(number).carrier
         other, cosine = _Line(np.array(carrier.point), np.array(carrier.direction)), float(line.direction @ carrier.direction)
         middle = (other.heights(line.point) - cosine * ((line.point - other.point) @ line.direction)) / (1.0 - cosine * cosine)
-        heights, near = other.heights(self._known(number)) - middle, self.near(radius)
+        heights, near = other.heights(self.border(number)) - middle, self.near(radius)
         through = heights.min() <= near - radius and heights.max() >= radius - near
         return float(line.heights(other.point + middle * other.direction)) if through else None
 
@@ -302,16 +288,13 @@ class _Finder:
         ]  # fmt: skip
         result = list[Hole]()
         for steps in _grouped(range(len(walls)), pairs):
-            own = {number: ring for k in steps for number, ring in self._on(walls[steps[0]].line, rings[k]).items()}
+            # With heights on one axis.
+            again = {number: self.ring(number, walls[steps[0]].line) for k in steps for number in rings[k]}
+            own = {number: ring for number, ring in again.items() if ring is not None}
             hole = self._hole([walls[k] for k in steps], own)
             if hole is not None:
                 result.append(hole)
         return sorted(result, key=lambda hole: hole.faces)
-
-    def _on(self, line: _Line, rings: dict[int, _Ring]) -> dict[int, _Ring]:
-        """The same faces, with heights on an axis of the same place."""
-        again = {number: self.ring(number, line) for number in rings}
-        return {number: ring for number, ring in again.items() if ring is not None}
 
     def _about(self, wall: _Wall) -> dict[int, _Ring]:
         """Faces about the axis of a wall that are connected with it."""
@@ -346,11 +329,11 @@ class _Finder:
         low, high = min(ring.low for ring in core), max(ring.high for ring in core)
         numbers = {ring.number for ring in core}
         rest = [ring for ring in rings.values() if ring.number not in numbers]
-        beyond = {
-            False: _outward([ring for ring in rest if ring.high <= low + near], radius, near, False),
-            True: _outward([ring for ring in rest if ring.low >= high - near], radius, near, True),
-        }
-        if any(self._has_island(ring, rings) for each in beyond.values() for ring in each if ring.kind == "plane"):
+        below, above = [ring for ring in rest if ring.high <= low + near], [ring for ring in rest if ring.low >= high - near]
+        beyond = {up: _outward(each, radius, near, up) for up, each in ((False, below), (True, above))}
+        # Whatever begins on the floor of a hole stands there, but for other holes.
+        floors = [ring.number for each in beyond.values() for ring in each if ring.kind == "plane"]
+        if any(n not in rings and not self.hollow(n) for floor in floors for n in self.part.neighbours[floor - 1]):
             return None
         if any(self._bends(n, radius, near) for ring in core for n in self.part.neighbours[ring.number - 1] if n not in rings):
             return None
@@ -402,10 +385,6 @@ class _Finder:
         info = self.info(number)
         tube = info.carrier.minor_radius if info.shape == "torus" and info.carrier is not None else None
         return tube is not None and abs(tube - radius) <= near and self.hollow(number)
-
-    def _has_island(self, floor: _Ring, rings: dict[int, _Ring]) -> bool:
-        """Whether something stands on the floor of a hole: whatever begins there, but for other holes."""
-        return any(n not in rings and not self.hollow(n) for n in self.part.neighbours[floor.number - 1])
 
     def _closed(
         self, line: _Line, radius: float, ends: dict[bool, Any], core: Sequence[_Ring], own: set[int], neighbours: set[int]
@@ -492,35 +471,23 @@ def _across(direction: Floats) -> Floats:
 
 
 def holes(part: Any, orientation: Orientation, triangles: Triangles, ignored: Collection[int] = ()) -> tuple[Hole, ...]:
-    """Find the holes of a part.
+    """Find the holes of a part, with the side of each face that is out of the material.
 
-    Parameters
-    ----------
-    part : Part
-    orientation : Orientation
-        The side of each face that is out of the material.
-    triangles : Triangles
-        Close to the part: whatever may stand in a hole.
-    ignored : collection of int
-        Numbers of faces that are not there.
+    triangles: close to the part: whatever may stand in a hole. ignored: numbers of faces that are not there.
     """
     usable = (triangles.face >= 1) & (triangles.face <= len(part.faces))
     return tuple(_Finder(part, orientation, triangles.take(usable), frozenset(ignored)).holes())
 
 
-def _border(part: Any, number: int) -> Floats | None:
+def _border(part: Any, number: int) -> Any:
+    """Points (k, 3) along the border of a face; None where it has none that are known."""
     trim = part.trim(number)
     if trim is None or not len(trim.segments):
         return None
-    pieces = np.where(trim.exact, _ALONG, _CHORD)
-    segment = np.repeat(np.arange(len(pieces)), pieces)
-    nth = np.arange(len(segment)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    start, end = trim.segments[segment, 0], trim.segments[segment, 1]
-    uv = start + (nth / pieces[segment])[:, None] * (end - start)
-    points = None
     with may_refuse():
-        points = part.surface(number).values(*uv.T)
-    return None if points is None or not np.isfinite(points).all() else np.asarray(points)
+        points = part.surface(number).values(*trim.at(*trim.along(_ALONG, _CHORD, 0.0)).T)
+        return points if np.isfinite(points).all() else None
+    return None
 
 
 def _grouped(items: Iterable[int], pairs: Sequence[tuple[int, int]]) -> list[list[int]]:

@@ -4,7 +4,7 @@ Making a part costs next to nothing beside reading it: what is known about a fac
 """
 
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -14,24 +14,24 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
-from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_OtherSurface, GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace, SizeNote
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.errors import ReadError
 from cad_io.face.carrier import recognise, sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.trim import Trim, trim_of
-from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
-from cad_io.kernel.shapes import ENDLESS, Node, PartContent, endless, packed, unpacked
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, kind_of, may_refuse, shape_map, translated
+from cad_io.kernel.shapes import ENDLESS, Node, endless
+from cad_io.part.content import PartContent, packed, unpacked
 from cad_io.part.edges import blends
 from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface
-from cad_io.units import UnitReading, unit_doubt
+from cad_io.units import unit_doubt
 from plan_cutters_base.forks import SideProcess
 from plan_cutters_base.user_files import fingerprint
 from plan_cutters_base.values import digest
@@ -45,14 +45,14 @@ CROSSES = "crosses itself (its curve of revolution crosses its axis)"
 UNMEASURED = (ROUND_TWICE, WRONG_WAY, CROSSES)
 #: A border that encloses more than its box does by more than this share runs round it more than once.
 _ROUNDED = 1e-3
-_TURNED = (GeomAbs_SurfaceOfRevolution, GeomAbs_Torus, GeomAbs_Cone)
+_TURNED = ("SurfaceOfRevolution", "Torus", "Cone")
 #: Points along the curve, halvings of the interval in which it meets the axis, and the share of the face's size that is none.
 _POINTS, _HALVINGS, _NONE = 129, 50, 1e-6
 
 
 def why_unjudged(face: TopoDS_Face, surface: Surface, trim: Trim | None, measured: Measure | None, least: float) -> str | None:
     """Why a face cannot be judged; None if it can. Without a trim it has no border; areas up to `least`, mm2, are none."""
-    if surface.adaptor.GetType() == GeomAbs_OtherSurface:
+    if kind_of(surface.adaptor) == "OtherSurface":
         if BRep_Tool.Triangulation_s(face, TopLoc_Location()) is not None:
             return "holds only triangles, no surface: export exact geometry (B-rep)"
         return "has no surface that can be evaluated"
@@ -78,7 +78,7 @@ def crosses_axis(surface: Surface, trim: Trim) -> bool:
     `dS/du` is as long as the distance from the axis, square to the half plane of the curve, and changes its sign with the side of
     the axis. A curve that ends on the axis, or passes it at a distance, does not cross it.
     """
-    if surface.adaptor.GetType() not in _TURNED:
+    if kind_of(surface.adaptor) not in _TURNED:
         return False
     u0, u1, low, high = trim.box
 
@@ -91,8 +91,7 @@ def crosses_axis(surface: Surface, trim: Trim) -> bool:
         return False
     away = np.linalg.norm(along, axis=1)
     none = _NONE * max(float(away.max()), float(trim.scale[1] * (high - low)))
-    side = along @ along[int(away.argmax())]
-    side = np.sign(side) * (away > none)
+    side = np.sign(along @ along[int(away.argmax())]) * (away > none)
     known = np.flatnonzero(side)
     return any(side[a] != side[b] and _least(across, along[a], v[a], v[b]) <= none for a, b in pairwise(known.tolist()))
 
@@ -166,33 +165,11 @@ class Part:
     ----------
     shape : TopoDS_Shape
         One shape, located, lengths in mm.
-    file, sha256 : str, optional
-        Where it was read from, and the checksum of those bytes.
-    unit : str, optional
-        The unit that its lengths were taken to be in, where that is not what the source says.
-    names, colours : mapping, optional
-        By face number: names and sRGB colours (0 to 1) found in the file.
-    layers : mapping, optional
-        By face number: the layers that it is on in the file.
-    tree : tuple of Node, optional
-        The products in the file; default one without a name.
-    warnings : sequence of str
-        What the reader found odd; odd sizes are added here.
-    picked : tuple of int, optional
-        Numbers of the faces that were picked on the object which the part was made from.
-    lost : sequence of LostFace, optional
-        Faces written in the file that are not here, or not as written; faces without a finite size are added here.
+    **content
+        What else a reader has found, as `PartContent` has it. All but names and colours are attributes, too.
 
     Attributes
     ----------
-    references : tuple of (str, str or None)
-        Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
-    unit_readings : tuple of UnitReading
-        What is doubtful of what the file says about its unit.
-    encoding : str
-        What the encoding of its names is called, where the file has an older one; else empty.
-    sizes : tuple of SizeNote
-        Diameters with tolerances and notes that the file states of faces.
     aside : mapping
         By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
@@ -216,34 +193,20 @@ class Part:
         The shape holds no face, or the kernel cannot make sense of it.
     """
 
-    def __init__(
-        self,
-        shape: TopoDS_Shape,
-        *,
-        file: str | None = None,
-        sha256: str | None = None,
-        unit: str | None = None,
-        names: Mapping[int, str] | None = None,
-        colours: Mapping[int, tuple[float, float, float]] | None = None,
-        layers: Mapping[int, tuple[str, ...]] | None = None,
-        tree: tuple[Node, ...] = (),
-        warnings: tuple[str, ...] = (),
-        picked: tuple[int, ...] = (),
-        lost: tuple[LostFace, ...] = (),
-    ) -> None:
-        self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
-        self.references: tuple[tuple[str, str | None], ...] = ()
-        self.unit_readings: tuple[UnitReading, ...] = ()
-        self.encoding = ""
-        self.sizes: tuple[SizeNote, ...] = ()
+    def __init__(self, shape: TopoDS_Shape, **content: Any) -> None:
+        self._content = known = PartContent(shape, **content)
+        self.shape, self.file, self.sha256, self.unit = shape, known.file, known.sha256, known.unit
+        self.layers, self.picked, self.sizes = known.layers, known.picked, known.sizes
+        self.references, self.unit_readings, self.encoding = known.references, known.unit_readings, known.encoding
         self.aside: Mapping[int, str] = {}
-        self.unit = unit
+        file = self.file
         with translated("looking for faces", error=ReadError, file=file):
             self._faces = faces(shape)
         if not self._faces:
             raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
-        self.layers = dict(layers or {})
-        self.tree = tree or (Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),)
+        self.tree: tuple[Node, ...] = known.tree or (
+            Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),
+        )
         self._infos: tuple[FaceInfo, ...] = ()
         self._surfaces: dict[int, Surface] = {}
         self._trims: dict[int, Trim | None] = {}
@@ -268,12 +231,11 @@ class Part:
                     "damaged, or its unit is wrong; export it again",
                     file=file,
                 )
-        self._names, self._colours, self._said = names or {}, colours or {}, warnings
-        reported = {each.face for each in lost}
-        self.lost = (
-            *lost,
+        reported = {each.face for each in known.lost}
+        self.lost: tuple[LostFace, ...] = (
+            *known.lost,
             *(
-                LostFace("", self._names.get(n, ""), f"it {ENDLESS if endless(self._faces[n - 1]) else 'has no finite size'}", n)
+                LostFace("", known.names.get(n, ""), f"it {ENDLESS if endless(self._faces[n - 1]) else 'has no finite size'}", n)
                 for n in (np.flatnonzero(~finite) + 1).tolist()
                 if n not in reported
             ),
@@ -281,25 +243,13 @@ class Part:
 
     @classmethod
     def of(cls, content: PartContent, excluded: Mapping[int, str] | None = None) -> "Part":
-        """Make a part from what a reader has found, by the names of the parameters and attributes, with faces set aside."""
-        later = "references", "unit_readings", "encoding", "sizes"
-        part = cls(**{name: value for name, value in content.items() if name not in later})
-        part.references, part.unit_readings = content.get("references", ()), content.get("unit_readings", ())
-        part.encoding, part.sizes = content.get("encoding", ""), content.get("sizes", ())
+        """Make a part from what a reader has found, with faces set aside."""
+        part = cls(**{each.name: getattr(content, each.name) for each in fields(content)})
         part.aside = excluded or {}
         return part
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (packed(self._found()), dict(self.aside))
-
-    def _found(self) -> PartContent:
-        """Return the arguments that the part was made from, by the names of its parameters."""
-        return {
-            "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
-            "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
-            "picked": self.picked, "lost": self.lost, "references": self.references,
-            "unit_readings": self.unit_readings, "encoding": self.encoding, "sizes": self.sizes,
-        }  # fmt: skip
+        return _again, (packed(self._content), dict(self.aside))
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
@@ -319,11 +269,11 @@ class Part:
         """Return all that makes this part what it is, beside the program that read it; of no file, by its shape's own bytes."""
         if self.sha256 is None:
             return self._shape_sum, dict(self.aside)
-        return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, self._said
+        return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, tuple(self._content.warnings)
 
     @cached_property
     def _shape_sum(self) -> bytes:
-        return digest(packed(self._found()))
+        return digest(packed(self._content))
 
     def measured(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> tuple[FaceInfo, ...]:
         """`faces`; where they are yet to be measured, `at` is told which one is. With more `jobs` than one, a copy of the process
@@ -334,7 +284,7 @@ class Part:
             far = range(2, count + 1, 2) if jobs > 1 and count >= _MANY_FACES else range(0)
             _ = self.size  # which all of them ask
             with SideProcess(partial(self._described, far), _MEASURING, worth=bool(far)) as side:
-                infos = {number: self._describe_at(number, at) for number in range(1, count + 1) if number not in far}
+                infos = {number: self._describe(number, at) for number in range(1, count + 1) if number not in far}
                 if far:
                     described, measures, trims = side.result(partial(self._described, far, at))
                     infos |= described
@@ -343,15 +293,11 @@ class Part:
             self._infos = tuple(infos[number] for number in range(1, count + 1))
         return self._infos
 
-    def _describe_at(self, number: int, at: Callable[[int], None]) -> FaceInfo:
-        at(number)
-        return self._describe(number)
-
     def _described(
         self, numbers: Sequence[int], at: Callable[[int], None] = lambda face: None
     ) -> tuple[dict[int, FaceInfo], dict[int, Measure | None], dict[int, Trim | None]]:
         """What measuring tells of some faces, without anything of the kernel's."""
-        infos = {number: self._describe_at(number, at) for number in numbers}
+        infos = {number: self._describe(number, at) for number in numbers}
         mine = {number: each for number, each in self._measures.items() if number in infos}
         return infos, mine, {number: trim for number, trim in self._without_faces().items() if number in infos}
 
@@ -365,7 +311,7 @@ class Part:
 
     def without(self, excluded: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
-        return Part.of(self._found(), {**self.aside, **excluded})
+        return Part.of(self._content, {**self.aside, **excluded})
 
     def facts(self, at: Callable[[int], None] = lambda face: None, *, jobs: int = 1) -> dict[str, Any]:
         """Return what measuring tells, for `recall` in another process that reads the same part; arguments as of `measured`."""
@@ -382,12 +328,11 @@ class Part:
 
     @cached_property
     def size(self) -> tuple[float, float, float]:
-        low, high = self._box
-        return tuple((high - low).tolist())
+        return tuple(np.subtract(*self._box[::-1]).tolist())
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        warnings = [*self._said, *filter(None, [self.unit_doubt])]
+        warnings = [*self._content.warnings, *filter(None, [self.unit_doubt])]
         if self.looseness > LOOSEST * max(self.size):
             warnings.append(
                 f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
@@ -445,8 +390,7 @@ class Part:
     @cached_property
     def middle(self) -> Floats:
         """Middle (3,) of the part's box, mm."""
-        low, high = self._box
-        return 0.5 * (low + high)
+        return 0.5 * np.add(*self._box)
 
     @cached_property
     def looseness(self) -> float:
@@ -506,14 +450,14 @@ class Part:
             raise IndexError(f"face numbers run from 1 to {len(self._faces)}, not {number}")
         return number
 
-    def _describe(self, number: int) -> FaceInfo:
+    def _describe(self, number: int, at: Callable[[int], None]) -> FaceInfo:
+        at(number)
         surface, shape, area, reason, carrier = "other", "sculptured", 0.0, self.aside.get(number), None
-        name, colour = self._names.get(number, ""), self._colours.get(number)
+        name, colour = self._content.names.get(number, ""), self._content.colours.get(number)
         if reason is not None:
             return FaceInfo(number, name, surface, shape, area, colour, reason)
         try:
-            kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
-            surface = _KINDS.get(kind, "other")
+            surface = _KINDS.get(kind_of(self.adaptor(number)), "other")
             shape = surface if surface in SIMPLE_KINDS else "sculptured"
             reason, area = self._judgeable(number)
             trim = self.trim(number)
@@ -533,7 +477,7 @@ class Part:
 
     def _judgeable(self, number: int) -> tuple[str | None, float]:
         """Why the face cannot be judged (None if it can), and its area, mm2: 0 where that is not to be believed."""
-        readable = bool(edges_of(self.face(number))) and self.surface(number).adaptor.GetType() != GeomAbs_OtherSurface
+        readable = bool(edges_of(self.face(number))) and kind_of(self.adaptor(number)) != "OtherSurface"
         trim, measured = (self.trim(number), self.measure(number)) if readable else (None, None)
         least = _LEAST_AREA * float(np.dot(self.size, self.size))
         reason = why_unjudged(self.face(number), self.surface(number), trim, measured, least)

@@ -9,7 +9,8 @@ second moment: few axes and planes can be its own.
 
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import Literal
 
 import numpy as np
@@ -436,16 +437,13 @@ def _faces(compared: "_Compared", numbers: Sequence[int], *, sided: bool) -> Ite
             yield Repeat(tuple((n,) for n in group))
 
 
-@dataclass(slots=True)
 class _Compared:
     """The faces of a part as they are compared, each made when first asked for."""
 
-    part: Part
-    shapes: dict[int, FaceShape | None] = field(default_factory=dict)
-    near: dict[int, list[int]] = field(init=False)
-
-    def __post_init__(self) -> None:
-        part, self.near = self.part, {}
+    def __init__(self, part: Part) -> None:
+        self.size = float(np.linalg.norm(part.size))
+        self._shape = cache(partial(face_shape, part, size=self.size))
+        self.near: dict[int, list[int]] = {}
         usable = [f for f in part.faces if f.area > 0.0 and part.centre(f.number) is not None]
         feature = np.array([[*(part.centre(f.number) or ()), np.sqrt(f.area)] for f in usable]).reshape(-1, 4)
         if len(usable) < 2 or not np.isfinite(feature).all():
@@ -456,10 +454,6 @@ class _Compared:
             a, b = usable[i].number, usable[j].number
             self.near.setdefault(a, []).append(b)
             self.near.setdefault(b, []).append(a)
-
-    @property
-    def size(self) -> float:
-        return float(np.linalg.norm(self.part.size))
 
     def onto(self, faces: Sequence[int], others: Sequence[int]) -> tuple[int, ...] | None:
         """The faces of another solid in the order of those of one in whose place it lies; None where it does not."""
@@ -484,8 +478,3 @@ class _Compared:
             equal(a, replace(b, side=way * b.side), Motion.translation(np.zeros(3)), EXACT * self.size)
             for way in ((1.0,) if sided else (1.0, -1.0))
         )
-
-    def _shape(self, number: int) -> FaceShape | None:
-        if number not in self.shapes:
-            self.shapes[number] = face_shape(self.part, number, self.size)
-        return self.shapes[number]

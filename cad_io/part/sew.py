@@ -11,7 +11,7 @@ Vertices are left out: nobody asks for them.
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -25,7 +25,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
 from cad_io.kernel import along, bounding, cubic, explore, may_refuse, shape_map
-from cad_io.kernel.shapes import as_bytes, children, compound, of_bytes
+from cad_io.kernel.shapes import as_bytes, children, compound, of_bytes, with_edges
 from cad_io.part.coincide import Curves, Group, Piece, TooMany, coinciding, points
 
 #: An edge with its uses: see `edge_uses`. A part of one: where it begins, the common edge, and whether it runs as that does.
@@ -64,9 +64,7 @@ def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> S
     loose = {known.FindIndex(face) for face in explore(shape, TopAbs_FACE, TopAbs_SOLID)}
     solid = {known.FindIndex(face) for whole in explore(shape, TopAbs_SOLID) for face in explore(whole, TopAbs_FACE)}
     numbers = sorted(loose - solid)
-    shell = join([faces[number - 1] for number in numbers], diagonal)
-    open_edges, length = len(shell.left), float(sum(shell.left))
-    return Sewn(dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped)
+    return join({number: faces[number - 1] for number in numbers}, diagonal)
 
 
 class SewnForm(NamedTuple):
@@ -86,21 +84,12 @@ class SewnForm(NamedTuple):
         return replace(self.rest, faces=dict(zip(self.numbers, faces, strict=True)))
 
 
-class Join(NamedTuple):
-    """Faces that share edges; `kept`, `tried` and `stopped` as in `Sewn`; `left`: the length of each open edge, mm."""
-
-    faces: list[TopoDS_Face]
-    kept: float | None
-    tried: float | None
-    left: list[float]
-    stopped: str | None
-
-
-def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
-    """Join faces on the ladder of tolerances for a part of a diagonal, mm."""
+def join(numbered: Mapping[int, TopoDS_Face], diagonal: float) -> Sewn:
+    """Join faces, by their numbers, on the ladder of tolerances for a part of a diagonal, mm."""
+    shapes = [*numbered.values()]
     sources = edge_uses(shapes)
     if len(shapes) < 2 or all(len(users) > 1 for _, users in sources):
-        return Join(list(shapes), None, None, _open(sources), None)
+        return Sewn(dict(numbered), None, None, *_open(sources))
     faces = [tuple(face for face, _ in users) for _, users in sources]
     curves = Curves([edge for edge, _ in sources], _CHORD * next(_ladder(diagonal)))
     groups = [Group((Piece(i, float(curves.low[i]), float(curves.high[i])),), (1,)) for i in range(len(sources))]
@@ -123,7 +112,7 @@ def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
             best, groups, open_edges = tolerance, pairs, after
             gone += [group.pieces[0] for group in no_more]
     now = list(shapes) if best is None else on_common_edges(shapes, sources, curves, groups, gone, best)
-    return Join(now, best, tried, _open(edge_uses(now)), stopped)
+    return Sewn(dict(zip(numbered, now, strict=True)), best, tried, *_open(edge_uses(now)), stopped)
 
 
 def _alone(faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> list[Piece]:
@@ -172,15 +161,14 @@ def _ladder(diagonal: float) -> Iterator[float]:
         last = tolerance
 
 
-def _open(uses: Sequence[Use]) -> list[float]:
-    """Length of each edge that belongs to one face alone, mm."""
-    lengths = [0.0] * sum(len(users) == 1 for _, users in uses)
-    for i, edge in enumerate(edge for edge, users in uses if len(users) == 1):
+def _open(uses: Sequence[Use]) -> tuple[int, float]:
+    """How many edges belong to one face alone, and their length, mm."""
+    alone, lengths = [edge for edge, users in uses if len(users) == 1], list[float]()
+    for edge in alone:
         with may_refuse():
-            length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
-            # Of a damaged curve there is none: the face lives by the one in its parameter plane.
-            lengths[i] = length if math.isfinite(length) else 0.0
-    return lengths
+            lengths.append(float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge))))
+    # Of a damaged curve there is none: the face lives by the one in its parameter plane.
+    return len(alone), float(sum(filter(math.isfinite, lengths)))
 
 
 #: A common edge has at least so many points in a parameter plane.
@@ -203,7 +191,7 @@ def on_common_edges(
     face. tolerance: how far the pieces of one group may be apart, mm.
     """
     parts: dict[int, list[EdgePart]] = {}
-    changed_groups = [group for group in groups if len(group.pieces) > 1 or _is_cut(curves, *group.pieces[0])]
+    changed_groups = [group for group in groups if len(group.pieces) > 1 or curves.is_cut(group.pieces[0])]
     fits = iter(_fits(curves, changed_groups))
     for group in changed_groups:
         piece, builder = group.pieces[0], BRep_Builder()
@@ -222,12 +210,16 @@ def on_common_edges(
     index = TopTools_IndexedMapOfShape()
     instead = {index.Add(sources[place][0]): sorted(edges, key=lambda x: x[0]) for place, edges in parts.items()}
     changed = {face for place in parts for face, _ in sources[place][1]}
-    return [_rebuilt(shape, index, instead) if i in changed else shape for i, shape in enumerate(shapes)]
 
+    def common_edges(edge: TopoDS_Shape) -> list[TopoDS_Shape]:
+        # Internal edges are nobody's border.
+        way = {TopAbs_FORWARD: 1, TopAbs_REVERSED: -1}.get(edge.Orientation(), 0)
+        new = instead.get(index.FindIndex(edge)) if way else None
+        if new is None:
+            return [edge]
+        return [common.Oriented(TopAbs_FORWARD if same * way > 0 else TopAbs_REVERSED) for _, common, same in new]
 
-def _is_cut(curves: Curves, edge: int, low: float, high: float) -> bool:
-    """Whether a piece is a part of an edge."""
-    return bool(curves.drawn[edge] and (low > curves.low[edge] or high < curves.high[edge]))
+    return [with_edges(shape, common_edges) if i in changed else shape for i, shape in enumerate(shapes)]
 
 
 def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
@@ -295,22 +287,3 @@ class _Fit(NamedTuple):
             builder = BRep_Builder()
             builder.UpdateEdge(common, line, face, BRep_Tool.Tolerance_s(common))
             builder.Range(common, face, low, high)
-
-
-def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict[int, list[EdgePart]]) -> TopoDS_Face:
-    """The face with other edges on its borders."""
-    builder, forward = BRep_Builder(), face.Oriented(TopAbs_FORWARD)
-    made = forward.EmptyCopied()
-    for border in children(forward):
-        oriented = border.Oriented(TopAbs_FORWARD)
-        fresh = oriented.EmptyCopied()
-        for edge in children(oriented):
-            # Internal edges are nobody's border.
-            way = {TopAbs_FORWARD: 1, TopAbs_REVERSED: -1}.get(edge.Orientation(), 0)
-            parts = instead.get(index.FindIndex(edge)) if way else None
-            for _, common, same in parts or ():
-                builder.Add(fresh, common.Oriented(TopAbs_FORWARD if same * way > 0 else TopAbs_REVERSED))
-            if parts is None:
-                builder.Add(fresh, edge)
-        builder.Add(made, fresh.Oriented(border.Orientation()))
-    return TopoDS.Face_s(made.Oriented(face.Orientation()))

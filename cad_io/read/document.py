@@ -2,8 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import NamedTuple
 
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -15,43 +13,21 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cad_io.arrays import LostFace, SizeNote
 from cad_io.kernel import explore, shape_map
 from cad_io.kernel.shapes import Node
-from cad_io.units import UnitReading
+from cad_io.part.content import PartContent
 
 Colour = tuple[float, float, float]
-
-
-@dataclass
-class Read:
-    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers; sizes that are stated of
-    faces; the encoding of names, where it is an older one.
-    """
-
-    shape: TopoDS_Shape
-    names: dict[int, str] = field(default_factory=dict)
-    colours: dict[int, Colour] = field(default_factory=dict)
-    layers: dict[int, tuple[str, ...]] = field(default_factory=dict)
-    tree: tuple[Node, ...] = ()
-    warnings: list[str] = field(default_factory=list)
-    lost: list[LostFace] = field(default_factory=list)
-    unit_readings: tuple[UnitReading, ...] = ()
-    encoding: str = ""
-    sizes: tuple[SizeNote, ...] = ()
 
 
 class DroppedNames(NamedTuple):
     """Names that a document has not: of products by what stands there instead, of instances by both that stand there."""
 
-    products: Mapping[str, str] = MappingProxyType({})
-    instances: Mapping[tuple[str, str], str] = MappingProxyType({})
+    products: Mapping[str, str]
+    instances: Mapping[tuple[str, str], str]
 
 
-_NONE_DROPPED = DroppedNames()
-
-
-def add_attributes(document: TDocStd_Document, result: Read, dropped: DroppedNames = _NONE_DROPPED) -> None:
+def add_attributes(document: TDocStd_Document, result: PartContent, dropped: DroppedNames) -> None:
     """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
     walk, start = _Walk(result, dropped), _Inherited(TopLoc_Location())
     result.tree = tuple(walk.node(label, start) for label in each(roots(document)))
@@ -104,7 +80,7 @@ class FaceMarks:
 class _Walk(FaceMarks):
     """Products, names, colours and layers of faces, gathered from the document: the innermost label that has one wins."""
 
-    def __init__(self, result: Read, dropped: DroppedNames) -> None:
+    def __init__(self, result: PartContent, dropped: DroppedNames) -> None:
         super().__init__(result.shape)
         self.dropped = dropped
         self.names, self.colours, self.layers = result.names, result.colours, result.layers

@@ -22,7 +22,8 @@ from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import faces, shape_map
 from cad_io.kernel.shapes import children, unwrapped
-from cad_io.read.document import Read, add_attributes
+from cad_io.part.content import PartContent
+from cad_io.read.document import DroppedNames, add_attributes
 from cad_io.read.faults import Fault, Model, edge_count, misfit, open_border
 from cad_io.read.step_text import CALLED, decoded, encoding_of
 from cad_io.units import UNITS, UnitReading
@@ -137,7 +138,7 @@ def any_names(directory: Sequence[bytes]) -> bool:
     return False
 
 
-def add_names(reader: Any, result: Read, model: Model, directory: Sequence[bytes]) -> None:
+def add_names(reader: Any, result: PartContent, model: Model, directory: Sequence[bytes]) -> None:
     """Fill in the names of faces that a reader has transferred; `directory`: lines of that section."""
     if reader.NbShapes() != reader.NbRootsForTransfer():
         return  # some were lost: no one knows which shape is which root's
@@ -323,7 +324,7 @@ class Loaded:
         self.faults = [fault for fault in self.model.faults() if not _OF_UNIT.match(fault.text)]
         self.risky = bool(self.faults)
 
-    def transfer(self) -> Read:
+    def transfer(self) -> PartContent:
         """Make the shape; ReadError where it holds no shape that can be read."""
         text = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
         document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
@@ -333,8 +334,8 @@ class Loaded:
         shape = self.reader.OneShape()
         if shape.IsNull():
             raise ReadError(f"nothing in it could be read{text}: export it again, or as STEP", file=self.file)
-        result = Read(unwrapped(shape), unit_readings=self.unit.readings)
-        add_attributes(document, result)
+        result = PartContent(unwrapped(shape), unit_readings=self.unit.readings)
+        add_attributes(document, result, DroppedNames({}, {}))
         result.tree = ()  # its roots are surfaces rather than products
         # Two lines an entity: the first starts with its number.
         directory = self.sections[b"D"]

@@ -22,6 +22,7 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
 from cad_io.graphs import connected
+from cad_io.read.sniff import reported
 from cad_io.units import in_mm
 from plan_cutters_base import user_files as files
 
@@ -149,7 +150,8 @@ def read_mesh(source: Any, unit: str | None = None) -> Mesh:
         kind = KINDS.get(Path(file).suffix.lower(), "")
         if not kind:
             raise ReadError("is no mesh that can be read: give STL, OBJ, PLY or GLB", file=file)
-        data = _content(file)
+        with reported(file):
+            data = files.content(file)
         sha256 = hashlib.sha256(data).hexdigest()
         vertex = _triangles(data, kind, file)
     else:
@@ -177,19 +179,6 @@ def read_mesh(source: Any, unit: str | None = None) -> Mesh:
 def is_mesh(source: Any) -> bool:
     """Whether an object holds triangles, as a trimesh mesh does, and no shape of the kernel."""
     return not hasattr(source, "wrapped") and hasattr(source, "triangles") and hasattr(source, "vertices")
-
-
-def _content(file: str) -> bytes:
-    try:
-        return files.content(file)
-    except FileNotFoundError:
-        raise ReadError("no such file", file=file) from None
-    except files.IrregularError:
-        raise ReadError("is no file: a folder, a pipe or a device", file=file) from None
-    except MemoryError:
-        raise ReadError("is too large for the memory allowed: give more, or a coarser mesh", file=file) from None
-    except (OSError, ValueError) as error:
-        raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from None
 
 
 def _triangles(data: bytes, kind: str, file: str) -> Floats:

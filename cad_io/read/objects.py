@@ -15,13 +15,15 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 from OCP.Quantity import Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, shape_map, translated
 from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
+from cad_io.kernel.shapes import children as children_of
 from cad_io.part import Part
+from cad_io.part.content import PartContent
 from cad_io.read.document import FaceMarks
 
 Colour = tuple[float, float, float]
@@ -188,10 +190,7 @@ def _item(source: Any, held: Held, shape: TopoDS_Shape | None = None) -> Item:
     children = getattr(source, "children", ())
     inner: tuple[Item, ...] = ()
     if children and isinstance(children, tuple | list):
-        stand, each = list[TopoDS_Shape](), TopoDS_Iterator(shape, True, False)
-        while each.More():  # sub-shapes one level down, located as in the shape without its own location
-            stand.append(each.Value())
-            each.Next()
+        stand = children_of(shape, located=False)
         if [_face_count(s) for s in stand] == [_face_count(_wrapped(child)) for child in children]:
             pairs = list(zip(children, stand, strict=True))
             moved = [c for c, s in pairs if not same_place(_wrapped(c).Location(), s.Location())]
@@ -293,8 +292,8 @@ def _rgb(colour: Any) -> Colour | None:
     return round(red, 6), round(green, 6), round(blue, 6)
 
 
-def from_object(source: Any) -> dict[str, Any]:
-    """Return the arguments that make a `Part` of an object, by the names of its parameters.
+def from_object(source: Any) -> PartContent:
+    """Return what makes a `Part` of an object.
 
     The object is a kernel shape; one with `.wrapped` (CadQuery, build123d); a CadQuery Workplane or Assembly; a build123d
     builder; a list or tuple of such. Faces that know the shape which they were taken from are picked on it.
@@ -314,15 +313,8 @@ def from_object(source: Any) -> dict[str, Any]:
     walk.mark(held.picked, TopLoc_Location())
     picked = {walk.map.FindIndex(mark.shape) for mark in held.picked}
     named = any(item.name or item.inner for item in held.items)
-    return {
-        "shape": shape,
-        "names": walk.names,
-        "colours": walk.colours,
-        "layers": walk.layers,
-        "tree": tree if named else (),
-        "picked": tuple(sorted(picked)),
-        "warnings": tuple(held.warnings),
-    }
+    return PartContent(shape, names=walk.names, colours=walk.colours, layers=walk.layers, tree=tree if named else (),
+                       picked=tuple(sorted(picked)), warnings=held.warnings)  # fmt: skip
 
 
 def face_numbers(part: Part, value: Any) -> tuple[int, ...]:

@@ -21,10 +21,10 @@ from OCP.TopoDS import TopoDS_Shape
 from cad_io.arrays import LostFace
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import explore, faces, silence, translated
-from cad_io.kernel.shapes import ENDLESS, Node, PartContent, bound_naturally, comes_back, endless, packed, unpacked, unwrapped
+from cad_io.kernel.shapes import ENDLESS, Node, bound_naturally, endless, unwrapped
 from cad_io.part import Part
+from cad_io.part.content import PartContent, comes_back, packed, unpacked
 from cad_io.read import iges, step
-from cad_io.read.document import Read
 from cad_io.read.objects import from_object
 from cad_io.read.sniff import load, sniff
 from cad_io.read.step_text import DOCUMENTS, followed, in_folder_of, names
@@ -42,27 +42,18 @@ def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -
     """Result of `find()`, which may crash or hang, in a forked copy of this process; where the system cannot fork (Windows),
     here.
 
-    Raises ReadError of what `find` raised, or where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
+    Raises what `find` raised, or ReadError where it did not end in so many seconds; `Crashed` if it crashed. Errors name the
     file.
     """
 
-    def answered() -> dict[str, Any]:
-        try:
-            return packed(find())
-        except CadIoError as error:
-            return {"error": (error.cause, error.file, error.face)}
-
     try:
-        answer = limited(answered, timeout)
+        answer = limited(lambda: packed(find()), timeout, passing=(CadIoError,))
     except TimeLimit:
         raise ReadError(
             f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
         ) from None
     except ChildDied as died:
         raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
-    if "error" in answer:
-        cause, where, face = answer["error"]
-        raise ReadError(cause, file=where, face=face)
     with translated("taking over what it made of the file", error=ReadError, file=file):
         return unpacked(answer)
 
@@ -122,14 +113,12 @@ def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()
             continue
         below = referred(path, content, timeout, above)
         try:
-            count, unread, risky = _alone(path, content, below.foreign, timeout)
+            alone = _alone(path, name, content, below.foreign, timeout)
         except ReadError as error:
             _miss(result, name, f"the file refers to it, and it {error.cause}")
             continue
         result.add(below)
-        result.add(
-            Referred({path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky)
-        )
+        result.add(alone)
     return result
 
 
@@ -138,28 +127,22 @@ def _miss(referred: Referred, name: str, why: str) -> None:
         referred.lost.append(LostFace("", name, why))
 
 
-def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:
-    """How many faces a file itself has, what is missing there, and whether it is risky; in a copy of the process."""
+def _alone(file: str, name: str, data: bytes, foreign: int, timeout: float) -> Referred:
+    """What a file itself has, of which the name is written, without what it refers to; in a copy of the process."""
 
-    def look() -> str | tuple[int, list[tuple[str, str, str]], bool]:
-        try:
-            with translated("reading the file", error=ReadError, file=file):
-                loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
-                read = loaded.transfer()
-                count = step.distinct_faces(read.shape) - foreign
-                return count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky
-        except ReadError as error:
-            return error.cause
+    def look() -> Referred:
+        with translated("reading the file", error=ReadError, file=file):
+            loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
+            read = loaded.transfer()
+            lost = [LostFace("", " ".join(filter(None, (name, each.entity, each.name))), each.why) for each in read.lost]
+            return Referred({file: step.distinct_faces(read.shape) - foreign}, lost, loaded.risky)
 
     try:
-        answer = limited(look, timeout)
+        return limited(look, timeout, passing=(ReadError,))
     except TimeLimit:
         raise ReadError(f"is not read within {timeout:g} s", file=file) from None
     except ChildDied as died:
         raise ReadError(f"cannot be read by the CAD kernel ({died})", file=file) from None
-    if isinstance(answer, str):
-        raise ReadError(answer, file=file)
-    return answer
 
 
 Loaded = step.Loaded | iges.Loaded
@@ -230,34 +213,33 @@ def read_part(
         return source
     timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part.of(_find(source, unit, timeout, cache) | {"unit": unit})
+        return Part.of(replace(_find(source, unit, timeout, cache), unit=unit))
 
     def find() -> PartContent:
         source_part = _find(source, unit, timeout, cache)
         Part.of(source_part)  # which asks the kernel more, better here than outside
-        return source_part | {"unit": unit}
+        return replace(source_part, unit=unit)
 
     return Part.of(in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
 def _find(source: Any, unit: str | None, timeout: float, cache: Cache) -> PartContent:
-    """Return the arguments that make the part, by the names of its parameters."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit, timeout, cache)
-    shape = from_object(source)
-    bound_naturally(shape["shape"])
-    tree = tuple(_scaled_node(node, unit) for node in shape["tree"])
-    return shape | {"shape": _scaled(shape["shape"], unit), "tree": tree}
+    content = from_object(source)
+    bound_naturally(content.shape)
+    tree = tuple(_scaled_node(node, unit) for node in content.tree)
+    return replace(content, shape=_scaled(content.shape, unit), tree=tree)
 
 
 def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> PartContent:
     kind, data = load(file)
-    known: PartContent = {"file": file, "sha256": checksum(data)}
+    known: dict[str, Any] = {"file": file, "sha256": checksum(data)}
     if kind not in _LOADERS:
         with translated("reading the file", error=ReadError, file=file):
             whole = _read_brep(file, kind)
             bound_naturally(whole)
-            return known | _content(Read(_scaled(whole, unit)))
+            return replace(_content(PartContent(_scaled(whole, unit))), **known)
     loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
     if kind == "step" and names(data):
         if unit is not None:
@@ -282,12 +264,12 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
         lambda made: made is not None and loaded.alone and comes_back(made) and checksum(load(file)[1]) == known["sha256"],
     )  # fmt: skip
     if stored is not None:
-        return known | (content or unpacked(stored))
+        return replace(content or unpacked(stored), **known)
     # A crash costs no more than a copy: try with less and less.
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):
         try:
-            return known | in_copy(partial(_transferred, reload, others), timeout, file)
+            return replace(in_copy(partial(_transferred, reload, others), timeout, file), **known)
         except Crashed as error:
             crash = error
     raise crash
@@ -302,13 +284,13 @@ def _transferred(load_again: Callable[[], Loaded], others: Referred) -> PartCont
             raise ReadError(f"{error.cause}; {others.lost[0]}", file=error.file) if others.lost else error from None
 
 
-def _content(read: Read, others: Referred | None = None) -> PartContent:
+def _content(read: PartContent, others: Referred | None = None) -> PartContent:
     read.lost += [] if others is None else others.lost
     reported = {each.face for each in read.lost}
     for n, face in enumerate(faces(read.shape), 1):
         if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:
             read.lost.append(LostFace("", read.names.get(n, ""), f"it {ENDLESS if endless(face) else 'has no edges'}", n))
-    return vars(read) | {"warnings": tuple(read.warnings), "lost": tuple(read.lost)}
+    return read
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

@@ -7,7 +7,7 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 from cad_io.arrays import SizeNote
@@ -39,7 +39,6 @@ def stated(data: bytes) -> list[tuple[SizeNote, tuple[str, ...]]]:
 @dataclass(frozen=True)
 class _Sizes:
     data: bytes
-    _units: dict[str, float | None] = field(default_factory=dict)
 
     @cached_property
     def statements(self) -> dict[str, str]:

@@ -50,15 +50,21 @@ def kind(file: str) -> str:
 
 @contextmanager
 def _opened(file: str) -> Iterator[BinaryIO]:
-    """A file, open; what goes wrong about it is a ReadError."""
+    """A file, open; errors as of `reported`."""
     try:
         os.fspath(file).encode()
     except UnicodeEncodeError:
         raise ReadError("its name is no text in UTF-8, which the CAD kernel asks for: rename it", file=file) from None
+    # The kernel opens it once more, and a pipe or a device has no end.
+    with reported(file), files.open_regular(files.permitted(file)) as stream:
+        yield stream
+
+
+@contextmanager
+def reported(file: str) -> Iterator[None]:
+    """Turn what goes wrong as a user's file is read into a ReadError."""
     try:
-        # The kernel opens it once more, and a pipe or a device has no end.
-        with files.open_regular(files.permitted(file)) as stream:
-            yield stream
+        yield
     except files.IrregularError:
         folder = os.path.isdir(file)
         what = "is a folder, not a file" if folder else "is a pipe or a device, not a file: save its content in a file"
@@ -66,7 +72,7 @@ def _opened(file: str) -> Iterator[BinaryIO]:
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
     except MemoryError:
-        raise ReadError("is too large for the memory allowed: give more, or check that it is the part", file=file) from None
+        raise ReadError("is too large for the memory allowed: give more, or check that it is the one", file=file) from None
     except (OSError, ValueError) as error:
         raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from error
 

@@ -34,12 +34,12 @@ from cad_io.arrays import LostFace, SizeNote
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
 from cad_io.kernel.shapes import as_one, unwrapped
+from cad_io.part.content import PartContent
 from cad_io.read import size_notes
-from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
-from cad_io.read.faults import Model, open_border, type_of
+from cad_io.read.document import DroppedNames, add_attributes, each, roots
+from cad_io.read.faults import Model, UnreadFaces, is_face, is_whole, name_of, open_border, repair, type_of
 from cad_io.read.step_text import adopted, readable
 from cad_io.read.step_text import names as referred_names
-from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import UNITS, UnitReading, in_mm
 from plan_cutters_base import user_files as files
 
@@ -56,6 +56,7 @@ _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 #: What shapes are made of, or placed by.
 _SHAPES = (StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap)
 _ASCII = re.compile("[!-~]")
+_NO_LENGTH = re.compile("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived")
 _SUBSHAPES = "read.stepcaf.subshapes.name"
 #: Entities named in one warning.
 _MOST_NAMED = 3
@@ -114,11 +115,12 @@ class Loaded:
         self.faults = self.model.faults()
         if any(fault.text.startswith("DATA NOT AVAILABLE") for fault in self.faults):
             raise ReadError("is not valid STEP (syntax): export it again", file=file)
-        self.risky = bool(self.faults) or _has_huge(data)
+        huge = (data[at.start() - 1 : at.start()] for pattern in _HUGE for at in pattern.finditer(data))
+        self.risky = bool(self.faults) or any(before in _BEFORE for before in huge)
         self._refuse()
         self._refuse_unnoticed()
 
-    def transfer(self, *, traced: bool = False) -> Read:
+    def transfer(self, *, traced: bool = False) -> PartContent:
         """Make the shape; `traced`: find out which face was which entity, too; a file with faults is traced in any case.
 
         Raises ReadError where it holds no face that can be read.
@@ -178,7 +180,8 @@ class Loaded:
                         "cannot read to an end; export it again",
                         file=self.file,
                     )
-            if self.unit is None and _is_length(entity) and fault.parameter != "dimensions":
+            length = isinstance(entity, StepBasic_NamedUnit) and not _NO_LENGTH.search(type(entity).__name__)
+            if self.unit is None and length and fault.parameter != "dimensions":
                 raise ReadError(
                     f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)", file=self.file
                 )
@@ -203,7 +206,7 @@ class Loaded:
                     f"refers to {name} in a form that is not known here: save the assembly as one file", file=self.file
                 )
 
-    def _shape(self) -> Read:
+    def _shape(self) -> PartContent:
         nothing = "holds no shape that can be read"
         if self.faults:
             nothing += f" ({self.faults[0].short}{_more(len(self.faults) - 1)})"
@@ -216,7 +219,7 @@ class Loaded:
         shapes = [XCAFDoc_ShapeTool.GetShape_s(label) for label in each(roots(document))] if done else []
         if not any(any(explore(shape, TopAbs_FACE)) for shape in shapes):
             raise NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
-        result = Read(unwrapped(as_one(shapes)), encoding=self.encoding, unit_readings=tuple(self._unit_readings()))
+        result = PartContent(unwrapped(as_one(shapes)), encoding=self.encoding, unit_readings=tuple(self._unit_readings()))
         add_attributes(document, result, self._dropped_names())
         if self._adopted:
             solids = self._adopted.solids
@@ -241,9 +244,8 @@ class Loaded:
         """Names without a letter of ASCII, of which the kernel shows the identifier."""
         products: dict[str, set[str]] = defaultdict(set)
         instances: dict[tuple[str, str], set[str]] = defaultdict(set)
-        if self.data.isascii() and b"\\X" not in self.data:
-            return DroppedNames()
-        for entity in self.model.entities.values():
+        plain = self.data.isascii() and b"\\X" not in self.data
+        for entity in () if plain else self.model.entities.values():
             with suppress(AttributeError, UnicodeDecodeError):  # of a damaged file
                 if isinstance(entity, StepBasic_Product):
                     products[_shown(entity)].add(name_of(entity))
@@ -269,7 +271,7 @@ class Loaded:
                 entity.SetName(TCollection_HAsciiString(f"@{number}"))
         return real
 
-    def _unmark(self, result: Read, shapes: list[TopoDS_Face], real: dict[int, str]) -> dict[int, list[int]]:
+    def _unmark(self, result: PartContent, shapes: list[TopoDS_Face], real: dict[int, str]) -> dict[int, list[int]]:
         """Put the names back; the numbers that each face entity has got in the part."""
         numbers: dict[int, list[int]] = defaultdict(list)
         for n, mark in list(result.names.items()):
@@ -325,15 +327,6 @@ def _only(names: dict[Any, set[str]]) -> dict[Any, str]:
 def _at(idents: list[str]) -> str:
     known = list(filter(None, idents))
     return f" ({known[0]}{_more(len(known) - 1)})" if known else ""
-
-
-def _has_huge(data: bytes) -> bool:
-    return any(data[at.start() - 1 : at.start()] in _BEFORE for huge in _HUGE for at in huge.finditer(data))
-
-
-def _is_length(entity: Any) -> bool:
-    other = re.search("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived", type(entity).__name__)
-    return isinstance(entity, StepBasic_NamedUnit) and not other
 
 
 def _more(count: int) -> str:

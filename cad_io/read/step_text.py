@@ -1,7 +1,7 @@
 """The text of a STEP file, without the CAD kernel: files that it refers to, names in older encodings, solids without a product.
 
 Whoever keeps or sends a part knows so what belongs to it. Names in files are neither ASCII nor UTF-8 where older programs write
-the encoding of their country. Files do not say it. So each encoding of `CANDIDATES` is tried, in this order, and scored by how
+the encoding of their country. Files do not say it. So each encoding of `CALLED` is tried, in this order, and scored by how
 plausible the letters are that come out; the first one with the highest score is taken for the whole file. No name is ever
 refused: bytes that the encoding does not know are read as Latin-1.
 """
@@ -14,12 +14,10 @@ from typing import NamedTuple
 from cad_io.errors import ReadError
 from plan_cutters_base import user_files as files
 
-#: Python's names of the encodings that are tried, the first of equals is taken.
-CANDIDATES = ("gb18030", "cp932", "big5", "cp949", "cp1252", "cp1251")
-#: What people call them.
+#: Python's names of the encodings that are tried, the first of equals is taken, and what people call them.
 CALLED = {
-    "gb18030": "GB18030", "cp932": "Shift-JIS", "big5": "Big5", "cp949": "EUC-KR", "cp1251": "Windows-1251",
-    "cp1252": "Windows-1252",
+    "gb18030": "GB18030", "cp932": "Shift-JIS", "big5": "Big5", "cp949": "EUC-KR", "cp1252": "Windows-1252",
+    "cp1251": "Windows-1251",
 }  # fmt: skip
 _HIGH = re.compile(rb"[\x80-\xff]")
 _WORD = re.compile(r"[^\W\d_]+")
@@ -91,7 +89,7 @@ def encoding_of(names: Sequence[bytes]) -> str:
     high = [name for name in names if _HIGH.search(name)]
     if all(map(is_plain, high)):
         return "utf-8"
-    return max(CANDIDATES, key=lambda each: sum(_plausible(name, each) for name in high))
+    return max(CALLED, key=lambda each: sum(_plausible(name, each) for name in high))
 
 
 def decoded(name: bytes, encoding: str) -> str:
@@ -194,16 +192,11 @@ def _name(text: bytes) -> str:
 
 
 def _letters(match: re.Match[bytes]) -> bytes:
-    two, four, one, upper = match.groups()
-    if two is not None:
-        text = bytes.fromhex(two.decode()).decode("utf-16-be", "replace")
-    elif four is not None:
-        text = bytes.fromhex(four.decode()).decode("utf-32-be", "replace")
-    elif one is not None:
-        text = bytes.fromhex(one.decode()).decode("latin-1")
-    else:
-        text = "\\" if upper is None else chr(upper[0] | 0x80)
-    return text.encode()
+    *digits, upper = match.groups()
+    for each, code in zip(digits, ("utf-16-be", "utf-32-be", "latin-1"), strict=True):
+        if each is not None:
+            return bytes.fromhex(each.decode()).decode(code, "replace").encode()
+    return ("\\" if upper is None else chr(upper[0] | 0x80)).encode()
 
 
 def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple[str, bytes | None]]:

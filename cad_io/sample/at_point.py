@@ -15,9 +15,10 @@ from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 
 from cad_io.arrays import Floats, Orientation, SurfaceSamples
 from cad_io.errors import SampleError
-from cad_io.face.curvature import curvature
+from cad_io.face.curvature import evaluate
 from cad_io.face.trim import Trim
-from cad_io.kernel import translated
+from cad_io.face.trim import nearest as nearest_segment
+from cad_io.kernel import periods, translated
 from cad_io.kernel.shapes import compound
 from cad_io.part import Part
 from plan_cutters_base.forks import Ended, each
@@ -64,12 +65,11 @@ def locate(
         cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away, at ({there})"
         raise SampleError(cause, file=part.file)
     _, number, uv = best
-    d = part.surface(number).second(np.array([uv[0]]), np.array([uv[1]]))
-    geometry = curvature(d, float(orientation.sign[number - 1]), float(np.linalg.norm(part.size)))
+    on_face, geometry = evaluate(part, orientation, number, np.array([uv]))
     if geometry.bad.any():
         raise SampleError("the surface has no normal or curvature at this point", file=part.file, face=f"F{number}")
     return SurfaceSamples(
-        point=d[:, 0], normal=geometry.normal, direction_max=geometry.direction_max, curvature=geometry.curvature,
+        point=on_face, normal=geometry.normal, direction_max=geometry.direction_max, curvature=geometry.curvature,
         uv=np.array([uv]), face=np.array([number], np.int32), area=np.zeros(1),
         neighbours=np.zeros((0, 2), np.int32), unjudged=np.full(1, -1, np.int32), reasons=(), grids=(), max_gap=0.0,
         empty=(),
@@ -124,9 +124,8 @@ def _projected(part: Part, number: int, place: Floats, within: float) -> tuple[f
     uv = surface.ValueOfUV(gp_Pnt(*place.tolist()), _PRECISION)
     adaptor = part.adaptor(number)
     # The kernel may answer on another turn of a periodic surface than the face uses.
-    turns_u = _turns(adaptor.IsUPeriodic() and adaptor.UPeriod(), uv.X(), trim.box[:2])
-    turns_v = _turns(adaptor.IsVPeriodic() and adaptor.VPeriod(), uv.Y(), trim.box[2:])
-    for u, v in itertools.product(turns_u, turns_v):
+    bounds = trim.box[:2], trim.box[2:]
+    for u, v in itertools.product(*map(_turns, periods(adaptor), (uv.X(), uv.Y()), bounds)):
         distance = float(np.linalg.norm(np.array(adaptor.Value(u, v).Coord()) - place))
         if distance <= within and _on_face(trim, u, v, within):
             return distance, (u, v)
@@ -146,7 +145,4 @@ def _on_face(trim: Trim, u: float, v: float, within: float) -> bool:
     """True if (u, v) lies in the trim, or at most `within` mm beside it: a point on an edge is on both its faces."""
     if trim.inside(np.array([u]), np.array([v]))[0]:
         return True
-    start, along = trim.segments[:, 0] * trim.scale, (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
-    offset = np.array([u, v]) * trim.scale - start
-    share = np.clip((offset * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
-    return bool(np.linalg.norm(offset - share[:, None] * along, axis=1).min() <= within)
+    return nearest_segment(trim.segments * trim.scale, np.array([u, v]) * trim.scale)[2] <= within

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import Trim
-from cad_io.kernel import domain
+from cad_io.kernel import domain, periods
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.surface.surface import lines_within
@@ -64,9 +64,13 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
     """
     natural = domain(surface.adaptor)
     endless = max(abs(x) for x in natural) > _ENDLESS
-    u, v = _ranges(surface, trim, trim.box if endless else natural)
     share = np.linspace(0.0, 1.0, count)
-    return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
+    return _laid(_ranges(surface, trim, trim.box if endless else natural), (share, share))
+
+
+def _laid(ranges: tuple[_Range, _Range], shares: tuple[Floats, Floats]) -> Lines:
+    u, v = ranges
+    return Lines(u.lines(shares[0]), v.lines(shares[1]), u.closed, v.closed, (u.low, u.high, v.low, v.high))
 
 
 def spaced(
@@ -82,24 +86,21 @@ def spaced(
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw, unless they would have
     more than `most` nodes.
     """
-    u, v = _ranges(surface, trim, trim.box)
-    share_u, share_v = _probes(surface, 0, (u.low, u.high)), _probes(surface, 1, (v.low, v.high))
-    n = len(share_u), len(share_v)
-    grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
-    d = surface.first(grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)
+    ranges = _ranges(surface, trim, trim.box)
+    probes = [_probes(surface, k, (each.low, each.high)) for k, each in enumerate(ranges)]
+    u, v = np.meshgrid(*(r.low + at * (r.high - r.low) for r, at in zip(ranges, probes, strict=True)), indexing="ij")
+    d = surface.first(u.ravel(), v.ravel()).reshape(*u.shape, 3, 3)
     speed = np.nan_to_num(np.linalg.norm(d[:, :, 1:], axis=3))
-    speed_u = speed[..., 0].max(axis=1) * (u.high - u.low)
-    speed_v = speed[..., 1].max(axis=0) * (v.high - v.low)
-    lengths = [_cumulative(speed_u, share_u), _cumulative(speed_v, share_v)]
+    most_speed = [speed[..., k].max(axis=1 - k) * (each.high - each.low) for k, each in enumerate(ranges)]
+    lengths = [*map(_cumulative, most_speed, probes)]
     gaps = finer * np.array([max(np.ceil(more[k] * lengths[k][-1] / spacing), _LEAST_LINES - 1) for k in (0, 1)])
-    closed = np.array([u.closed, v.closed])
-    gaps = np.where(closed, np.maximum(gaps, _LEAST_LINES), gaps)
+    gaps = np.where([each.closed for each in ranges], np.maximum(gaps, _LEAST_LINES), gaps)
     gaps = np.maximum(gaps / max(1.0, np.sqrt(gaps.prod() / min(most, _MOST_NODES))), 2).astype(int)
-    shares = [
-        np.interp(np.linspace(0.0, length[-1], gap + 1), length, share)
-        for length, gap, share in zip(lengths, gaps, (share_u, share_v), strict=True)
-    ]
-    return Lines(u.lines(shares[0]), v.lines(shares[1]), u.closed, v.closed, (u.low, u.high, v.low, v.high))
+    along_u, along_v = (
+        np.interp(np.linspace(0.0, length[-1], gap + 1), length, at)
+        for length, gap, at in zip(lengths, gaps, probes, strict=True)
+    )
+    return _laid(ranges, (along_u, along_v))
 
 
 def _probes(surface: Surface, along: int, ends: tuple[float, float]) -> Floats:
@@ -129,10 +130,9 @@ def _cumulative(speed: Floats, share: Floats) -> Floats:
 def _ranges(surface: Surface, trim: Trim, bounds: tuple[float, float, float, float]) -> tuple[_Range, _Range]:
     adaptor = surface.adaptor
     u0, u1, v0, v1 = bounds
-    if adaptor.IsUPeriodic():
-        u0, u1 = _shifted(u0, u1, trim.box[0], trim.box[1], adaptor.UPeriod())
-    if adaptor.IsVPeriodic():
-        v0, v1 = _shifted(v0, v1, trim.box[2], trim.box[3], adaptor.VPeriod())
+    turn_u, turn_v = periods(adaptor)
+    u0, u1 = _shifted(u0, u1, *trim.box[:2], turn_u) if turn_u else (u0, u1)
+    v0, v1 = _shifted(v0, v1, *trim.box[2:], turn_v) if turn_v else (v0, v1)
     first_u, last_u, first_v, last_v = domain(adaptor)
     closed_u = adaptor.IsUClosed() and _whole(u1 - u0, first_u, last_u)
     closed_v = adaptor.IsVClosed() and _whole(v1 - v0, first_v, last_v)

@@ -1,24 +1,23 @@
 """Samples of faces on grids, with the kernel's exact normals and curvatures, linked within faces and across smooth joints."""
 
-from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.TopoDS import TopoDS_Edge
-from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples, cross, rows_by_face
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
-from cad_io.kernel import edges_of, points_on, translated
+from cad_io.kernel import points_on, translated
 from cad_io.part import Part
+from cad_io.part.sew import edge_uses
 from cad_io.sample.at_point import locate
 from cad_io.sample.grid_lines import Lines, border_probes, denser, halved, inner_probes, spaced, uniform
 from cad_io.surface import Surface
@@ -37,39 +36,30 @@ def smooth_joints(part: Part, orientation: Orientation, point: Floats, face: Int
     point (n, 3), face (n,): samples, in the order of their faces, and their face numbers. gap: largest distance between grid
     neighbours, mm, by face number; its keys are the sampled faces.
     """
-    edges = TopTools_IndexedMapOfShape()
-    uses: dict[int, list[tuple[int, TopoDS_Edge]]] = defaultdict(list)
-    for number in gap:
-        for edge in edges_of(part.joined(number)):
-            uses[edges.Add(edge)].append((number, edge))
-    trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
     finite = np.flatnonzero(np.isfinite(point).all(axis=1))
     rows_of = {number: finite[rows] for number, rows in rows_by_face(face[finite]).items()}
-    pairs = [np.zeros((0, 2), np.intp)]
-    for users in uses.values():
-        if len(users) != 2 or users[0][0] == users[1][0] or BRep_Tool.Degenerated_s(users[0][1]):
+
+    @cache
+    def known(number: int) -> tuple[cKDTree, NDArray[np.intp]]:
+        rows = rows_of.get(number, finite[:0])
+        return cKDTree(point[rows]), rows
+
+    numbers, pairs = list(gap), [np.zeros((0, 2), np.intp)]
+    shapes = [part.joined(number) for number in numbers]
+    for edge, users in edge_uses(shapes):
+        if len(users) != 2 or users[0][0] == users[1][0]:
             continue
-        reach = REACH * max(gap[number] for number, _ in users)
-        curves = [
-            _Curve(part.surface(number), BRepAdaptor_Curve2d(edge, part.joined(number)), *BRep_Tool.Range_s(edge))
-            for number, edge in users
-        ]
+        both, ends = [numbers[place] for place, _ in users], BRep_Tool.Range_s(edge)
+        reach = REACH * max(gap[number] for number in both)
+        curves = [_Curve(part.surface(numbers[i]), BRepAdaptor_Curve2d(edge, shapes[i]), *ends) for i, _ in users]
         share = _shares(curves[0], reach)
         if share is None:
             continue
-        (at, normal_a), (_, normal_b) = (
-            _side(part, orientation, number, curve, share) for (number, _), curve in zip(users, curves, strict=True)
-        )
+        (at, normal_a), (_, normal_b) = (_side(part, orientation, *each, share) for each in zip(both, curves, strict=True))
         smooth = (normal_a * normal_b).sum(axis=1) > np.cos(SMOOTH)
         if not smooth.any():
             continue
-        nearest = []
-        for number, _ in users:
-            if number not in trees:
-                rows = rows_of.get(number, finite[:0])
-                trees[number] = (cKDTree(point[rows]), rows)
-            tree, rows = trees[number]
-            nearest.append(rows[tree.query(at[smooth])[1]])
+        nearest = [rows[tree.query(at[smooth])[1]] for tree, rows in map(known, both)]
         joints = np.unique(np.stack(nearest, axis=1), axis=0)
         distance = np.linalg.norm(point[joints[:, 0]] - point[joints[:, 1]], axis=1)
         pairs.append(joints[distance <= reach])
@@ -298,7 +288,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
     weight = _density(derivatives) * width_u[i] * width_v[j]
     if not inside.all():
         weight *= _share_inside(trim, lines)[i, j]
-    pairs = [_adjacent(index), _adjacent(index.T)]
+    pairs = [_linked(each[:-1].ravel(), each[1:].ravel()) for each in (index, index.T)]
     if lines.closed_u:
         pairs.append(_linked(index[-1], index[0]))
     if lines.closed_v:
@@ -407,10 +397,6 @@ def _gap(point: Floats, pairs: Ints) -> float:
 def _linked(first: Ints, second: Ints) -> Ints:
     both = (first >= 0) & (second >= 0)
     return np.stack([first[both], second[both]], axis=1)
-
-
-def _adjacent(index: Ints) -> Ints:
-    return _linked(index[:-1].ravel(), index[1:].ravel())
 
 
 def _widest(samples: _FaceSamples, lines: Lines) -> Floats:

@@ -14,8 +14,8 @@ from OCP.gp import gp_Pnt2d, gp_Vec2d
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
-from cad_io.face.trim import inside, interior_point, nodes_inside
-from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, left_of, nearest
+from cad_io.face.trim import inside, interior_point, nearest, nodes_inside
+from cad_io.split.border import Border, CannotSplit, Side, bearing, chain, crossings, enclosed, left_of
 from cad_io.split.contour import LabelGrid, Spline
 
 if TYPE_CHECKING:
@@ -222,13 +222,10 @@ class Arrangement:
         return parts
 
 
-def _refined(
-    at: Callable[[float], tuple[Floats, Floats]],
-    side: Side,
-    scale: Floats,
-    start: tuple[float, float],
-    reach: tuple[float, float],
-) -> tuple[float, float]:
+_Pair = tuple[float, float]
+
+
+def _refined(at: Callable[[float], tuple[Floats, Floats]], side: Side, scale: Floats, start: _Pair, reach: _Pair) -> _Pair:
     """Parameters on a curve and a side where they cross, by Newton's steps; those of the chords where these lead away."""
     point, tangent = gp_Pnt2d(), gp_Vec2d()
     x, s = start
@@ -331,7 +328,7 @@ def judged(regions: list[Region], scale: Floats, grid: LabelGrid, known: Ints) -
 
     Raises CannotSplit where too many nodes off the boundary lie in a region of another label: a curve did not cut.
     """
-    modes = ["wrap" if closed else "nearest" for closed in (grid.closed_u, grid.closed_v)]
+    modes = ["wrap" if closed else "nearest" for closed in grid.closed]
     calm = (known >= 0) & (maximum_filter(grid.field, 3, mode=modes) == minimum_filter(grid.field, 3, mode=modes))
     astray = 0
     out = []
@@ -478,9 +475,9 @@ def _inside(region: Region, scale: Floats, grid: LabelGrid) -> tuple[Ints, Ints]
     ring = region.ring / scale
     low, high = ring.min(axis=(0, 1)), ring.max(axis=(0, 1))
     shape = grid.field.shape
-    first = [max(int(np.searchsorted(line, low[a])) - 1, 0) for a, line in enumerate((grid.u, grid.v))]
-    last = [min(int(np.searchsorted(line, high[a])) + 1, shape[a]) for a, line in enumerate((grid.u, grid.v))]
-    u, v = grid.u[first[0] : last[0]], grid.v[first[1] : last[1]]
+    first = [max(int(np.searchsorted(line, low[a])) - 1, 0) for a, line in enumerate(grid.lines)]
+    last = [min(int(np.searchsorted(line, high[a])) + 1, shape[a]) for a, line in enumerate(grid.lines)]
+    u, v = (line[a:b] for line, a, b in zip(grid.lines, first, last, strict=True))
     if not (len(u) and len(v)):
         return np.empty(0, np.int32), np.empty(0, np.int32)
     rows, columns = np.nonzero(nodes_inside(ring, u, v))
@@ -489,10 +486,8 @@ def _inside(region: Region, scale: Floats, grid: LabelGrid) -> tuple[Ints, Ints]
 
 def _nearest_label(region: Region, scale: Floats, grid: LabelGrid, known: Ints) -> int:
     """The label of the known node that is nearest to a place inside, in cells."""
-    at = [
-        float(np.interp(x, line, np.arange(len(line))))
-        for x, line in zip(interior_point(region.ring / scale), (grid.u, grid.v), strict=True)
-    ]
+    place = zip(interior_point(region.ring / scale), grid.lines, strict=True)
+    at = [float(np.interp(x, line, np.arange(len(line)))) for x, line in place]
     i, j = np.nonzero(known >= 0)
-    nearest = int(np.argmin(np.hypot(i - at[0], j - at[1])))
-    return int(known[i[nearest], j[nearest]])
+    k = int(np.argmin(np.hypot(i - at[0], j - at[1])))
+    return int(known[i[k], j[k]])

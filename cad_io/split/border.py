@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
@@ -17,12 +18,10 @@ from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats
+from cad_io.face.trim import continuing
 from cad_io.kernel import edges_of, interval_ends
 from cad_io.split.contour import LabelGrid
 from cad_io.surface import Surface
-
-#: Pairs of blocks and segments that are looked at together; segments of a block.
-_TOGETHER, _BLOCK = 400_000, 16
 
 
 class Crossings(NamedTuple):
@@ -39,49 +38,20 @@ def crossings(p: Floats, q: Floats) -> Crossings:
 
     Of each segment one end counts and the other does not, so that a chain is crossed once where two of its segments meet.
     """
-    none = np.empty(0, np.intp)
-    result = [Crossings(none, none, np.empty(0), np.empty(0))]
-    low, high = np.minimum(p[:, 0], p[:, 1]), np.maximum(p[:, 0], p[:, 1])
-    q_low, q_high = np.minimum(q[:, 0], q[:, 1]), np.maximum(q[:, 0], q[:, 1])
-    near = np.flatnonzero(((q_low <= high.max(axis=0)) & (q_high >= low.min(axis=0))).all(axis=1)) if len(p) else none
-    q_low, q_high = q_low[near], q_high[near]
-    # Of a chain, segments that follow each other lie together: most are told apart by the box around a block of them.
-    starts = np.arange(0, len(p), _BLOCK)
-    rows = max(1, _TOGETHER // max(len(near), 1))
-    for begin in range(0, len(starts) if len(near) else 0, rows):
-        some = starts[begin : begin + rows]
-        stop = min(int(some[-1]) + _BLOCK, len(p))
-        spans = np.minimum.reduceat(low[:stop], some), np.maximum.reduceat(high[:stop], some)
-        apart = (spans[0][:, :1] > q_high[:, 0]) | (spans[1][:, :1] < q_low[:, 0])
-        apart |= (spans[0][:, 1:] > q_high[:, 1]) | (spans[1][:, 1:] < q_low[:, 1])
-        block, k = np.nonzero(~apart)
-        i = (some[block][:, None] + np.arange(_BLOCK)).ravel()
-        k = np.repeat(k, _BLOCK)[i < stop]
-        i = i[i < stop]
-        touch = ((low[i] <= q_high[k]) & (high[i] >= q_low[k])).all(axis=1)
-        i, k = i[touch], k[touch]
-        order = np.lexsort((k, i))
-        i, j = i[order], near[k[order]]
-        a, b, c, d = p[i, 0], p[i, 1], q[j, 0], q[j, 1]
-        of_c, of_d, of_a, of_b = _turning(a, b, c), _turning(a, b, d), _turning(c, d, a), _turning(c, d, b)
-        hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
-        i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
-        result.append(Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d)))
-    return Crossings(*(np.concatenate(each) for each in zip(*result, strict=True)))
+    # Of the pairs whose boxes touch.
+    i, j = shapely.STRtree(shapely.linestrings(q)).query(shapely.linestrings(p))
+    order = np.lexsort((j, i))
+    i, j = i[order], j[order]
+    a, b, c, d = p[i, 0], p[i, 1], q[j, 0], q[j, 1]
+    of_c, of_d, of_a, of_b = _turning(a, b, c), _turning(a, b, d), _turning(c, d, a), _turning(c, d, b)
+    hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
+    i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
+    return Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d))
 
 
 def _turning(a: Floats, b: Floats, p: Floats) -> Floats:
     """Positive where p lies left of the line from a to b."""
     return np.asarray((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))
-
-
-def nearest(segments: Floats, point: Floats) -> tuple[int, float, float]:
-    """The segment of (n, 2, 2) that is nearest to a point (2,): its number, the share of its length, the distance."""
-    start, step = segments[:, 0], segments[:, 1] - segments[:, 0]
-    share = np.clip(((point - start) * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), 1e-300), 0, 1)
-    away = np.linalg.norm(start + share[:, None] * step - point, axis=1)
-    k = int(away.argmin())
-    return k, float(share[k]), float(away[k])
 
 
 def chain(path: Floats) -> Floats:
@@ -165,7 +135,7 @@ class Border:
     def __init__(self, face: Any, surface: Surface, grid: LabelGrid, edges: Any, vertices: Any) -> None:
         """Read the border of a face; `edges` and `vertices` are the part's maps of them."""
         self.face = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-        cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in (grid.u, grid.v)])
+        cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in grid.lines])
         self.scale = _speeds(surface, grid)
         self.size = float((cell * self.scale).min())
         self.sides = [self._side(edge, edges, vertices) for edge in edges_of(self.face)]
@@ -251,13 +221,11 @@ class Border:
         here = [end for end, leaving in zip(ends, leaves, strict=True) if not leaving]
         if len(away) != len(here):
             raise CannotSplit("its border does not close")
-        from scipy.optimize import linear_sum_assignment  # half a second to load
-
-        gap = np.array([[np.linalg.norm(place[a] - place[b]) for b in away] for a in here])
-        rows, columns = linear_sum_assignment(gap)
-        if gap[rows, columns].max() > _GAP * size:
+        leaving_at, arriving_at = (np.array([place[end] for end in group]) for group in (away, here))
+        following = continuing(leaving_at, arriving_at, np.ones(2))
+        if np.linalg.norm(arriving_at - leaving_at[following], axis=1).max() > _GAP * size:
             raise CannotSplit("its border does not close in its parameter plane")
-        return [{here[r], away[c]} for r, c in zip(rows.tolist(), columns.tolist(), strict=True)]
+        return [{end, away[k]} for end, k in zip(here, following.tolist(), strict=True)]
 
 
 def parameter_curve(edge: Any, face: Any) -> tuple[Any, float, float]:
@@ -268,7 +236,7 @@ def parameter_curve(edge: Any, face: Any) -> tuple[Any, float, float]:
 
 def _speeds(surface: Surface, grid: LabelGrid) -> Floats:
     """Mean mm per unit of u and v."""
-    u, v = (np.linspace(g[0], g[-1], 7)[1:-1] for g in (grid.u, grid.v))
+    u, v = (np.linspace(g[0], g[-1], 7)[1:-1] for g in grid.lines)
     first = surface.first(*(x.ravel() for x in np.meshgrid(u, v, indexing="ij")))
     speed = np.linalg.norm(first[:, 1:], axis=2)
     speed = speed[np.isfinite(speed).all(axis=1)].mean(axis=0) if np.isfinite(speed).all(axis=1).any() else np.zeros(2)

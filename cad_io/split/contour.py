@@ -34,16 +34,14 @@ REACH = 2
 class LabelGrid(Record):
     """A filled label field ready to be contoured."""
 
-    #: (nu + closed,); grid lines; a closed direction repeats its first line one period later.
-    u: Floats
-    v: Floats
+    #: (nu + closed,) and (nv + closed,); along u and v; a closed direction repeats its first line one period later.
+    lines: tuple[Floats, Floats]
     #: (nu, nv); labels, known everywhere.
     field: Ints
     #: (nu, nv); nodes within REACH cells of a node on the face.
     near: NDArray[np.bool_]
-    #: The last line's neighbour is the first one.
-    closed_u: bool
-    closed_v: bool
+    #: Of u and v: the last line's neighbour is the first one.
+    closed: tuple[bool, bool]
 
 
 class Line(NamedTuple):
@@ -78,26 +76,20 @@ def fill(label: Ints) -> Ints:
     return np.asarray(label[tuple(nearest)], np.int32)
 
 
-def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
+def without_specks(field: Ints, closed: Sequence[bool]) -> Ints:
     """The field without islands of a single node: too small for a smooth boundary.
 
     Levels are cleared one by one, high islands first, so that the result does not depend on the order of nodes.
     """
     out = np.zeros_like(field)
     low = int(field.min())
+    along_u, along_v = ("wrap" if each else "constant" for each in closed)  # beyond the border is nobody
     for k in range(low, int(field.max())):
         above = field > k
         for value in (True, False):
-            alone = above == value
-            for axis, closed in ((0, closed_u), (1, closed_v)):
-                for way in (1, -1):
-                    neighbour = np.roll(above, way, axis)
-                    if not closed:
-                        edge = [slice(None), slice(None)]
-                        edge[axis] = slice(0, 1) if way == 1 else slice(-1, None)
-                        neighbour[tuple(edge)] = not value  # beyond the border is nobody
-                    alone &= neighbour != value
-            above = above ^ alone
+            same = above == value
+            u, v = np.pad(same, ((1, 1), (0, 0)), along_u), np.pad(same, ((0, 0), (1, 1)), along_v)  # type: ignore[call-overload]
+            above ^= same & ~(u[2:] | u[:-2] | v[:, 2:] | v[:, :-2])
         out += above
     return out + low
 
@@ -124,13 +116,13 @@ def curves(grid: LabelGrid, lines: Sequence[Line], fit: float) -> list[Spline]:
     between curve and line that the fit may leave, cells.
     """
     shape = np.array(grid.field.shape, float)
-    axes = (grid.u, grid.v)
+    axes = grid.lines
     corner = np.array([g[0] for g in axes])
     cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in axes])
     out = []
     for line in lines:
         piece = np.vstack([line.x, line.x[:1]]) if line.closed else line.x.copy()
-        for a, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+        for a, is_closed in enumerate(grid.closed):
             if is_closed:
                 piece[:, a] -= np.floor(piece[:, a].mean() / shape[a]) * shape[a]
         uv = np.stack([np.interp(piece[:, a], np.arange(len(g)), g) for a, g in enumerate(axes)], axis=1)
@@ -144,8 +136,7 @@ def curves(grid: LabelGrid, lines: Sequence[Line], fit: float) -> list[Spline]:
 def _chains(grid: LabelGrid, k: int) -> list[_Chain]:
     """Crossings of the boundary between `<= k` and `> k`, linked in order."""
     nu, nv = grid.field.shape
-    pad = ((0, int(grid.closed_u)), (0, int(grid.closed_v)))
-    value = np.pad(grid.field, pad, mode="wrap")
+    value = np.pad(grid.field, [(0, int(each)) for each in grid.closed], mode="wrap")
     above = value > k
     # Numbers of the grid edges: along u first, then along v; those on a repeated line get the first line's number.
     iu, ju = np.indices((value.shape[0] - 1, value.shape[1]))
@@ -172,12 +163,12 @@ def _chains(grid: LabelGrid, k: int) -> list[_Chain]:
         second = value[i + is_u, j + ~is_u]
         ends = np.sort(np.stack([(k - first) / (second - first), (k + 1 - first) / (second - first)]), axis=0)
         middle = np.stack([i, j], axis=1) + 0.5 * step
-        for axis, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+        for axis, is_closed in enumerate(grid.closed):
             if is_closed:
                 middle[:, axis] = np.unwrap(middle[:, axis], period=grid.field.shape[axis])
         turn = np.zeros(2)
         if closed:
-            turn = np.round((middle[-1] - middle[0]) / (nu, nv)) * (nu, nv) * (grid.closed_u, grid.closed_v)
+            turn = np.round((middle[-1] - middle[0]) / (nu, nv)) * (nu, nv) * grid.closed
         spare = MARGIN * (ends[1] - ends[0])
         out.append(_Chain(middle - 0.5 * step, step, ends[0] + spare, ends[1] - spare, closed, turn))
     return out
@@ -259,7 +250,7 @@ def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[Line]:
     node = np.round(chain.base).astype(int) % grid.field.shape
     near = grid.near[node[:, 0], node[:, 1]]
     seam = np.zeros(len(x), bool)
-    for axis, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+    for axis, is_closed in enumerate(grid.closed):
         if is_closed:
             seam |= (node[:, axis] == 0) & (chain.step[:, axis] == 0)
     if chain.closed:
@@ -364,12 +355,12 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[
         i = int(np.argmin(np.abs(lines[axis][: label.shape[axis]] - at)))
         row = np.moveaxis(field, axis, 0)
         row[i] = np.bincount(row[i]).argmax()
-    despeckled = without_specks(field, closed[0], closed[1])
+    despeckled = without_specks(field, closed)
     modes = ["wrap" if c else "nearest" for c in closed]
     on_face = (label >= 0) | nodes_inside(segments, *(line[:n] for line, n in zip(lines, label.shape, strict=True)))
     near = maximum_filter(on_face.astype(np.uint8), size=2 * REACH + 1, mode=modes) > 0
     dropped = (despeckled != field) & (label >= 0)
-    return LabelGrid(lines[0], lines[1], despeckled, near, closed[0], closed[1]), label, dropped
+    return LabelGrid((lines[0], lines[1]), despeckled, near, (closed[0], closed[1])), label, dropped
 
 
 def _from_seam(line: Floats, label: Ints, axis: int, start: float, period: float) -> tuple[Floats, Ints]:

@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Tool
@@ -27,9 +27,8 @@ from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
 from cad_io.kernel.shapes import as_bytes, as_one, children, components, compound, of_bytes
 from cad_io.split.arrangement import Arrangement, Judged, joined, judged, regions_of, slivers
 from cad_io.split.border import Border, CannotSplit
-from cad_io.split.build import pieces, placed, rewired
+from cad_io.split.build import Net, pieces, placed, repair, rewired, valid
 from cad_io.split.contour import Line, curves, label_grid, smoothed
-from cad_io.split.net import Net, repair, valid
 from cad_io.surface import Surface
 from plan_cutters_base.forks import ChildDied, TimeLimit, end_within, limited
 
@@ -140,34 +139,32 @@ def copied(shape: Any, faces: dict[int, Any]) -> tuple[Any, dict[int, Any]]:
     return own, {n: TopoDS.Face_s(after.FindKey(before.FindIndex(face))) for n, face in faces.items()}
 
 
+@dataclass
 class Trial:
     """A component of a part, of which attempts are made; and what they may keep from each other.
 
     given, base: the component, to which results are compared, and a copy of it, which is repaired. faces: number -> TopoDS_Face,
-    all faces of the copy. net: of the copy. works_on: to be told the faces about which the kernel is asked next. careful: ask
-    about the validity of each face alone, also while the whole is valid.
+    all faces of the copy. surface_of: gives a face's surface by its number. net: of the copy. works_on: to be told the faces
+    about which the kernel is asked next. careful: ask about the validity of each face alone, also while the whole is valid.
     """
 
-    def __init__(
-        self,
-        inputs: Any,
-        base: Any,
-        faces: dict[int, Any],
-        surface_of: Callable[[int], Surface],
-        works_on: Callable[[set[int]], None],
-        careful: bool,
-    ) -> None:
-        """`surface_of` gives a face's surface by its number."""
-        self.given, self.base, self.faces, self.works_on, self.careful = inputs, base, faces, works_on, careful
-        known = shape_map(base, TopAbs_FACE)
-        numbers = {known.FindIndex(face): n for n, face in faces.items()}
-        self._surface_of = lambda i: surface_of(numbers[i])
-        self.net = Net(base, self._surface_of)
+    given: Any
+    base: Any
+    faces: dict[int, Any]
+    surface_of: Callable[[int], Surface]
+    works_on: Callable[[set[int]], None]
+    careful: bool
+
+    def __post_init__(self) -> None:
+        known = shape_map(self.base, TopAbs_FACE)
+        numbers = {known.FindIndex(face): n for n, face in self.faces.items()}
+        self._in_net = lambda i: self.surface_of(numbers[i])
+        self.net = Net(self.base, self._in_net)
 
     def copied(self) -> tuple[Any, dict[int, Any], Net]:
         """Copy the base: the copy, its faces by number, its net."""
         own, fresh = copied(self.base, self.faces)
-        return own, fresh, Net(own, self._surface_of, self.net.off)
+        return own, fresh, Net(own, self._in_net, self.net.off)
 
 
 class Attempt:
@@ -218,11 +215,8 @@ class Attempt:
 
     def _neighbours(self, fresh: dict[int, Any]) -> dict[int, set[int]]:
         """Faces that stay whole and have edges that others cut, and those others."""
-        cutters = {
-            number: {n for e in edges_of(face) for n in self._cutters.get(self._net.edges.FindIndex(e), ())}
-            for number, face in fresh.items()
-            if number not in self._cut
-        }
+        whole = {number: edges_of(face) for number, face in fresh.items() if number not in self._cut}
+        cutters = {i: {n for e in es for n in self._cutters.get(self._net.edges.FindIndex(e), ())} for i, es in whole.items()}
         return {number: those for number, those in cutters.items() if those}
 
     def _ask(self, changed: dict[int, list[Any]], neighbours: dict[int, set[int]]) -> None:
@@ -232,12 +226,8 @@ class Attempt:
             self._works_on(cutters)
             if cutters & self.wrong.keys() or all(map(valid, made)) or not valid(self._given[number]):
                 continue
-            why = (
-                f"with its edges cut there, F{number} next to it is not valid"
-                if number in neighbours
-                else "a piece of it is not valid"
-            )
-            self.wrong |= dict.fromkeys(cutters, why)
+            next_to = f"with its edges cut there, F{number} next to it is not valid"
+            self.wrong |= dict.fromkeys(cutters, next_to if number in neighbours else "a piece of it is not valid")
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
         arrangement, regions = drawing.found, [part.region for part in drawing.parts]
@@ -286,20 +276,23 @@ class CutFaces:
     joined: dict[int, int] = field(default_factory=dict)
 
 
-def cut_faces(
-    shape: Any,
-    faces: dict[int, Any],
-    labels: dict[int, FaceLabels],
-    surface_of: Callable[[int], Surface],
-    worst: int,
-    seconds: float,
-) -> tuple[Any, CutFaces]:
-    """Cut faces (by number, all of the shape) along the boundaries of their labels; the shape is left as it is.
+class Job(NamedTuple):
+    """Faces to cut (by number, all of a shape, those that have labels), their surfaces by number, and `worst` as in `split`."""
 
-    labels: of the faces to cut. surface_of: a face's surface, by its number. worst: as in `split`. seconds: of processor time,
-    after which the work on one face is taken for endless; more for fine grids. Components that changed are copies; it is the
-    shape itself if there is none.
+    shape: Any
+    faces: dict[int, Any]
+    labels: dict[int, FaceLabels]
+    surface_of: Callable[[int], Surface]
+    worst: int
+
+
+def cut_faces(job: Job, seconds: float) -> tuple[Any, CutFaces]:
+    """Cut faces along the boundaries of their labels; the shape is left as it is.
+
+    seconds: of processor time, after which the work on one face is taken for endless; more for fine grids. Components that
+    changed are copies; it is the shape itself if there is none.
     """
+    labels = job.labels
     if labels:
         # Here once, not in each copy: half a second.
         import scipy.interpolate
@@ -307,7 +300,7 @@ def cut_faces(
     failed: dict[int, str] = {}
     for number, each in labels.items():
         # Once here: code that is yet to be compiled may wait for ever in a copy of the process.
-        surface_of(number).first(each.u[:1], each.v[:1])
+        job.surface_of(number).first(each.u[:1], each.v[:1])
     careful = False
     for _ in range(_HANGS):
         rest = {number: each for number, each in labels.items() if number not in failed}
@@ -315,7 +308,7 @@ def cut_faces(
             break
         watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
         try:
-            work = partial(_answer, shape, faces, rest, surface_of, worst, watch, careful)
+            work = partial(_answer, job._replace(labels=rest), watch, careful)
             units, pieces = limited(work, watch.whole, processor=True)
         except (TimeLimit, ChildDied) as error:
             seen = watch.seen() & rest.keys()
@@ -324,10 +317,10 @@ def cut_faces(
                 failed |= dict.fromkeys(seen or rest, why)
             careful = careful or len(seen) > 1
             continue
-        result = _unpacked(units, pieces, shape)
+        result = _unpacked(units, pieces, job.shape)
         pieces.failed |= failed
         return result, pieces
-    return shape, CutFaces(failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed})
+    return job.shape, CutFaces(failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed})
 
 
 class _Watch:
@@ -336,39 +329,30 @@ class _Watch:
     def __init__(self, limits: dict[int, float]) -> None:
         self._limits = limits
         self.whole = _WHOLE * max(limits.values()) + _EACH * sum(limits.values())
-        self._page = mmap.mmap(-1, 8 * (len(limits) + 1))
+        #: In memory that both share: how many they are, and their numbers.
+        self._page = np.frombuffer(mmap.mmap(-1, 8 * (len(limits) + 1)), np.int64)
 
     def works_on(self, numbers: set[int]) -> None:
         """From now on, until it is told anew."""
         reported = sorted(numbers & self._limits.keys())
-        for i, number in enumerate((len(reported), *reported)):
-            self._page[8 * i : 8 * i + 8] = number.to_bytes(8, "little")
+        self._page[: len(reported) + 1] = len(reported), *reported
         if hasattr(os, "fork") and reported:
             end_within(max(self._limits[n] for n in reported))
 
     def seen(self) -> set[int]:
         """Return the numbers of the faces that the copy named last in `works_on`."""
-        numbers = [int.from_bytes(self._page[8 * i : 8 * i + 8], "little") for i in range(len(self._limits) + 1)]
-        return set(numbers[1 : 1 + numbers[0]])
+        return set(self._page[1 : 1 + self._page[0]].tolist())
 
 
-def _answer(
-    shape: Any,
-    faces: dict[int, Any],
-    labels: dict[int, FaceLabels],
-    surface_of: Callable[[int], Surface],
-    worst: int,
-    watch: _Watch,
-    careful: bool,
-) -> tuple[list[_Packed | None], CutFaces]:
+def _answer(job: Job, watch: _Watch, careful: bool) -> tuple[list[_Packed | None], CutFaces]:
     """Cut the faces: the packed components, which `_unpacked` reads, and all else."""
     answer = CutFaces()
-    base, faces = copied(shape, faces)
+    base, faces = copied(job.shape, job.faces)
     drawings: dict[int, Drawing] = {}
-    for number, mine in labels.items():
+    for number, mine in job.labels.items():
         watch.works_on({number})
         try:
-            drawings[number] = Drawing(faces[number], surface_of(number), mine)
+            drawings[number] = Drawing(faces[number], job.surface_of(number), mine)
         except Exception as error:
             answer.failed[number] = in_words(error)
     watch.works_on(set(drawings))
@@ -377,12 +361,12 @@ def _answer(
     done: dict[int, Drawing] = {}
     units: list[_Packed | None] = []
     # Components share no edge: what is wrong with one is no reason to build the others again.
-    for part_unit, unit in zip(components(shape), components(base), strict=True):
+    for part_unit, unit in zip(components(job.shape), components(base), strict=True):
         inside = shape_map(unit, TopAbs_FACE)
         here = {n: face for n, face in faces.items() if inside.FindIndex(face)}
         in_component = {n: drawing for n, drawing in drawings.items() if n in here}
-        trial = Trial(part_unit, unit, here, surface_of, watch.works_on, careful)
-        units.append(_settled(trial, in_component, worst, answer).packed() if in_component else None)
+        trial = Trial(part_unit, unit, here, job.surface_of, watch.works_on, careful)
+        units.append(_settled(trial, in_component, job.worst, answer).packed() if in_component else None)
         done |= in_component
     answer.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in done.items()}
     answer.missed = {n: d.missed for n, d in done.items() if d.missed}

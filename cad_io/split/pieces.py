@@ -13,7 +13,7 @@ labels, and so on: each turn draws one boundary, and where three labels meet the
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from types import SimpleNamespace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -22,10 +22,14 @@ from OCP.BRep import BRep_Tool
 
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.face.trim import nodes_inside, outline
-from cad_io.split.cut_faces import cut_faces
+from cad_io.kernel import periods
+from cad_io.split.cut_faces import Job, cut_faces
+from cad_io.surface import Surface
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
+#: Processor time after which the work on one face is taken for endless, s.
+SECONDS = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +65,7 @@ class Split:
     joined: dict[int, int] = field(default_factory=dict)
 
 
-def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = 5) -> Split:
+def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = SECONDS) -> Split:
     """Split faces along the boundaries of their labels.
 
     labels: at most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces not
@@ -71,18 +75,23 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
 
     Raises ValueError where a face has two label fields, or a field does not fit its grid.
     """
+    faces = {info.number: part.face(info.number) for info in part.faces}
+    return _split(Job(part.shape, faces, {}, part.surface, worst), labels, seconds)
+
+
+def _split(job: Job, labels: Sequence[FaceLabels], seconds: float) -> Split:
+    """Split faces of a job that is without labels yet."""
     fields = {f.face: f for f in labels}
     if len(fields) < len(labels):
         raise ValueError("a face has two label fields")
     for f in labels:
         if f.label.shape != (len(f.u), len(f.v)):
             raise ValueError(f"F{f.face}: labels {f.label.shape} on a grid of {len(f.u)} x {len(f.v)}")
-    faces = {info.number: part.face(info.number) for info in part.faces}
-    shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
-    mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, cut = cut_faces(part.shape, faces, mixed, part.surface, worst, seconds)
+    shares = {number: _shares(fields[number].label) if number in fields else {} for number in job.faces}
+    mixed = {number: fields[number] for number in job.faces if len(shares[number]) > 1}
+    shape, cut = cut_faces(job._replace(labels=mixed), seconds)
     pieces: list[Piece] = []
-    for number, face in faces.items():
+    for number, face in job.faces.items():
         shapes = cut.faces.get(number, [face])
         if number in cut.labels:
             for (label, counts), piece in zip(cut.labels[number], shapes, strict=True):
@@ -100,27 +109,8 @@ def _shares(label: Ints) -> dict[int, float]:
     return {int(k): float(n / count.sum()) for k, n in zip(value, count, strict=True)}
 
 
-@dataclass(slots=True)
-class _Stage:
-    """The pieces so far, as `split` takes a part: the number of a face is the place of a piece, from 1."""
-
-    part: Any
-    shape: Any
-    pieces: list[tuple[Piece, tuple[int, ...]]]
-
-    @property
-    def faces(self) -> list[Any]:
-        return [SimpleNamespace(number=i) for i in range(1, len(self.pieces) + 1)]
-
-    def face(self, number: int) -> Any:
-        return self.pieces[number - 1][0].shape
-
-    def surface(self, number: int) -> Any:
-        return self.part.surface(self.pieces[number - 1][0].face)
-
-
 def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, tuple[int, ...]]:
-    """A piece of the original face, and the labels on it, from a piece of the stage and what it was cut from."""
+    """A piece of the original face, and the labels on it, from a piece of this turn and what it was cut from."""
     if len(group) <= 1:
         return Piece(before.face, before.label, each.shape, before.shares), group
     middle = len(group) // 2
@@ -130,8 +120,8 @@ def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, 
     return Piece(before.face, label, each.shape, {label: own} if own else {}), group
 
 
-def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 5) -> Split:
-    """Split faces along the boundaries of labels that have no order; labels and seconds, in each turn, are as for `split`.
+def split_by_turns(part: Any, labels: Sequence[FaceLabels]) -> Split:
+    """Split faces along the boundaries of labels that have no order; labels are as for `split`.
 
     Islands of one node get pieces, too. Slivers without a node join what is around them. `dropped` counts the nodes that lie
     within a piece of another label.
@@ -139,27 +129,31 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     fields = {each.face: each for each in labels}
     roomy = {number: with_margin(each) for number, each in fields.items()}
     start = split(part, [])
-    stage = _Stage(part, start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces])
+    shape, pieces = start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces]
     whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
-    while any(len(group) > 1 for _, group in stage.pieces):
-        # Labels that part each piece of several labels into two halves of them.
-        taken, requests = _taken(stage.pieces, roomy), []
-        for i, (piece, group) in enumerate(stage.pieces, 1):
+    while any(len(group) > 1 for _, group in pieces):
+        # Labels that part each piece of several labels into two halves of them; the pieces are faces by their places, from 1.
+        taken, requests, owner = _taken(pieces, roomy), [], [0, *(piece.face for piece, _ in pieces)]
+        for i, (piece, group) in enumerate(pieces, 1):
             if len(group) > 1:
                 field = roomy[piece.face]
                 off = np.isin(taken[piece.face], [0, i], invert=True)
                 requests.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
-        done = split(stage, requests, seconds=seconds)
-        pieces = [_halved(each, *stage.pieces[each.face - 1]) for each in done.pieces]
+
+        def surface_of(i: int, owner: list[int] = owner) -> Surface:
+            surface: Surface = part.surface(owner[i])
+            return surface
+
+        faces = {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}
+        done = _split(Job(shape, faces, {}, surface_of, -1), requests, SECONDS)
+        shape, pieces = done.shape, [_halved(each, *pieces[each.face - 1]) for each in done.pieces]
         for i, why in done.whole.items():
-            whole[stage.pieces[i - 1][0].face] = why
-            remaining[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
+            whole[owner[i]], remaining[owner[i]] = why, fields[owner[i]]
         for i, n in done.joined.items():
-            joined[stage.pieces[i - 1][0].face] += n
-        stage = _Stage(part, done.shape, pieces)
-    last = tuple(each for each, _ in stage.pieces)
+            joined[owner[i]] += n
+    last = tuple(each for each, _ in pieces)
     strays = {number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()}
-    return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
+    return Split(shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
 
 
 def with_margin(labels: FaceLabels) -> FaceLabels:
@@ -221,18 +215,10 @@ def _on(labels: FaceLabels, face: Any) -> NDArray[np.bool_]:
     segments = outline(face)
     if not len(segments):
         return np.ones(labels.label.shape, bool)
-    surface = BRep_Tool.Surface_s(face)
-    turns = [
-        [0.0, period, -period] if closed else [0.0]
-        for closed, period in (
-            (surface.IsUPeriodic(), surface.UPeriod() if surface.IsUPeriodic() else 0.0),
-            (surface.IsVPeriodic(), surface.VPeriod() if surface.IsVPeriodic() else 0.0),
-        )
-    ]
+    turns = ([0.0, period, -period] if period else [0.0] for period in periods(BRep_Tool.Surface_s(face)))
     on_face = np.zeros(labels.label.shape, bool)
-    for du in turns[0]:
-        for dv in turns[1]:
-            on_face |= nodes_inside(segments, labels.u + du, labels.v + dv)
+    for du, dv in product(*turns):
+        on_face |= nodes_inside(segments, labels.u + du, labels.v + dv)
     return on_face
 
 

@@ -5,30 +5,17 @@ surfaces of degree one along their direction, curves turned about an axis are tu
 """
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.GeomAbs import (
-    GeomAbs_BezierCurve,
-    GeomAbs_BezierSurface,
-    GeomAbs_BSplineCurve,
-    GeomAbs_BSplineSurface,
-    GeomAbs_Cone,
-    GeomAbs_Cylinder,
-    GeomAbs_Line,
-    GeomAbs_Plane,
-    GeomAbs_Sphere,
-    GeomAbs_SurfaceOfExtrusion,
-    GeomAbs_SurfaceOfRevolution,
-    GeomAbs_Torus,
-)
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array2OfReal
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import Floats
-from cad_io.kernel import domain, first_derivatives, may_refuse, second_derivatives, values
+from cad_io.kernel import domain, first_derivatives, kind_of, may_refuse, periods, second_derivatives, values
 from cad_io.surface import elementary
 from cad_io.surface.elementary import Bends
 
@@ -61,46 +48,39 @@ class Form(NamedTuple):
 
 def form_of(adaptor: BRepAdaptor_Surface) -> Form | None:
     """The form of a surface; None for what only the kernel can evaluate."""
-    kind = adaptor.GetType()
-    if kind == GeomAbs_Plane:
+    kind = kind_of(adaptor)
+    if kind == "Plane":
         frame = elementary.frame_of(adaptor.Plane().Position())
         return Form(lambda u, v, count: elementary.plane(frame, u, v, count), elementary.plane_bends)
-    if kind == GeomAbs_Cylinder:
-        form: Any = adaptor.Cylinder()
-        return _elementary(form, elementary.cylinder(form.Radius()))
-    if kind == GeomAbs_Cone:
-        form = adaptor.Cone()
-        return _elementary(form, elementary.cone(form.RefRadius(), form.SemiAngle()))
-    if kind == GeomAbs_Sphere:
-        form = adaptor.Sphere()
-        return _elementary(form, elementary.torus(0.0, form.Radius()))
-    if kind == GeomAbs_Torus:
-        form = adaptor.Torus()
-        return _elementary(form, elementary.torus(form.MajorRadius(), form.MinorRadius()))
-    if kind == GeomAbs_BSplineSurface:
+    if kind in _PROFILES:
+        shape: Any = getattr(adaptor, kind)()
+        frame, profile = elementary.frame_of(shape.Position()), _PROFILES[kind](shape)
+        return Form(lambda *at: elementary.revolved(frame, profile, *at), lambda u, v: elementary.bends(frame, profile, u, v))
+    if kind == "BSplineSurface":
         return _of_net(_bspline(adaptor.BSpline()))
-    if kind == GeomAbs_BezierSurface:
+    if kind == "BezierSurface":
         knots = [np.repeat([0.0, 1.0], degree + 1) for degree in (adaptor.UDegree(), adaptor.VDegree())]
-        return _of_net(_surface_net(adaptor.Bezier(), knots, [0.0, 0.0]))
-    if kind == GeomAbs_SurfaceOfExtrusion:
-        curve = curve_net(adaptor.BasisCurve())
-        return None if curve is None else _of_net(_extruded(curve, np.array(adaptor.Direction().Coord())))
-    if kind == GeomAbs_SurfaceOfRevolution:
-        curve = curve_net(adaptor.BasisCurve())
-        return None if curve is None else _turned(curve, adaptor.AxeOfRevolution())
-    return None
+        return _of_net(_surface_net(adaptor.Bezier(), knots, (0.0, 0.0)))
+    curve = curve_net(adaptor.BasisCurve()) if kind in ("SurfaceOfExtrusion", "SurfaceOfRevolution") else None
+    if curve is None:
+        return None
+    if kind == "SurfaceOfRevolution":
+        return _turned(curve, adaptor.AxeOfRevolution())
+    return _of_net(_extruded(curve, np.array(adaptor.Direction().Coord())))
 
 
-def _elementary(surface: Any, profile: elementary.Profile) -> Form:
-    frame = elementary.frame_of(surface.Position())
-    return Form(
-        lambda u, v, count: elementary.revolved(frame, profile, u, v, count), lambda u, v: elementary.bends(frame, profile, u, v)
-    )
+#: Profiles of the kernel's shapes about an axis, by their kinds.
+_PROFILES: dict[str, Callable[[Any], elementary.Profile]] = {
+    "Cylinder": lambda shape: elementary.cylinder(shape.Radius()),
+    "Cone": lambda shape: elementary.cone(shape.RefRadius(), shape.SemiAngle()),
+    "Sphere": lambda shape: elementary.torus(0.0, shape.Radius()),
+    "Torus": lambda shape: elementary.torus(shape.MajorRadius(), shape.MinorRadius()),
+}
 
 
 def _bspline(surface: Any) -> "Net":
     # Poles of a periodic surface are counted round: asked for as one that is not, it has the usual ones.
-    periods = [surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0]
+    turns = periods(surface)
     if surface.IsUPeriodic():
         surface.SetUNotPeriodic()
     if surface.IsVPeriodic():
@@ -109,7 +89,7 @@ def _bspline(surface: Any) -> "Net":
         _repeated(surface.UKnot, surface.UMultiplicity, surface.NbUKnots()),
         _repeated(surface.VKnot, surface.VMultiplicity, surface.NbVKnots()),
     ]
-    return _surface_net(surface, knots, periods)
+    return _surface_net(surface, knots, turns)
 
 
 def _repeated(knot: Callable[[int], float], multiplicity: Callable[[int], int], count: int) -> Floats:
@@ -117,7 +97,7 @@ def _repeated(knot: Callable[[int], float], multiplicity: Callable[[int], int], 
     return np.repeat([knot(i) for i in numbers], [multiplicity(i) for i in numbers]).astype(float)
 
 
-def _surface_net(surface: Any, knots: list[Floats], periods: list[float]) -> "Net":
+def _surface_net(surface: Any, knots: list[Floats], turns: tuple[float, float]) -> "Net":
     # Here, since the compiler takes its time to load and many a part has no such surface.
     from cad_io.surface.bspline import Net
 
@@ -132,21 +112,21 @@ def _surface_net(surface: Any, knots: list[Floats], periods: list[float]) -> "Ne
         surface.Weights(weights)
         pole[..., 3] = [[weights.Value(i, j) for j in range(1, columns + 1)] for i in range(1, rows + 1)]
         pole[..., :3] *= pole[..., 3:]
-    return Net(knots[0], knots[1], surface.UDegree(), surface.VDegree(), periods[0], periods[1], pole, rational)
+    return Net(knots[0], knots[1], surface.UDegree(), surface.VDegree(), *turns, pole, rational)
 
 
 def curve_net(adaptor: Any) -> "Net | None":
     """A curve (in space, or in a parameter plane) as a net of one row, its parameter along v; None if it is no polynomial."""
     from cad_io.surface.bspline import Net
 
-    kind, period = adaptor.GetType(), 0.0
-    if kind == GeomAbs_Line:
+    kind, period = kind_of(adaptor), 0.0
+    if kind == "Line":
         knot, poles, weights = np.array([0.0, 0.0, 1.0, 1.0]), [adaptor.Value(0.0), adaptor.Value(1.0)], None
-    elif kind == GeomAbs_BezierCurve:
+    elif kind == "BezierCurve":
         curve = adaptor.Bezier()
         knot = np.repeat([0.0, 1.0], curve.Degree() + 1)
         poles, weights = _poles(curve)
-    elif kind == GeomAbs_BSplineCurve:
+    elif kind == "BSplineCurve":
         curve = adaptor.BSpline()
         if curve.IsPeriodic():
             period = curve.LastParameter() - curve.FirstParameter()
@@ -180,19 +160,10 @@ def _of_net(net: "Net") -> Form:
         compiled(u, v, net, out)
         return out
 
-    across = np.swapaxes(net.pole, 0, 1)
-    along = [
-        _lines(net.knot_u, net.degree_u, net.pole, net.period_u > 0),
-        _lines(net.knot_v, net.degree_v, across, net.period_v > 0),
-    ]
-    return Form(
-        evaluate,
-        lambda u, v: net_bends(net, u, v),
-        (along[0][0], along[1][0]),
-        (along[0][1], along[1][1]),
-        (net.period_u, net.period_v),
-        (net.degree_u, net.degree_v),
-    )
+    knots_u, jumps_u = _lines(net.knot_u, net.degree_u, net.pole, net.period_u > 0)
+    knots_v, jumps_v = _lines(net.knot_v, net.degree_v, np.swapaxes(net.pole, 0, 1), net.period_v > 0)
+    turns, degrees = (net.period_u, net.period_v), (net.degree_u, net.degree_v)
+    return Form(evaluate, lambda u, v: net_bends(net, u, v), (knots_u, knots_v), (jumps_u, jumps_v), turns, degrees)
 
 
 def _lines(knot: Floats, degree: int, pole: Floats, closed: bool) -> tuple[Floats, Floats]:
@@ -204,11 +175,8 @@ def _lines(knot: Floats, degree: int, pole: Floats, closed: bool) -> tuple[Float
             jump[k] = _TORN
         elif count[k] == degree:
             row = degree + int(first[k]) - 1
-            jump[k] = _jump(
-                pole[row - 1 : row + 2],
-                degree / (knot[row + degree] - knot[row]),
-                degree / (knot[row + degree + 1] - knot[row + 1]),
-            )
+            before, after = (degree / (knot[at + degree] - knot[at]) for at in (row, row + 1))
+            jump[k] = _jump(pole[row - 1 : row + 2], before, after)
     if closed:
         ends = degree / (value[-1] - value[-2]), degree / (value[1] - value[0])
         jump[0] = jump[-1] = _jump(np.stack([pole[-2], pole[0], pole[1]]), *ends)
@@ -299,18 +267,17 @@ _AGREE, _FAR = 1e-8, 1e3
 class Surface:
     """Evaluator of a face's whole surface, not restricted to it, in part coordinates; `adaptor` is the kernel's own."""
 
-    __slots__ = ("_evaluate", "_form", "adaptor")
-
     def __init__(self, face: TopoDS_Face) -> None:
         self.adaptor = BRepAdaptor_Surface(face, False)
-        self._evaluate: Evaluator | None = None
-        self._form: Form | None = None
 
-    @property
+    @cached_property
     def form(self) -> Form | None:
         """Return the data that evaluate the surface without the kernel; None where only the kernel evaluates it."""
-        self._settle()
-        return self._form
+        return _trusted(self.adaptor)
+
+    @cached_property
+    def _evaluate(self) -> Evaluator:
+        return self.form.evaluate if self.form else _by_kernel(self.adaptor)
 
     def values(self, u: Floats, v: Floats) -> Floats:
         """Points (n, 3), mm, at parameters (n,); nan where there is none."""
@@ -325,13 +292,7 @@ class Surface:
         return self._evaluated(u, v, 6)
 
     def _evaluated(self, u: Floats, v: Floats, count: int) -> Floats:
-        return self._settle()(np.ascontiguousarray(u, float), np.ascontiguousarray(v, float), count)
-
-    def _settle(self) -> Evaluator:
-        if self._evaluate is None:
-            self._form = _trusted(self.adaptor)
-            self._evaluate = self._form.evaluate if self._form else _by_kernel(self.adaptor)
-        return self._evaluate
+        return self._evaluate(np.ascontiguousarray(u, float), np.ascontiguousarray(v, float), count)
 
 
 def _trusted(adaptor: BRepAdaptor_Surface) -> Form | None:

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse, GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_Line
 
 from cad_io.arrays import Floats
-from cad_io.kernel import along, may_refuse
+from cad_io.kernel import along, kind_of, may_refuse
 from cad_io.surface.bspline import DEGREE, Net, basis, net_bends, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
 from cad_io.surface.surface import curve_lines, curve_net
@@ -61,24 +61,11 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
     knot, pole, line, bend = [np.zeros(0)], [np.zeros((0, 4))], [np.zeros(0)], [np.zeros((0, 3))]
     knots, poles, lines, exact = 0, 0, 0, True
     for i, (curve, ends) in enumerate(zip(curves, ranges, strict=True)):
-        conic = _conic(curve)
-        straight = _straight(curve, ends)
-        if straight is not None:
-            conic, net, mine, bends = None, straight, np.array(ends), np.zeros((2, 3))
-        elif conic is not None and _agrees(
-            curve, ends, lambda t, c=conic: c[:2] + np.cos(t)[:, None] * c[2:4] + np.sin(t)[:, None] * c[4:6]
-        ):
-            net, mine = None, np.array(ends)
-            bends = np.array([[*np.hypot(conic[2:4], conic[4:6]), 0.0]] * 2)
-        else:
-            conic = None
-            net = _net(curve)
-            if net is None or not _agrees(curve, ends, lambda t, n=net: _on_net(n, t)):
-                net, exact = _through_points(curve, ends), False
-            mine, bends = _bends(net, ends)
-            if not np.isfinite(bends).all():
-                net, exact = _through_points(curve, ends), False
-                mine, bends = _bends(net, ends)
+        known = _exact(curve, ends)
+        if known is None:
+            exact, near = False, _through_points(curve, ends)
+            known = None, near, *_bends(near, ends)
+        conic, net, mine, bends = known
         number[i] = (conic is not None, 0 if net is None else net.degree_v, knots, poles, lines, len(mine))
         if conic is not None:
             real[i, 1:] = conic
@@ -95,6 +82,22 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
     return Curves(number, real, *(np.ascontiguousarray(np.concatenate(each)) for each in (knot, pole, line, bend))), exact
 
 
+def _exact(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> tuple[Floats | None, Net | None, Floats, Floats] | None:
+    """A curve's axes where it is a conic, else its net, lines over its range and how it bends; None where it is neither."""
+    if (straight := _straight(curve, ends)) is not None:
+        return None, straight, np.array(ends), np.zeros((2, 3))
+    c = _conic(curve)
+    if c is not None and _agrees(curve, ends, lambda t: c[:2] + np.cos(t)[:, None] * c[2:4] + np.sin(t)[:, None] * c[4:6]):
+        return c, None, np.array(ends), np.array([[*np.hypot(c[2:4], c[4:6]), 0.0]] * 2)
+    net = None
+    with may_refuse():
+        net = curve_net(curve)
+    if net is not None and _agrees(curve, ends, lambda t: _on_net(net, t)):
+        lines, bends = _bends(net, ends)
+        return (None, net, lines, bends) if np.isfinite(bends).all() else None
+    return None
+
+
 def _straight(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net | None:
     """The net of a line; most borders are lines, and need no more than its ends."""
     if curve.GetType() != GeomAbs_Line:
@@ -109,23 +112,13 @@ def _straight(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net | No
 
 def _conic(curve: BRepAdaptor_Curve2d) -> Floats | None:
     """Centre and half axes (6,) of a circle or an ellipse."""
-    kind: Any = curve.GetType()
-    if kind == GeomAbs_Circle:
-        conic: Any = curve.Circle()
-        radii = (conic.Radius(), conic.Radius())
-    elif kind == GeomAbs_Ellipse:
-        conic = curve.Ellipse()
-        radii = (conic.MajorRadius(), conic.MinorRadius())
-    else:
+    kind = kind_of(curve)
+    if kind not in ("Circle", "Ellipse"):
         return None
+    conic: Any = getattr(curve, kind)()
+    radii = (conic.Radius(), conic.Radius()) if kind == "Circle" else (conic.MajorRadius(), conic.MinorRadius())
     axes = conic.XAxis().Direction(), conic.YAxis().Direction()
     return np.array([*conic.Location().Coord(), *(r * c for r, d in zip(radii, axes, strict=True) for c in d.Coord())])
-
-
-def _net(curve: BRepAdaptor_Curve2d) -> Net | None:
-    with may_refuse():
-        return curve_net(curve)
-    return None
 
 
 def _on_net(net: Net, t: Floats) -> Floats:

@@ -16,20 +16,12 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepTools import BRepTools
-from OCP.GeomAbs import (
-    GeomAbs_Circle,
-    GeomAbs_Cone,
-    GeomAbs_Cylinder,
-    GeomAbs_Line,
-    GeomAbs_Plane,
-    GeomAbs_Sphere,
-    GeomAbs_SurfaceOfRevolution,
-    GeomAbs_Torus,
-)
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line
 
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
-from cad_io.kernel import edges_of, translated
+from cad_io.face.carrier import CLOSED
+from cad_io.kernel import edges_of, kind_of, translated
 from cad_io.part import Part
 from cad_io.tessellate.triangles import tessellate
 
@@ -103,7 +95,7 @@ _Lines = list[tuple[tuple[float, float, float, float], bool]]
 
 def _disk(face: Any, plane: Any, base: Floats, along: Floats) -> _Lines | None:
     """The line of a plane face that turns about the axis: across it, to its farthest circle."""
-    if not _coaxial(plane.Location(), plane.Axis().Direction(), base, along, anywhere=True):
+    if not _coaxial(None, plane.Axis().Direction(), base, along):
         return None
     height = float((_xyz(plane.Location()) - base) @ along)
     radii = [_circle(edge, base, along) for edge in edges_of(face)]
@@ -114,36 +106,29 @@ def _disk(face: Any, plane: Any, base: Floats, along: Floats) -> _Lines | None:
 def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Lines | None:
     """Lines of a face that turns about the axis, none where they are not known; None where it does not turn about it."""
     surface = BRepAdaptor_Surface(face)
-    kind = surface.GetType()
+    kind = kind_of(surface)
     _, _, v0, v1 = BRepTools.UVBounds_s(face)
-    if kind == GeomAbs_Plane:
+    if kind == "Plane":
         return _disk(face, surface.Plane(), base, along)
-    if kind == GeomAbs_SurfaceOfRevolution:
+    if kind == "SurfaceOfRevolution":
         axis = surface.AxeOfRevolution()
         return [] if _coaxial(axis.Location(), axis.Direction(), base, along) else None
-    made = {GeomAbs_Cylinder: "Cylinder", GeomAbs_Cone: "Cone", GeomAbs_Sphere: "Sphere", GeomAbs_Torus: "Torus"}.get(kind)
-    if made is None or max(abs(v0), abs(v1)) > _FARTHEST:
+    if kind not in CLOSED.values() or max(abs(v0), abs(v1)) > _FARTHEST:
         return None
-    body = getattr(surface, made)()
-    frame = body.Position()
-    if made == "Sphere":
-        # It turns about every line through its centre; but in a frame that does not, its parameters are no heights.
-        centre = _xyz(body.Location()) - base
-        if np.linalg.norm(centre - (centre @ along) * along) > _ON:
-            return None
-        if not _coaxial(body.Location(), frame.Direction(), base, along) or not _ends(face, v0, v1):
-            return []
-        up = math.copysign(1.0, float(_xyz(frame.Direction()) @ along))
-        return list(_arc(0.0, float(centre @ along), body.Radius(), up, v0, v1, chord))
-    if not _coaxial(body.Location(), frame.Direction(), base, along):
-        return None
+    body = getattr(surface, kind)()
+    upward = body.Position().Direction()
+    if not _coaxial(body.Location(), upward, base, along):
+        # A sphere turns about every line through its centre; but in a frame that does not, its parameters are no heights.
+        return [] if kind == "Sphere" and _coaxial(body.Location(), None, base, along) else None
     if not _ends(face, v0, v1):
         return []
-    up = math.copysign(1.0, float(_xyz(frame.Direction()) @ along))
+    up = math.copysign(1.0, float(_xyz(upward) @ along))
     foot = float((_xyz(body.Location()) - base) @ along)
-    if made == "Torus":
+    if kind == "Sphere":
+        return list(_arc(0.0, foot, body.Radius(), up, v0, v1, chord))
+    if kind == "Torus":
         return list(_arc(body.MajorRadius(), foot, body.MinorRadius(), up, v0, v1, chord))
-    if made == "Cylinder":
+    if kind == "Cylinder":
         return [((body.Radius(), foot + up * v0, body.Radius(), foot + up * v1), True)]
     slope = body.SemiAngle()
     ends = [(abs(body.RefRadius() + v * math.sin(slope)), foot + up * v * math.cos(slope)) for v in (v0, v1)]
@@ -210,10 +195,11 @@ def _xyz(point: Any) -> Floats:
     return np.array([point.X(), point.Y(), point.Z()])
 
 
-def _coaxial(location: Any, direction: Any, base: Floats, along: Floats, *, anywhere: bool = False) -> bool:
-    away = _xyz(location) - base
-    apart = 0.0 if anywhere else float(np.linalg.norm(away - (away @ along) * along))
-    return float(np.linalg.norm(np.cross(_xyz(direction), along))) <= _ON and apart <= _ON
+def _coaxial(location: Any, direction: Any, base: Floats, along: Floats) -> bool:
+    """Whether a place lies on the axis and a direction along it; without either the other one counts."""
+    away = np.zeros(3) if location is None else _xyz(location) - base
+    turned = 0.0 if direction is None else float(np.linalg.norm(np.cross(_xyz(direction), along)))
+    return turned <= _ON and float(np.linalg.norm(away - (away @ along) * along)) <= _ON
 
 
 def _circle(edge: Any, base: Floats, along: Floats) -> float | None:

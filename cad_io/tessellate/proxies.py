@@ -62,11 +62,15 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
 
     chord: distance of edges' polygons from the edges, mm.
     """
-    vertex: list[Floats] = []
-    owner: list[Ints] = []
-    weight: list[NDArray[np.int8]] = []
+    vertex, owner, weight = [np.zeros((0, 3, 3))], [np.zeros(0, np.int32)], [np.zeros(0, np.int8)]
     how: dict[int, StandIn] = {}
     own: dict[int, Floats] = {}
+
+    def add(triangles: Floats, number: int, sign: int) -> None:
+        vertex.append(triangles)
+        owner.append(np.full(len(triangles), number, np.int32))
+        weight.append(np.full(len(triangles), sign, np.int8))
+
     for number, reason in missing:
         made, sign = np.zeros((0, 3, 3)), 0
         if reason == NO_AREA and len(edges := _edges(part, number, chord)):
@@ -74,32 +78,20 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
         elif (triangles := _own_triangles(part, number)) is not None:
             how[number], own[number] = "triangles", triangles
         elif np.isfinite(box := face_box(part.face(number), tight=False)).all():
-            how[number], sign = "box", 1
-            made = boxed(*box)
+            how[number], sign, made = "box", 1, boxed(*box)
         else:
             how[number] = "none"
-        vertex.append(made)
-        owner.append(np.full(len(made), number, np.int32))
-        weight.append(np.full(len(made), sign, np.int8))
+        add(made, number, sign)
     for known in (each.box for each in part.lost if each.face is None and each.box is not None):
         # A face of the file that is not here at all: it stood at least about there.
-        low, high = (np.array(corner) for corner in known)
-        vertex.append(boxed(low, high))
-        owner.append(np.zeros(len(_SIDES), np.int32))
-        weight.append(np.ones(len(_SIDES), np.int8))
+        add(boxed(*map(np.array, known)), 0, 1)
     if own:
-        vertex.append(np.concatenate(list(own.values())))
-        owner.append(np.repeat(np.array(list(own), np.int32), [len(mine) for mine in own.values()]))
-        turned, caps = _enclosing(vertex[-1])
-        vertex.append(caps)
-        owner.append(np.zeros(len(caps), np.int32))
-        weight += [turned, np.ones(len(caps), np.int8)]
-    return StandIns(
-        np.concatenate([np.zeros((0, 3, 3)), *vertex]),
-        np.concatenate([np.zeros(0, np.int32), *owner]),
-        np.concatenate([np.zeros(0, np.int8), *weight]),
-        how,
-    )
+        for number, mine in own.items():
+            add(mine, number, 0)
+        turned, caps = _enclosing(np.concatenate(list(own.values())))
+        weight[-len(own) :] = [turned]
+        add(caps, 0, 1)
+    return StandIns(np.concatenate(vertex), np.concatenate(owner), np.concatenate(weight), how)
 
 
 def _own_triangles(part: Part, number: int) -> Floats | None:
@@ -150,8 +142,7 @@ def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
         net = np.bincount(which, weights=weight[mine // 3] * np.where(tail[mine] < head[mine], 1, -1), minlength=len(edges))
         open_edges = [(edges[i] // len(nodes), edges[i] % len(nodes), int(net[i])) for i in np.flatnonzero(net)]
         place = {c: nodes[i] for i, c in enumerate(corner.ravel().tolist())} if open_edges else {}
-        lines = [np.array([place[low], place[high]] if n > 0 else [place[high], place[low]]) for low, high, n in open_edges]
-        cap = coned(lines, [abs(n) for *_, n in open_edges], near) if lines else np.zeros((0, 3, 3))
+        cap = coned([(np.array([place[low], place[high]]), n) for low, high, n in open_edges], near)
         origin = vertex[rows[0], 0]
         solid = np.concatenate([vertex[rows] * 1.0, cap]) - origin
         turn = np.concatenate([weight[rows], np.ones(len(cap))])

@@ -8,7 +8,6 @@ curves bend about it, so nothing needs measuring but what only the kernel can ev
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -344,16 +343,15 @@ def _alike(
     workspaces = [workspace(min(budget, _LARGEST)) for _ in range(jobs)]
     least, chord = requested
 
-    def begun(patch: Patch) -> tuple[Patch, Tried]:
-        with _borrowed(workspaces) as mine:
-            return patch.begun(chord, most, mine if total <= budget else EMPTY)
-
-    def again(patch: Patch) -> Tried:
-        with _borrowed(workspaces) as mine:
-            return patch.tried(chord, most, mine if total <= budget else EMPTY)
+    def work(how: Callable[[float, int, RefinedMesh], Done]) -> Done:
+        mine = workspaces.pop()
+        try:
+            return how(chord, most, mine if total <= budget else EMPTY)
+        finally:
+            workspaces.append(mine)
 
     finer, tried, total = [], [], 0
-    for patch, each in _each(begun, patches, jobs):
+    for patch, each in _each(lambda patch: work(patch.begun), patches, jobs):
         at("own", patch.number)
         finer.append(patch)
         tried.append(each)
@@ -373,20 +371,11 @@ def _alike(
         chord *= total / (_AIMED * budget)
         chord = min(max(least, chord, _STEP**0.5 * over), within * _STEP**-0.5)
         tried, total = [], 0
-        for each in _each(again, finer, jobs):
+        for each in _each(lambda patch: work(patch.tried), finer, jobs):
             tried.append(each)
             total += each.triangles
             if total > most and chord <= size:
                 break
-
-
-@contextmanager
-def _borrowed(workspaces: list[RefinedMesh]) -> Iterator[RefinedMesh]:
-    mine = workspaces.pop()
-    try:
-        yield mine
-    finally:
-        workspaces.append(mine)
 
 
 def _each(work: Callable[[Item], Done], items: Iterable[Item], jobs: int) -> Iterator[Done]:

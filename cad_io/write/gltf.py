@@ -56,7 +56,6 @@ def write_gltf(
     *,
     extras: Callable[[int], dict[str, Any]],
     piece_extras: Callable[[Piece], dict[str, Any]],
-    deflection: float | None = None,
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
@@ -66,7 +65,7 @@ def write_gltf(
     path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
     for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
     facts (JSON values) about a face, by number, in the node `F<number>`, and about a piece, in its node, which has the style's
-    name. deflection: chord error of the triangles, mm; default FINE times the part's diagonal. merged: one node and mesh for
+    name. The triangles' chord error is FINE times the part's diagonal. merged: one node and mesh for
     everything: `extras` of the node holds a list of the faces' facts, and each vertex its face number as `_FACE`. others: bodies
     beside the part, a node each below those that they name.
 
@@ -75,7 +74,7 @@ def write_gltf(
     """
     with whole(path, WriteError) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            meshes = list(meshes_of(split, deflection))
+            meshes = list(meshes_of(split))
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
@@ -84,7 +83,13 @@ def write_gltf(
         if merged:
             _fill_merged(glb, pieces, drawings, extras)
         else:
-            _fill(glb, pieces, drawings, style, extras, piece_extras)
+            node_of, root = dict[int, int](), glb.node({"name": "part"})
+            for piece, mesh in zip(pieces, drawings, strict=True):
+                if piece.face not in node_of:
+                    node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
+                name, rgb, kind = style(piece)
+                shown = glb.mesh(name, mesh, kind or name, rgb)
+                glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
         _fill_others(glb, others)
         temporary.write_bytes(glb.bytes())
     return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
@@ -97,17 +102,14 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[Piece, Mesh | None]]:
+def meshes_of(split: Split) -> Iterator[tuple[Piece, Mesh | None]]:
     """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
 
-    Of a face that could not be split, the triangles of each label are a piece. `deflection`: chord error, mm; default FINE times
-    the part's diagonal.
+    Of a face that could not be split, the triangles of each label are a piece.
     """
-    if deflection is None:
-        deflection = FINE * diagonal(split.shape)
     surfaces: dict[int, Surface] = {}
     shapes = [piece.shape for piece in split.pieces]
-    for piece, render_mesh in zip(split.pieces, meshed(shapes, deflection, ANGLE), strict=True):
+    for piece, render_mesh in zip(split.pieces, meshed(shapes, FINE * diagonal(split.shape), ANGLE), strict=True):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
@@ -124,24 +126,6 @@ def _draw(mesh: Mesh, vertex_rgb: tuple[float, float, float] | None = None) -> _
         light = np.round(np.array([*linear(vertex_rgb), 1.0]) * 65535).astype(np.uint16)
         attributes["COLOR_0"] = np.tile(light, (len(mesh.point), 1))
     return _Mesh(attributes, mesh.triangle)
-
-
-def _fill(
-    glb: "_Glb",
-    pieces: Sequence[Piece],
-    meshes: Sequence[_Mesh | None],
-    style: Callable[[Piece], Style],
-    extras: Callable[[int], dict[str, Any]],
-    piece_extras: Callable[[Piece], dict[str, Any]],
-) -> None:
-    node_of: dict[int, int] = {}
-    root = glb.node({"name": "part"})
-    for piece, mesh in zip(pieces, meshes, strict=True):
-        if piece.face not in node_of:
-            node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
-        name, rgb, kind = style(piece)
-        shown = glb.mesh(name, mesh, kind or name, rgb)
-        glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
 
 
 def _fill_merged(

@@ -18,7 +18,7 @@ from OCP.TopAbs import TopAbs_REVERSED
 
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.errors import WriteError
-from cad_io.kernel import translated
+from cad_io.kernel import periods, translated
 from cad_io.part import Part
 from cad_io.split.contour import fill
 from cad_io.surface import Surface
@@ -40,9 +40,9 @@ def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64]
 
     uv (n, 2), point (n, 3): surface parameters, and mm, of corners; triangle (m, 3).
     """
-    surface = BRep_Tool.Surface_s(face)
-    cell_u, turns_u, shut_u = _cells(uv[:, 0], labels.u, surface.UPeriod() if surface.IsUPeriodic() else 0.0)
-    cell_v, turns_v, shut_v = _cells(uv[:, 1], labels.v, surface.VPeriod() if surface.IsVPeriodic() else 0.0)
+    period_u, period_v = periods(BRep_Tool.Surface_s(face))
+    cell_u, turns_u, shut_u = _cells(uv[:, 0], labels.u, period_u)
+    cell_v, turns_v, shut_v = _cells(uv[:, 1], labels.v, period_v)
     known = labels.label[:-1] if shut_u else labels.label
     known = np.tile(known[:, :-1] if shut_v else known, (turns_u, turns_v))
     filled = fill(known)
@@ -303,20 +303,16 @@ def render_mesh(
         begun, _ = starts(part, numbers, _begun(part, numbers, wanted, most), again=True)
         nets = {number: Net.of(part.surface(number), start) for number, start in begun.items()}
         off = cut(list(nets.values()), wanted, ANGLE, most)
-        meshes, periods = {}, {}
+        meshes, turns = {}, {}
         for number, net in nets.items():
             whole = np.zeros(len(net.corner), np.int32)
             mesh = _finished(net.surface, net.uv, net.point, net.corner, whole, turned=not sides[number - 1] > 0)
             if mesh:
                 meshes[number] = mesh[0]
-                surface = BRep_Tool.Surface_s(part.face(number))
-                periods[number] = (
-                    surface.UPeriod() if surface.IsUPeriodic() else 0.0,
-                    surface.VPeriod() if surface.IsVPeriodic() else 0.0,
-                )
+                turns[number] = periods(BRep_Tool.Surface_s(part.face(number)))
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
-    return RenderMesh(meshes, periods, max(wanted, off), tuple(n for n in numbers if n not in meshes))
+    return RenderMesh(meshes, turns, max(wanted, off), tuple(n for n in numbers if n not in meshes))
 
 
 def _begun(part: Part, numbers: Sequence[int], wanted: float, most: int) -> float:

@@ -90,25 +90,16 @@ def write_step(
     styles = {id(piece): style(piece) for piece in split.pieces}
     with whole(path, WriteError) as temporary:
 
-        def write() -> tuple[str, str | None] | None:
-            try:
-                with translated("writing STEP", error=WriteError, file=file):
-                    _write(split, temporary, lambda piece: styles[id(piece)], product, tree, layers or {}, schema, others, file)
-            except WriteError as error:
-                return error.cause, error.face
-            except OSError as error:
-                return f"cannot be written: {error.strerror}", None
-            return None
+        def write() -> None:
+            with translated("writing STEP", error=WriteError, file=file):
+                _write(split, temporary, lambda piece: styles[id(piece)], product, tree, layers or {}, schema, others, file)
 
         try:
-            failed = limited(write, SECONDS + _A_FACE * len(split.pieces), processor=True)
+            limited(write, SECONDS + _A_FACE * len(split.pieces), processor=True, passing=(WriteError, OSError))
         except TimeLimit:
             raise WriteError("the CAD kernel does not come to an end of writing STEP", file=file) from None
         except ChildDied as died:
             raise WriteError(f"the CAD kernel fails to write STEP ({died})", file=file) from None
-        if failed is not None:
-            cause, face = failed
-            raise WriteError(cause, file=file, face=face)
 
 
 def _write(

@@ -15,8 +15,6 @@ import faulthandler
 import math
 import mmap
 import os
-import pickle
-import select
 import signal
 import struct
 import sys
@@ -24,7 +22,10 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any, BinaryIO, Generic, Self, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar, cast
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
@@ -34,8 +35,6 @@ _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG
 _PARENT_LOOK = 0.1
 #: Seconds between two looks at a copy, and looks at one that sleeps and does nothing before it is taken for stuck.
 _LOOK, _ASLEEP = 1.0, 60
-#: Answers begin with their length in bytes.
-_LENGTH = struct.Struct("<q")
 _COUNTS = struct.Struct("<qq")
 
 
@@ -54,14 +53,16 @@ class Ended(Exception):
 class Copy:
     """A copy of this process that does some work, without clean-up at its end. It ends with the block of `with`.
 
-    `work` gets a pipe to `tell` answers on; what it raises is lost. After so many `seconds` of processor time the system ends the
+    `work` gets a pipe to `send` answers on; what it raises is lost. After so many `seconds` of processor time the system ends the
     copy, by SIGXCPU. An OSError where there is no room for another process. `status` says how it ended, once it has; 0, as if by
     itself, where someone else has waited for it: a program that ignores SIGCHLD, or waits for whatever ends.
     """
 
-    def __init__(self, work: Callable[[BinaryIO], None], seconds: float) -> None:
+    def __init__(self, work: Callable[["Connection"], None], seconds: float) -> None:
+        from multiprocessing import Pipe  # most processes make no copy
+
         self.status = 0
-        self._end, start = os.pipe()
+        self._here, there = Pipe(duplex=False)
         caller = os.getpid()
         try:
             with warnings.catch_warnings():
@@ -69,19 +70,18 @@ class Copy:
                 warnings.simplefilter("ignore", DeprecationWarning)
                 self._child = os.fork()
         except OSError:
-            os.close(self._end)
-            os.close(start)
+            self._here.close()
+            there.close()
             raise
         if self._child:
-            os.close(start)
+            there.close()
             return
         try:
             faulthandler.disable()  # a crash here is told by the other side
             end_with(caller)
             _end_alone(seconds)
             signal.signal(signal.SIGPROF, signal.SIG_DFL)
-            with os.fdopen(start, "wb") as pipe:
-                work(pipe)
+            work(there)
         finally:
             os._exit(0)
 
@@ -89,7 +89,7 @@ class Copy:
         return self
 
     def __exit__(self, *_: object) -> None:
-        os.close(self._end)
+        self._here.close()
         with contextlib.suppress(ChildProcessError, ProcessLookupError):
             # Asked first: the number of one that is waited for may be another process's by now.
             done, self.status = os.waitpid(self._child, os.WNOHANG)
@@ -104,64 +104,58 @@ class Copy:
 
     def speaks(self, seconds: float = 0.0) -> bool:
         """Whether it has said something that is not read, or has ended; waited for, at most so long."""
-        ready = select.poll()  # `select` itself knows no numbers above 1023
-        ready.register(self._end, select.POLLIN)
-        return bool(ready.poll(1000.0 * seconds))
+        return self._here.poll(seconds)
 
     def answers(self, waiting: Callable[[], None] = lambda: None, until: float = math.inf) -> Iterator[Any]:
-        """Yield what it tells by `tell`, as it comes, until it ends: half an answer is none.
+        """Yield what it sends, as it comes, until it ends: half an answer is none.
 
         `waiting` is called about once a second for as long as the copy works. A TimeoutError where it is given up: at `until`, as
         `time.monotonic` counts, or, without that, once it sleeps and does nothing.
         """
-        data, stuck = bytearray(), _stuck(self._child)
+        stuck = _stuck(self._child)
         while (wait := min(_LOOK, until - time.monotonic())) > 0.0:
             waiting()
             if math.isinf(until) and stuck():
                 break
             if not self.speaks(wait):
                 continue
-            part = os.read(self._end, 1 << 20)
-            if not part:
+            try:
+                answer = self._here.recv()
+            except (EOFError, OSError):
                 return
-            data += part
-            while len(data) >= _LENGTH.size and len(data) >= (whole := _LENGTH.size + _LENGTH.unpack_from(data)[0]):
-                yield pickle.loads(bytes(data[_LENGTH.size : whole]))
-                del data[:whole]
+            yield answer
         raise TimeoutError
 
 
-def tell(pipe: BinaryIO, answer: object) -> None:
-    """Write an answer for `Copy.answers` to read."""
-    data = pickle.dumps(answer)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-    pipe.flush()
-
-
-def limited(call: Callable[[], Done], seconds: float, *, processor: bool = False) -> Done:
+def limited(
+    call: Callable[[], Done], seconds: float, *, processor: bool = False, passing: tuple[type[Exception], ...] = ()
+) -> Done:
     """Result of `call()`, made in a copy for at most `seconds`, which also survives a crash of the kernel.
 
     By the clock a busy machine may get another result than an idle one; by processor time (`processor`) it gets the same, later.
     A copy that does nothing at all for a minute, waiting for a lock for one, is ended then, too (only on Linux: elsewhere nothing
-    tells). Where `seconds` are not positive, nothing is run. A TimeLimit or ChildDied where there is no result.
+    tells). Where `seconds` are not positive, nothing is run. A TimeLimit or ChildDied where there is no result; errors of the
+    kinds in `passing` are raised as they are.
     """
     if seconds <= 0:
         raise TimeLimit
     if not hasattr(os, "fork"):
         return call()
 
-    def work(pipe: BinaryIO) -> None:
+    def work(pipe: "Connection") -> None:
         try:
-            tell(pipe, call())
+            pipe.send(call())
+        except passing as error:
+            pipe.send(error)
         except Exception as error:
-            tell(pipe, ChildDied(f"{type(error).__name__} {error}"))
+            pipe.send(ChildDied(f"{type(error).__name__} {error}"))
 
     # By the clock this side ends it.
     until = math.inf if processor else time.monotonic() + seconds
     with Copy(work, seconds if processor else seconds + 2) as copy:
         try:
             for answer in copy.answers(until=until):
-                if isinstance(answer, ChildDied):
+                if isinstance(answer, Exception) and isinstance(answer, (ChildDied, *passing)):
                     raise answer
                 return cast(Done, answer)
         except TimeoutError:
@@ -201,7 +195,7 @@ def each(call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float,
             yield Ended(why or ended)
 
 
-def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, pipe: BinaryIO) -> None:
+def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, pipe: "Connection") -> None:
     """The copy's side: an answer for each item, up to the first that raises."""
     for item in items:
         end_within(seconds)
@@ -210,7 +204,7 @@ def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, p
         except Exception as error:
             answer = error
         end_within(0.0)
-        tell(pipe, answer)
+        pipe.send(answer)
         if isinstance(answer, Exception):
             break
 
@@ -231,7 +225,7 @@ class SideProcess(Generic[Done]):
     def __enter__(self) -> Self:
         if self._worth:
             with contextlib.suppress(OSError):
-                self._copy = Copy(lambda pipe: tell(pipe, self._call()), self._seconds)
+                self._copy = Copy(lambda pipe: pipe.send(self._call()), self._seconds)
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -24,7 +24,14 @@ def roots() -> Iterator[Path]:
     """Folders that may hold ours: as the environment says, or in the user's cache; in the folder for temporary files."""
     configured = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     with contextlib.suppress(RuntimeError):  # this user has no home
-        yield Path(configured, "plan-cutters") if configured else _of_system()
+        if configured:
+            yield Path(configured, "plan-cutters")
+        elif sys.platform.startswith("linux"):  # as `platformdirs` says it, which is not loaded for that
+            yield Path.home() / ".cache" / "plan-cutters"
+        else:
+            from platformdirs import user_cache_path
+
+            yield user_cache_path("plan-cutters", appauthor=False)
     # Windows has a folder for temporary files for each user. Elsewhere all share one: what another user put there is not run.
     user = os.getuid() if hasattr(os, "getuid") else None
     with contextlib.suppress(OSError):
@@ -32,15 +39,6 @@ def roots() -> Iterator[Path]:
         shared.mkdir(mode=0o700, exist_ok=True)
         if user is None or shared.stat().st_uid == user:
             yield shared
-
-
-def _of_system() -> Path:
-    """Where this system keeps the caches of a user."""
-    if sys.platform.startswith("linux"):  # as `platformdirs` says it, which is not loaded for that
-        return Path.home() / ".cache" / "plan-cutters"
-    from platformdirs import user_cache_path
-
-    return user_cache_path("plan-cutters", appauthor=False)
 
 
 def own(status: os.stat_result) -> bool:

@@ -6,19 +6,13 @@ import os
 import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
 
 #: Errors that say that a file system has no locks of its own.
 _NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
-
-
-class FileError(Protocol):
-    """The class of an error that names a file."""
-
-    def __call__(self, cause: str, *, file: str) -> Exception: ...
 
 
 def refusal(folder: str | Path) -> str:
@@ -41,7 +35,9 @@ def refusal(folder: str | Path) -> str:
 
 
 @contextlib.contextmanager
-def whole(path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None) -> Iterator[Path]:
+def whole(
+    path: str | Path, error: Callable[..., Exception] | None = None, named: Callable[[Path], None] = lambda _: None
+) -> Iterator[Path]:
     """Give a path in the same folder to write to; it is renamed to `path` when the block ends well, removed when it does not.
 
     `error`: raised in place of an `OSError`: the folder cannot be written to, or the file cannot be written or take its place.

@@ -7,6 +7,7 @@ import signal
 import struct
 import time
 from dataclasses import replace
+from multiprocessing.connection import Connection
 from pathlib import Path
 
 import numpy as np
@@ -67,9 +68,9 @@ def test_whatever_becomes_of_the_copy_the_result_is_made_here(fault):
         assert not copy.works
 
 
-@pytest.mark.parametrize("part", [b"", b"\0", struct.pack("<q", 9) + b"half"])
+@pytest.mark.parametrize("part", [b"", b"\0", struct.pack("!i", 9) + b"half"])
 def test_half_an_answer_is_none(monkeypatch, part):
-    monkeypatch.setattr(forks, "tell", lambda pipe, answer: pipe.write(part))
+    monkeypatch.setattr(Connection, "send", lambda pipe, answer: os.write(pipe.fileno(), part))
     with SideProcess(lambda: "here", 5.0) as copy:
         assert copy.result() == "here"
 

@@ -125,7 +125,7 @@ def broken(folder):
         ("nan.stl", "corners that are no points"), ("none.stl", "holds no triangles"), ("empty.obj", "is empty"),
         ("words.ply", "is not a whole PLY file"), ("words.obj", "OBJ file|no triangles"), ("points.ply", "holds no triangles"),
         ("vise.3mf", "'.3mf' is no format of fixtures"), ("vise", "does not say its format"),
-        ("vise.step", "does not start as STEP"), ("folder.stl", "is no file"), ("far.stl", "is its unit right"),
+        ("vise.step", "does not start as STEP"), ("folder.stl", "is a folder"), ("far.stl", "is its unit right"),
     ],
 )  # fmt: skip
 def test_files_that_are_no_fixture(tmp_path, name, words):

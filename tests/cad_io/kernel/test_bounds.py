@@ -93,7 +93,7 @@ def crowded(*_):
 
 @pytest.mark.parametrize(
     ("where", "name", "fault"),
-    [(coincide._Kernel, "at", noise), (coincide._Kernel, "at", lambda *_: None), (sew, "coinciding", crowded)],
+    [(coincide, "_places", noise), (coincide, "_places", lambda *_: None), (sew, "coinciding", crowded)],
 )
 def test_a_shell_that_cannot_be_sewn_stays_as_it_is_and_the_plan_says_so(monkeypatch, where, name, fault):
     monkeypatch.setattr(where, name, fault)
@@ -108,7 +108,7 @@ def test_a_shell_that_cannot_be_sewn_stays_as_it_is_and_the_plan_says_so(monkeyp
 
 def test_a_curve_that_is_never_followed_costs_a_number_of_points(monkeypatch):
     asked = []
-    monkeypatch.setattr(coincide._Kernel, "at", lambda self, t: (asked.append(len(t)), noise(self, t))[1])
+    monkeypatch.setattr(coincide, "_places", lambda curve, t: (asked.append(len(t)), noise(curve, t))[1])
     assert not coincide.Curves([edge for edge, _ in edge_uses(faces(box()))[:1]], 1e-9).drawn.any()
     assert 0 < sum(asked) <= 2 * coincide.MOST_PIECES
 
@@ -201,10 +201,11 @@ if "PLAN_CUTTERS_ASSIGNMENT" in os.environ:
 """
 HANG, CRASH = "while True: pass", "import os; os.kill(os.getpid(), 11)"
 MEASURE = """
-def describe(self, number, before=module.Part._describe):
+def describe(self, number, at, before=module.Part._describe):
     if number == 2 and number not in self.aside:
+        at(number)
         {fault}
-    return before(self, number)
+    return before(self, number, at)
 module.Part._describe = describe
 """
 SAMPLE = """

@@ -129,6 +129,10 @@ def test_real_files_on_the_ladder(path, share, edges):
 # --- laws, closed forms and the kernel's own sewing ------------------------------------------------------------------
 
 
+def joined(shapes, diagonal):
+    return join(dict(enumerate(shapes)), diagonal)
+
+
 def neighbours(shapes):
     """For each edge: which faces use it, which way against the first, and how long it is; in an order of its own."""
     found = []
@@ -191,21 +195,21 @@ MADE = {
 @pytest.mark.parametrize("name", MADE)
 def test_who_is_whose_neighbour_is_what_the_kernel_finds(name):
     shapes = MADE[name]()
-    assert neighbours(join(shapes, DIAGONAL).faces) == neighbours(by_kernel(shapes, 1e-5))
+    assert neighbours(joined(shapes, DIAGONAL).faces.values()) == neighbours(by_kernel(shapes, 1e-5))
 
 
 @pytest.mark.parametrize("name", MADE)
 def test_neighbours_do_not_depend_on_place_size_or_order(name):
     shapes = MADE[name]()
-    known = neighbours(join(shapes, DIAGONAL).faces)
+    known = neighbours(joined(shapes, DIAGONAL).faces.values())
     away = [TopoDS.Face_s(BRepBuilderAPI_Transform(face, moved(), True).Shape()) for face in shapes]
-    assert neighbours(join(away, DIAGONAL).faces) == known
+    assert neighbours(joined(away, DIAGONAL).faces.values()) == known
     big = gp_Trsf()
     big.SetScale(gp_Pnt(1, 2, 3), 8.0)
     large = [TopoDS.Face_s(BRepBuilderAPI_Transform(face, big, True).Shape()) for face in shapes]
-    assert [users for users, _ in neighbours(join(large, 8 * DIAGONAL).faces)] == [users for users, _ in known]
+    assert [users for users, _ in neighbours(joined(large, 8 * DIAGONAL).faces.values())] == [users for users, _ in known]
     order = np.random.default_rng(1).permutation(len(shapes))
-    found = neighbours(join([shapes[i] for i in order], DIAGONAL).faces)
+    found = neighbours(joined([shapes[i] for i in order], DIAGONAL).faces.values())
     assert sorted(tuple(sorted(order[i] for i, _ in users)) for users, _ in found) == sorted(
         tuple(sorted(i for i, _ in users)) for users, _ in known
     )
@@ -215,27 +219,27 @@ def test_neighbours_do_not_depend_on_place_size_or_order(name):
 @given(gap=st.floats(0.0, 0.02), more=st.floats(1.0, 30.0))
 def test_a_larger_part_s_tolerances_join_no_less_and_none_joins_more_than_it_says(gap, more):
     shapes = faces(loose(box(), gap))
-    less, found = join(shapes, DIAGONAL), join(shapes, more * DIAGONAL)
-    assert sum(found.left) <= sum(less.left) + 1e-6
+    less, found = joined(shapes, DIAGONAL), joined(shapes, more * DIAGONAL)
+    assert found.open_length <= less.open_length + 1e-6
     for each, size in ((less, DIAGONAL), (found, more * DIAGONAL)):
         # Whatever is apart by more than the last tolerance stays so.
         if gap > 1.001 * RUNGS[-1] * size:
-            assert each.left
+            assert each.open_edges
         elif gap < 0.999 * RUNGS[-1] * size:
-            assert not each.left
+            assert not each.open_edges
 
 
 @pytest.mark.parametrize("rung", RUNGS)
 def test_a_gap_just_below_a_rung_is_joined_there_and_one_just_above_is_not(rung):
-    assert join(faces(loose(box(), 0.99 * rung * DIAGONAL)), DIAGONAL).kept == pytest.approx(rung * DIAGONAL)
-    above = join(faces(loose(box(), 1.01 * rung * DIAGONAL)), DIAGONAL)
-    assert above.left or above.kept > 1.01 * rung * DIAGONAL
+    assert joined(faces(loose(box(), 0.99 * rung * DIAGONAL)), DIAGONAL).tolerance == pytest.approx(rung * DIAGONAL)
+    above = joined(faces(loose(box(), 1.01 * rung * DIAGONAL)), DIAGONAL)
+    assert above.open_edges or above.tolerance > 1.01 * rung * DIAGONAL
 
 
 def test_a_box_with_a_parted_front_is_closed_and_cut_where_the_parts_meet():
-    found = join(stacked(), DIAGONAL)
-    assert not found.left
-    assert sorted(round(size, 6) for _, size in neighbours(found.faces)) == sorted([4.0, 6.0] * 2 + [10.0] * 11)
+    found = joined(stacked(), DIAGONAL)
+    assert not found.open_edges
+    assert sorted(round(size, 6) for _, size in neighbours(found.faces.values())) == sorted([4.0, 6.0] * 2 + [10.0] * 11)
 
 
 def test_a_hole_of_many_short_edges_is_no_point():
@@ -248,7 +252,7 @@ def test_a_hole_of_many_short_edges_is_no_point():
     maker = BRepBuilderAPI_MakeFace(gp_Pln(), -50, 50, -50, 50)
     maker.Add(TopoDS.Wire_s(border.Wire().Reversed()))
     # Each is 0.03 mm long, below the last rung.
-    assert len(join([maker.Face(), *faces(loose(box(at=(0, 0, 90))))], 150.0).left) == count + 4
+    assert joined([maker.Face(), *faces(loose(box(at=(0, 0, 90))))], 150.0).open_edges == count + 4
 
 
 def test_points_of_a_common_edge_are_the_same_on_both_faces():

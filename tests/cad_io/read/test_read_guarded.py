@@ -15,6 +15,7 @@ from cad_io import Part, ReadError, read_part
 from cad_io.arrays import LostFace
 from cad_io.kernel import faces
 from cad_io.kernel.shapes import Node
+from cad_io.part.content import PartContent
 from cad_io.read import read
 from plan_cutters_base.forks import limited
 from tests.support.cad_parts import box, compound, drilled, moved, real
@@ -66,7 +67,7 @@ def test_a_tree_comes_out_with_its_places(monkeypatch):
     wheels = tuple(Node("wheel", f"wheel {i}", at, faces=tuple(range(7 * i + 1, 7 * i + 8)))
                    for i, at in enumerate((TopLoc_Location(), place)))  # fmt: skip
     tree = (Node("cart", "", TopLoc_Location(), wheels),)
-    found = {"shape": compound(solid, solid.Moved(place)), "tree": tree}
+    found = PartContent(compound(solid, solid.Moved(place)), tree=tree)
     monkeypatch.setattr(read, "_find", lambda *_: found)
     part = read_part("any", guarded=True)
     assert [described(node) for node in part.tree] == [described(node) for node in tree]

@@ -247,8 +247,8 @@ def test_lines_of_many_grids_are_those_of_each_alone():
     rng = np.random.default_rng(0)
     line = np.arange(12.0)
     grids = [
-        LabelGrid(line, line, rng.integers(0, 3, (12 - closed, 12)).astype(np.int32), np.ones((12 - closed, 12), bool),
-                  bool(closed), False)
+        LabelGrid((line, line), rng.integers(0, 3, (12 - closed, 12)).astype(np.int32), np.ones((12 - closed, 12), bool),
+                  (bool(closed), False))
         for closed in (0, 1, 0)
     ]  # fmt: skip
     together = smoothed(grids)

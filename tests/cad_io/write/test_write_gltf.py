@@ -99,7 +99,7 @@ def test_trimesh_shows_the_colours(drawn):
 
 def test_metres_and_y_up_in_trimesh(halves, tmp_path):
     part, found = halves
-    write(found, tmp_path / "p.glb", deflection=0.1)
+    write(found, tmp_path / "p.glb")
     scene = trimesh.load(tmp_path / "p.glb")
     size = np.ptp(scene.bounds, axis=0) * 1000
     assert size == pytest.approx([part.size[0], part.size[2], part.size[1]], rel=1e-3)
