@@ -10,7 +10,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from plan_cutters.answers.candidates import touching
-from plan_cutters.answers.setup_ranking import Held, Ranking, proposed
+from plan_cutters.answers.holding import Held
+from plan_cutters.answers.setup_ranking import Ranking, proposed
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.answers.setup_ranking import Held, best_hold
+from plan_cutters.answers.holding import Held, best_hold
 from plan_cutters.command.validation import fixtures_of_setups
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from plan_cutters import Options, Scene, plan
 from plan_cutters.answers import setup_ranking
-from plan_cutters.answers.setup_ranking import Held, best_hold, ranked
+from plan_cutters.answers.holding import Held, best_hold
+from plan_cutters.answers.setup_ranking import ranked
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.stock import Stock
 from plan_cutters.pipeline import prepare

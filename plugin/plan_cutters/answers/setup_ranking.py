@@ -7,7 +7,7 @@ the part alone, with tools that are nowhere below that plane. In those that are 
 chuck as well. It promises; the plan of that setup decides.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, field, fields, replace
@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.answers.candidates import SAME, Candidates
+from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by, vector
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.figures import area, percent
+from plan_cutters.domain.figures import area
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.preference import group_of
@@ -38,79 +39,6 @@ from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.work import Progress, evenly
 from plan_cutters.setups.clamping import NothingToGripError
 from plan_cutters.setups.requested import MOST_PROPOSED
-
-#: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
-_GRIPPED_FOR = 0.9
-
-
-def vector(direction: Floats) -> Axis:
-    """A direction (3,) as numbers, without negative zeros."""
-    x, y, z = (direction + 0.0).tolist()
-    return x, y, z
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Held:
-    """How a part is held in a direction that was searched."""
-
-    fixture: Fixture  #: In its place.
-    served: NDArray[np.bool_]  #: (r,) bool: where a posture was found among it.
-    grips: tuple[int, ...] = ()  #: Faces that jaws touch.
-    rests_on: tuple[int, ...] = ()  #: Planar faces with which the part rests in jaws; none for a table.
-    hidden: float = 0.0  #: Area of the target faces that jaws touch, mm2.
-    words: str = ""  #: What it is and what it grips; empty for a table.
-    why: str = ""  #: Why it was taken; empty where only one was tried.
-    soft: str = ""  #: Why the part needs soft jaws or a nest; empty where it stands, or is gripped, as it is.
-    stock: Fixture | None = None  #: What is gripped, if that is stock.
-    x: Axis | None = None  #: Direction of the part along the machine's X; None: any.
-
-    @property
-    def kind(self) -> Any:
-        """`table`, `vise` or `chuck`."""
-        return self.fixture.kind
-
-    @property
-    def faces(self) -> tuple[int, ...]:
-        """All faces that a vise or chuck holds."""
-        return (*self.grips, *self.rests_on)
-
-
-def held_by(
-    ready: Prepared, axis: Axis, fixture: Fixture, among: Callable[[Surroundings], NDArray[np.bool_]], stock: Stock | None = None
-) -> Held:
-    """Hold a part, or its stock, along an axis by a table, vise or chuck, and find where a posture is among it.
-
-    `axis` (float, float, float). `fixture`: a table, a vise or a chuck. `among`: where any cutter has a posture among
-    some obstacles, (r,). Raises NothingToGripError.
-    """
-    surroundings = ready.scene.surround_held(axis, fixture, stock)
-    *blank, placed = surroundings.fixtures
-    held, hold = Held(placed.fixture, among(surroundings), stock=blank[0].fixture if blank else None), placed.hold
-    if hold is None:
-        return held
-    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words, soft=hold.soft)
-
-
-def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
-    """Take what holds a part best, and say why.
-
-    `tried`: at least one. `refused`: of each kind that cannot hold it, why not. `weight` (r,) float: the area that each sample
-    stands for.
-    """
-    whole = max(1e-300, float(weight.sum()))
-    share = {each.kind: float(weight @ each.served) / whole for each in tried}
-    able = [each for each in tried if not each.soft] or tried
-    gripping = [each for each in able if each.kind != TABLE]
-    best = max(gripping or able, key=lambda each: share[each.kind])
-    if any(each.kind == TABLE for each in able) and share[best.kind] < _GRIPPED_FOR * share[TABLE]:
-        best = next(each for each in able if each.kind == TABLE)
-    served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
-    served[0] += " of the samples' area"
-    nothing = [f"a {each.kind} needs soft jaws or a nest ({each.soft})" for each in tried if each.soft]
-    nothing += [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
-    left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
-    return replace(best, why=f"{', '.join([*served, *nothing])}{left}")
-
 
 Rows = NDArray[np.int64]
 Table = NDArray[np.bool_]
@@ -335,7 +263,7 @@ class Ranking:
                         best, best_share = held, share
             if best_share >= most - _TURNED_FOR:
                 break
-        if best is not None and (self.stock.kind != USUAL or best_share >= _GRIPPED_FOR * most):
+        if best is not None and (self.stock.kind != USUAL or best_share >= GRIPPED_FOR * most):
             self.stocked[k], self.held[k] = self.held[k], best
             self.settled.add(k)
 

@@ -35,6 +35,8 @@ _ARC, _LOWEST = 20, 0.1
 #: Of a cylinder that is gripped deep, so much at most.
 _DEEP = 2.0 / 3.0
 _X, _Y, _Z = np.eye(3)
+#: Jaws are higher than they grip by more than numbers are rounded, mm.
+_HAIR = 1e-6
 
 
 def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
@@ -385,7 +387,7 @@ def _vise(requested: Requested, gap: float, length: float, above: float) -> tupl
     far it opens, or the widest of those that are sold, mm."""
     grip, vises = requested.grip, vises_for(gap) if requested.sizes is None else (Vise(*requested.sizes),)
     widest = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2]
-    vises = tuple(replace(each, grip=grip, gap=gap) for each in vises if each.height > grip and each.opening >= gap)
+    vises = tuple(replace(each, grip=grip, gap=gap) for each in vises if each.height > grip + _HAIR and each.opening >= gap)
     # What is below the faces that are gripped hangs between the jaws.
     vises = tuple(each for each in vises if above <= each.height - each.grip)
     wide = [each for each in vises if each.width >= _ALONG * length]

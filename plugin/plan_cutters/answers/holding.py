@@ -1,0 +1,87 @@
+"""How a part is held in a direction: what a table, a vise or a chuck grips there, and which of them is best."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.figures import area, percent
+from plan_cutters.domain.fixture import TABLE, Fixture
+from plan_cutters.domain.stock import Stock
+from plan_cutters.scene.preparation import Axis, Prepared
+from plan_cutters.scene.surroundings import Surroundings
+
+#: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
+GRIPPED_FOR = 0.9
+
+
+def vector(direction: Floats) -> Axis:
+    """A direction (3,) as numbers, without negative zeros."""
+    x, y, z = (direction + 0.0).tolist()
+    return x, y, z
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Held:
+    """How a part is held in a direction that was searched."""
+
+    fixture: Fixture  #: In its place.
+    served: NDArray[np.bool_]  #: (r,) bool: where a posture was found among it.
+    grips: tuple[int, ...] = ()  #: Faces that jaws touch.
+    rests_on: tuple[int, ...] = ()  #: Planar faces with which the part rests in jaws; none for a table.
+    hidden: float = 0.0  #: Area of the target faces that jaws touch, mm2.
+    words: str = ""  #: What it is and what it grips; empty for a table.
+    why: str = ""  #: Why it was taken; empty where only one was tried.
+    soft: str = ""  #: Why the part needs soft jaws or a nest; empty where it stands, or is gripped, as it is.
+    stock: Fixture | None = None  #: What is gripped, if that is stock.
+    x: Axis | None = None  #: Direction of the part along the machine's X; None: any.
+
+    @property
+    def kind(self) -> Any:
+        """`table`, `vise` or `chuck`."""
+        return self.fixture.kind
+
+    @property
+    def faces(self) -> tuple[int, ...]:
+        """All faces that a vise or chuck holds."""
+        return (*self.grips, *self.rests_on)
+
+
+def held_by(
+    ready: Prepared, axis: Axis, fixture: Fixture, among: Callable[[Surroundings], NDArray[np.bool_]], stock: Stock | None = None
+) -> Held:
+    """Hold a part, or its stock, along an axis by a table, vise or chuck, and find where a posture is among it.
+
+    `axis` (float, float, float). `fixture`: a table, a vise or a chuck. `among`: where any cutter has a posture among
+    some obstacles, (r,). Raises NothingToGripError.
+    """
+    surroundings = ready.scene.surround_held(axis, fixture, stock)
+    *blank, placed = surroundings.fixtures
+    held, hold = Held(placed.fixture, among(surroundings), stock=blank[0].fixture if blank else None), placed.hold
+    if hold is None:
+        return held
+    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words, soft=hold.soft)
+
+
+def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
+    """Take what holds a part best, and say why.
+
+    `tried`: at least one. `refused`: of each kind that cannot hold it, why not. `weight` (r,) float: the area that each sample
+    stands for.
+    """
+    whole = max(1e-300, float(weight.sum()))
+    share = {each.kind: float(weight @ each.served) / whole for each in tried}
+    able = [each for each in tried if not each.soft] or tried
+    gripping = [each for each in able if each.kind != TABLE]
+    best = max(gripping or able, key=lambda each: share[each.kind])
+    if any(each.kind == TABLE for each in able) and share[best.kind] < GRIPPED_FOR * share[TABLE]:
+        best = next(each for each in able if each.kind == TABLE)
+    served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
+    served[0] += " of the samples' area"
+    nothing = [f"a {each.kind} needs soft jaws or a nest ({each.soft})" for each in tried if each.soft]
+    nothing += [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
+    left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
+    return replace(best, why=f"{', '.join([*served, *nothing])}{left}")
