@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
 from cad_io.kernel.shapes import within
-from plan_cutters_check.fixtures import PlacedFixture, foot_of, rotation_of
+from plan_cutters_check.fixtures import PlacedFixture, foot_of, rotation_of, stock_frame
 from plan_cutters_check.question import Question, frame_of
 from plan_cutters_check.surface import FREE, MET, OPEN, SIDES, Cells, Clock, Face, lowest, met, nearest
 from plan_cutters_check.tool import FLAT, Solid, Tool, tool_of
@@ -74,7 +74,11 @@ class Bench:
                     frame = np.eye(3) if any(body.placement[3:]) else frame_of(setup)
                     body = replace(body, sizes=(lowest(self.cells, own, rotation_of(body) @ frame[2], self.grain),))
                 elif body.kind == "stock" and body.sizes:
-                    ends = [lowest(self.cells, own, way * each, self.grain) for way in (1.0, -1.0) for each in frame_of(setup)]
+                    ends = [
+                        lowest(self.cells, own, way * each, self.grain)
+                        for way in (1.0, -1.0)
+                        for each in stock_frame(body, setup)
+                    ]
                     body = replace(body, sizes=foot_of(body.sizes, np.array(ends[:3]), -np.array(ends[3:])))
                 placed.append(PlacedFixture(body, setup, low, high))
                 self.hollow += [] if placed[-1].known else [placed[-1].name]

@@ -73,6 +73,13 @@ class PlacedFixture:
         return np.asarray(np.abs(inside) > 2.0 * math.pi)
 
 
+def stock_frame(body: Body, setup: Setup) -> Floats:
+    """The frame (3, 3) of stock, as rows: along what grips it, and beside that as near to the part's X as can be."""
+    return frame_of(
+        replace(setup, z=setup.z if body.up is None else (float(body.up[0]), float(body.up[1]), float(body.up[2])), x=None)
+    )
+
+
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:
     """Find what of stock is below a part that reaches from `low` to `high` (3,) in the frame of a setup: two corners; of a
     cylinder its middle, radius and heights, as far as it surely reaches: to the part's farthest side. One about a part that is
@@ -105,9 +112,9 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
     if body.kind == "stock" and len(body.sizes) == 5:
         x, y, radius, foot, top = body.sizes
         # Within the true one: what is in the way of a tool here is so there.
-        return np.asarray((_cylinder(radius, top - foot) + np.array([x, y, foot])) @ frame_of(setup))
+        return np.asarray((_cylinder(radius, top - foot) + np.array([x, y, foot])) @ stock_frame(body, setup))
     if body.kind == "stock":
-        return np.asarray(_box(np.array(body.sizes[:3]), np.array(body.sizes[3:])) @ frame_of(setup))
+        return np.asarray(_box(np.array(body.sizes[:3]), np.array(body.sizes[3:])) @ stock_frame(body, setup))
     if body.kind == "prism":
         return _prism(body.sizes[0], body.sizes[1], np.array(body.sizes[2:]).reshape(2, -1, 2))
     # A table lies across the setup axis or, if it is turned, across its own z; all below its top is in the way.

@@ -1,7 +1,7 @@
 """A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -91,7 +91,7 @@ class Body:
     """A fixture: a word (`box`, `cylinder`, `table`, `prism`) with its sizes, or a file; placed by x, y, z, mm, rx, ry, rz, deg.
 
     A prism is given by two heights and the corners, x and y, of two polylines of as many points: its outline runs along the first
-    one and back along the second one, counter-clockwise.
+    one and back along the second one, counter-clockwise. `up`: of stock, the direction (3,) along which what grips it stands.
     """
 
     name: str
@@ -100,6 +100,7 @@ class Body:
     source: Any
     unit: str | None
     placement: tuple[float, ...]
+    up: Sequence[float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

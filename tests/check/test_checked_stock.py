@@ -41,11 +41,13 @@ def test_the_known_bar_lies_within_the_true_one(count, seed, beside, below):
 
 
 LYING = {**WORDS, "setup": "+x", "fixtures": "vise"}
+TURNED = {**WORDS, "setup": "+x", "machine": "4-axis-a"}
 
 
-@pytest.mark.parametrize("words", [WORDS, LYING, {**LYING, "stock": "part"}])
+@pytest.mark.parametrize("words", [WORDS, LYING, {**LYING, "stock": "part"}, TURNED, {**TURNED, "stock": "part"}])
 def test_a_plan_in_a_bar_holds(tmp_path, words):
-    """Stood in a chuck; and lying across a vise in bored jaws, which grip the bar, or the part itself."""
+    """Stood in a chuck; lying across a vise in bored jaws, which grip the bar, or the part itself; and in a chuck on a fourth
+    axis."""
     part = str(write_step(rod(20.0, 15.0) if words is WORDS else rod(8.0, 60.0), tmp_path / "rod.step"))
     plan(part, operations="fastest", feed=2000, area_budget=0, **words).write(tmp_path, ["json", "npz"])
     answer = check(Written(tmp_path, part, words).asked(), seconds=1e6)

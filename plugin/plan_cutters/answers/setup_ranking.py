@@ -326,12 +326,14 @@ class Ranking:
         """Hold the part, or its stock, in a direction by what a word says; of several ways that which serves most of some rows
         (r,), of all by default."""
         ways, wanted = list[Held](), self.area if open_rows is None else self.area * open_rows
-        error = NothingToGripError(f"nothing round lies across the setup axis {axis_words(self.candidates.axis[k])}")
+        why = f"nothing round lies across the setup axis {axis_words(self.candidates.axis[k])}"
+        error = NothingToGripError(f"{word}: {why}")
+        error.why = why
         for fixture, turned in self._fixtures(k, word):
             try:
                 ways.append(self._held_in(k, fixture, turned, bound if turned is None else self.free, stock))
-            except NothingToGripError as why:
-                error = why
+            except NothingToGripError as refused:
+                error = refused
         if not ways:
             raise error
         return max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
