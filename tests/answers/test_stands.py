@@ -266,14 +266,15 @@ def test_setups_are_not_compared_again_for_the_next_question(tmp_path, monkeypat
         plan(file, **{**how, "machine": "trunnion-bc"})
 
 
-@pytest.mark.parametrize(("machine", "cosine"), [("trunnion-ac", 1.0), ("3-axis", 1.0), ("4-axis-a", 0.0)])
-def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, cosine):
-    """A round rod that only a chuck would hold: on a fourth axis across the spindle it lies along that."""
-    setups = plan(rod(20.0, 30.0), setup="auto", **{**HOW, "machine": machine}).plan.setup_proposal.setups
+@pytest.mark.parametrize(
+    ("machine", "long", "cosines"),
+    [("trunnion-ac", 30.0, {1.0}), ("3-axis", 30.0, {1.0}), ("4-axis-a", 30.0, set()), ("4-axis-a", 90.0, {0.0})],
+)
+def test_no_chuck_stands_across_the_axis_that_turns_under_it(machine, long, cosines):
+    """A round rod: on a fourth axis across the spindle a long one lies along that, and a short one stands in no chuck."""
+    setups = plan(rod(20.0, long), setup="auto", **{**HOW, "machine": machine}).plan.setup_proposal.setups
     chucks = [each for each in setups if each.clamping == "chuck"]
-    assert chucks
-    for each in chucks:
-        assert np.dot(Fixture.parse(each.fixtures[-1]).rotation[:, 2], each.axis) == pytest.approx(cosine, abs=1e-9)
+    assert {round(float(np.dot(Fixture.parse(each.fixtures[-1]).rotation[:, 2], each.axis)), 9) for each in chucks} == cosines
 
 
 def lying_shaft(turned):
@@ -305,8 +306,16 @@ def test_a_chuck_that_is_requested_stands_on_the_axis_next_to_the_part(machine, 
     assert np.allclose(chuck.fixture.rotation[:, 2], along)
 
 
+def test_what_no_chuck_grips_does_not_lie_in_one():
+    """A dome: along its axis it is round, and no cylinder is there."""
+    dome = cq.Workplane().sphere(20).intersect(cq.Workplane().box(60, 60, 60).translate((0, 0, 30))).val().wrapped
+    setups = plan(dome, setup="auto", **{**HOW, "machine": "4-axis-a"}).plan.setup_proposal.setups
+    assert all(each.clamping == "chuck" or each.x is None for each in setups)
+    assert all(not each.soft for each in setups)
+
+
 def test_across_a_fourth_axis_a_chuck_has_nothing_to_grip():
-    with pytest.raises(NothingToGripError, match="nothing to grip with the setup axis 1,0,0"):
+    with pytest.raises(NothingToGripError, match="nothing to grip along 1,0,0, the rotary axis on which it stands"):
         prepare(rod(20.0, 60.0), Options(**{**HOW, "machine": "4-axis-a", "setup": "+z", "fixtures": "chuck"}))
 
 

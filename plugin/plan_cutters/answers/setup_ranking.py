@@ -273,6 +273,7 @@ class Ranking:
         over = self.opposite(chosen[0]) if self._turned(chosen) else None
         if over is not None:
             self._searched(over)
+            self._settle(over, ~self.served(chosen[0]))
         while 0 < len(chosen) < most:
             open_rows = ~np.logical_or.reduce([self.served(k) for k in chosen])
             others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed) and self.steady(k)]
@@ -299,18 +300,31 @@ class Ranking:
         return self.words[0] == TABLE
 
     def _on_plane(self, k: int) -> Held:
-        """The part over a table that is only a plane: none of the obstacles is made anew. Below a part that is to lie in a chuck
-        there is none."""
-        few, lying = self.ready.conditions, self.lying(k)
-        x = np.array(lying[0][1]) if lying else None
-        part = replace(few, setup=self.candidates.axis[k], x=x, surroundings=few.surroundings.alone or few.surroundings)
+        """The part over a table that is only a plane: none of the obstacles is made anew."""
+        few = self.ready.conditions
+        part = replace(few, setup=self.candidates.axis[k], x=None, surroundings=few.surroundings.alone or few.surroundings)
+        table = Fixture.each_of(TABLE)[0]
+        if lying := self.lying(k):
+            # Below it there is no table, and one end is in the chuck.
+            reached = self._over(replace(part, x=np.array(lying[0][1])), np.ones(len(self.rows), bool))
+            ends = [np.isin(self.ready.samples.face[self.rows], self._ends(fixture)) for fixture, _ in lying]
+            return Held(table, max((reached & ~end for end in ends), key=lambda served: float(self.area @ served)))
         limit = _UPRIGHT if part.machine.tilt_limit is None else min(_UPRIGHT, part.machine.tilt_limit)
-        reached, above = np.zeros(len(self.ready.samples), bool), None if lying else float(self.candidates.lowest[k])
-        for conditions in (part, replace(part, machine=replace(part.machine, tilt_limit=limit))):
-            for usual in (True, False):
-                rows = self.rows[self.bound[:, k] & (self.usual == usual)]
-                reached |= _reached(self.ready, rows[~reached[rows]], conditions, usual=usual, above=above)
-        return Held(Fixture.each_of(TABLE)[0], reached[self.rows], soft="" if lying else self._stands_soft(k))
+        leaning, above = replace(part, machine=replace(part.machine, tilt_limit=limit)), float(self.candidates.lowest[k])
+        reached = self._over(part, self.bound[:, k], above)
+        return Held(table, reached | self._over(leaning, self.bound[:, k] & ~reached, above), soft=self._stands_soft(k))
+
+    def _over(self, conditions: Conditions, open_rows: NDArray[np.bool_], above: float | None = None) -> NDArray[np.bool_]:
+        """Where a cutter has a posture under some conditions, of some rows (r,), and nothing of it is below a height, mm."""
+        reached = np.zeros(len(self.ready.samples), bool)
+        for usual in (True, False):
+            reached |= _reached(self.ready, self.rows[open_rows & (self.usual == usual)], conditions, usual=usual, above=above)
+        return reached[self.rows]
+
+    def _ends(self, fixture: Fixture) -> tuple[int, ...]:
+        """Planes at the end of the part that a chuck is to hold."""
+        along = self.candidates.axis @ np.array(fixture.up)
+        return self.candidates.stands_on[int(along.argmax())]
 
     def _stands_soft(self, k: int) -> str:
         """Why a part that lies on a table in a direction needs a nest; empty where it stands by itself."""
@@ -349,7 +363,9 @@ class Ranking:
             return [(fixture, None)]
         axis, tall = self.candidates.axis, self.candidates.tall
         across = [j for j in np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist() if self.candidates.bearing[j].round]
-        longest = [j for j in across if tall[j] > (1.0 - _EVEN) * max(tall[across])]
+        # A disk stands, unless a person asks for a chuck.
+        least = max(tall[k] if len(self.words) > 1 else 0.0, (1.0 - _EVEN) * max(tall[across], default=0.0))
+        longest = [j for j in across if tall[j] >= least]
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in longest]
         return [(replace(fixture, up=vector(up)), vector(x)) for up, x in lying]
 
@@ -363,11 +379,7 @@ class Ranking:
         axis, x = self.candidates.axis[k], None if turned is None else np.array(turned)
 
         def among(surroundings: Surroundings) -> NDArray[np.bool_]:
-            conditions = replace(self.ready.conditions, setup=axis, x=x, surroundings=surroundings)
-            reached = np.zeros(len(self.ready.samples), bool)
-            for usual in (True, False):
-                reached |= _reached(self.ready, self.rows[bound & (self.usual == usual)], conditions, usual=usual)
-            return reached[self.rows]
+            return self._over(replace(self.ready.conditions, setup=axis, x=x, surroundings=surroundings), bound)
 
         held = replace(held_by(self.ready, vector(axis), fixture, among, stock), x=turned)
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
@@ -376,6 +388,10 @@ class Ranking:
         """As `choose`, held by what holds it best, with what this leaves for more setups; none of which others do all."""
         chosen = self.choose(most, without)
         self.settle(chosen)
+        if any(self.lying(k) and not self.steady(k) for k in chosen):
+            # No chuck grips what was to lie in it.
+            chosen = self.choose(most, without)
+            self.settle(chosen)
         if self._turned(chosen):
             chosen = chosen[:1]  # what it leaves is served where it is turned round
         chosen = self.completed(chosen, most)
@@ -404,12 +420,19 @@ class Ranking:
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
 
-        Of as many that serve as much, those are taken in which one would rather stand the part; and such a one instead of
-        another, if less than 2 % of the area speaks against it. Before all that comes to turn over a part that stands.
+        Of as many that serve as much, those are taken in which one would rather stand the part, or lay it in a chuck; and such a
+        one instead of another, if less than 2 % of the area speaks against it. Before all that comes to turn over a part that
+        stands.
 
         `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
         every = self.candidates.preferred([k for k, held in self.held.items() if held is not None and k not in without])
+        lying = [k for k in every if self.lying(k)]
+        most_lying, most_standing = (
+            max((self._together((k,)) for k in some), default=0.0) for some in (lying, [k for k in every if k not in lying])
+        )
+        if most_lying >= most_standing - _TURNED_FOR:
+            every.sort(key=lambda k: k not in lying)
         steady = [k for k in every if self.steady(k)]
         firm, free = self._chosen(steady, most), self._chosen(every, most)
         best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)

@@ -144,8 +144,14 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
 
 def _nothing(fixture: Fixture, requested: Requested, setup: Sequence[float], why: str) -> NothingToGripError:
     # Made here: an error that knows where it was raised, and is known there, would keep the part's triangles for long.
+    along, instead = f"with the setup axis {axis_words(setup)}", "another setup"
+    if fixture.up is not None:
+        along, instead = (
+            f"along {axis_words(setup)}, the rotary axis on which it stands",
+            "a setup axis across the bar, --setup auto",
+        )
     error = NothingToGripError(
-        f"{fixture}: nothing to grip with the setup axis {axis_words(setup)}: {why}; try another setup, "
+        f"{fixture}: nothing to grip {along}: {why}; try {instead}, "
         f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
     )
     error.why = why
