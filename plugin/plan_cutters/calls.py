@@ -39,11 +39,24 @@ def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **o
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`; angles in degrees, too:
         `tilt_deg=(0, 60)`.
 
-    A CadIoError where the part cannot be read or holds no surface to judge, a PlanError where an option has no meaning.
+    Returns
+    -------
+    Result
 
+    Raises
+    ------
+    CadIoError
+        The part cannot be read or holds no surface to judge.
+    PlanError
+        An option has no meaning.
+
+    Notes
+    -----
     Measuring and sampling have no time limit here: a face on which the CAD kernel never ends keeps this call waiting, and a
     crash of the kernel ends the process. The command bounds both (`docs/kernel_calls.md`).
 
+    Examples
+    --------
     >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
     >>> result.selected
     'R6L80'
@@ -61,10 +74,19 @@ def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **o
 
 @spelled_out(PointOptions, Options)
 def posture_map(
-    part: Any, *, point: Range, cutter: Cutter | str, rotations: float | Range | None = None, tilt: Range | None = None,
-    machine: Machine | str | os.PathLike[str] | None = None, tolerance: float | None = None, x: Heading | None = None,
-    rotations_deg: float | Range | None = None, tilt_deg: Range | None = None, **scene: Unpack[PointOptions],
-) -> "PostureMap":  # fmt: skip
+    part: Any,
+    *,
+    point: Range,
+    cutter: Cutter | str,
+    rotations: float | Range | None = None,
+    tilt: Range | None = None,
+    machine: Machine | str | os.PathLike[str] | None = None,
+    tolerance: float | None = None,
+    x: Heading | None = None,
+    rotations_deg: float | Range | None = None,
+    tilt_deg: Range | None = None,
+    **scene: Unpack[PointOptions],
+) -> "PostureMap":
     """Find the free tilt intervals of a cutter at a point of a part.
 
     Parameters
@@ -92,9 +114,15 @@ def posture_map(
         `setup`, `flip`, `ignore` and `fixtures`, as in `Options`; the point is not projected to ignored faces. A setup file, a
         Placement or a host's plane as the setup brings its X, unless `x` is given, and its fixtures.
 
-    A CadIoError where the part cannot be read, or the point is farther than 1e-3 mm from it; an OptionError where a range or
-    tolerance has no meaning, or a value is of the wrong kind.
+    Raises
+    ------
+    CadIoError
+        The part cannot be read; the point is farther than 1e-3 mm from it.
+    OptionError
+        A range or tolerance has no meaning, or a value is of the wrong kind.
 
+    Examples
+    --------
     On the bottom line of a groove, across it and along it:
 
     >>> import numpy as np

@@ -11,7 +11,15 @@ def extra_hint(extra: str) -> str:
 
 
 class PlanError(Exception):
-    """Base of all errors of `plan_cutters`: `cause`, what is wrong and what to try, one line; the file and face concerned."""
+    """Base of all errors of `plan_cutters`.
+
+    Parameters
+    ----------
+    cause : str
+        What is wrong and what to try, one line.
+    file, face : str, optional
+        The file and face concerned.
+    """
 
     def __init__(self, cause: str, *, file: str | None = None, face: str | None = None) -> None:
         self.cause, self.file, self.face = cause, file, face

@@ -163,8 +163,13 @@ class Options(OptionValues):
         What the first setup grips, in the words of the command line, with all its numbers. `part` unless it is given, or a vise
         may be proposed.
 
-    An OptionError where a value has no meaning.
+    Raises
+    ------
+    OptionError
+        A value has no meaning.
 
+    Examples
+    --------
     >>> Options(cutters="R6L80", setup=(0, 0, 5)).setup
     (0.0, 0.0, 1.0)
     >>> [cutter.id for cutter in Options().judged][:3]

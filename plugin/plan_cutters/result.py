@@ -37,28 +37,53 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OnFace:
-    """The results of one cutter on one face: its verdicts, the reasons, the worst place and the least stick-out."""
+    """The results of one cutter on one face: its verdicts, the reasons, the worst place and the least stick-out.
 
-    id: str  #: Of the face: `F12`.
-    name: str  #: Its name in the file.
-    component: str  #: The component that it belongs to.
+    Attributes
+    ----------
+    id, name, component : str
+        Of the face: `F12`, its name in the file, the component that it belongs to.
+    target : bool
+    cutter : str
+        Id of the cutter that this is about.
+    area : float
+        Of the face, mm2.
+    samples : int
+    verdicts : Verdicts
+        Counts of samples.
+    shares : dict
+        Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what
+        lies inside other bodies of the part does not count.
+    reasons : dict
+        Reason -> share of the face's area that is not reached for it, the largest first.
+    worst : WitnessEntry, optional
+        Of the samples not reached that the plan looked at more closely, the one with the deepest collision; None where all is
+        reached.
+    least_stick_out : float, optional
+        With which the cutter in its holder still reaches all that it reaches of this face, mm; None: `why_no_stick_out`.
+    why_no_stick_out : str
+        Empty where it is known.
+    doubtful : bool
+        Obstacles are missing, which might be in the way of more.
+    why_unjudged : str
+        Why the face, or some of its samples, has no verdict; else empty.
+    """
+
+    id: str
+    name: str
+    component: str
     target: bool
-    cutter: str  #: Id of the cutter that this is about.
-    area: float  #: Of the face, mm2.
+    cutter: str
+    area: float
     samples: int
-    verdicts: VerdictCounts  #: Counts of samples.
-    #: Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what lies
-    #: inside other bodies of the part does not count.
+    verdicts: VerdictCounts
     shares: dict[str, float] = field(default_factory=dict)
-    #: Reason -> share of the face's area that is not reached for it, the largest first.
     reasons: dict[str, float] = field(default_factory=dict)
-    #: Of the samples not reached that the plan looked at more closely, that of the deepest collision; None where all is reached.
     worst: WitnessEntry | None = None
-    #: With which the cutter in its holder still reaches all that it reaches of this face, mm; None: `why_no_stick_out`.
     least_stick_out: float | None = None
-    why_no_stick_out: str = ""  #: Empty where it is known.
-    doubtful: bool = False  #: Obstacles are missing, which might be in the way of more.
-    why_unjudged: str = ""  #: Why the face, or some of its samples, has no verdict; else empty.
+    why_no_stick_out: str = ""
+    doubtful: bool = False
+    why_unjudged: str = ""
 
     @property
     def number(self) -> int:
@@ -123,14 +148,30 @@ def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result:
-    """A plan with the arrays behind it."""
+    """A plan with the arrays behind it.
 
-    plan: Plan  #: What is written as `plan.json`.
-    ready: Prepared  #: The scene and the samples that the cutters were judged on: for further questions.
-    over_setups: OverSetups  #: The verdicts of all cutters.
-    travels: dict[str, Travel]  #: Cutter id -> where the linear axes stand; empty where that is not judged.
-    answers: Answers  #: The answers that were requested after the plan: `stick_outs`, `radius_maps`, `mends`.
-    maps: PostureMaps | None = None  #: Every free tilt, for the cutter `shown`, where that was requested.
+    Attributes
+    ----------
+    plan : Plan
+        What is written as `plan.json`.
+    ready : Prepared
+        The scene and the samples that the cutters were judged on: for further questions.
+    over_setups : OverSetups
+        The verdicts of all cutters.
+    travels : dict
+        Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
+    answers : Answers
+        The answers that were requested after the plan: `stick_outs`, `radius_maps`, `mends`.
+    maps : PostureMaps, optional
+        Every free tilt, for the cutter `shown`, where that was requested.
+    """
+
+    plan: Plan
+    ready: Prepared
+    over_setups: OverSetups
+    travels: dict[str, Travel]
+    answers: Answers
+    maps: PostureMaps | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         # Options may hold objects of a CAD host: words and numbers stand for them.
@@ -236,7 +277,12 @@ class Result:
         """Positions of the rotary axes at the postures of a cutter, rad, both solutions, and which of them is to be taken.
 
         Each in the setup that serves its sample; arrays as `Kinematics.positions` gives them, (n, 2, axes) and (n,), and where
-        linear travel is judged as that takes them. A ValueError where the machine has none (`kinematics` is None).
+        linear travel is judged as that takes them.
+
+        Raises
+        ------
+        ValueError
+            The machine has no rotary axes (`kinematics` is None).
         """
         if self.kinematics is None:
             raise ValueError("rotary positions need a machine of rotary axes")
@@ -253,7 +299,13 @@ class Result:
         return self.answers.operations
 
     def judged(self, cutter: str | None = None) -> Cutter:
-        """The cutter of an id as it was judged, holder and all; default the one `shown`. An OptionError for any other word."""
+        """The cutter of an id as it was judged, holder and all; default the one `shown`.
+
+        Raises
+        ------
+        OptionError
+            No cutter of the plan is called so.
+        """
         wanted = self.shown if cutter is None else cutter
         match = next((each for each in self.ready.cutters if each.id == wanted), None)
         if match is None:
@@ -263,10 +315,22 @@ class Result:
     def face(self, which: Any, cutter: str | None = None, *, stick_out: bool = False) -> OnFace:
         """Tell how much of one face a cutter reaches, why not the rest, and where the worst place is.
 
-        `which`: a number, `F12`, the face's name, or a face of the kernel, CadQuery or build123d. `cutter`: its id; default the
-        one `shown`. `stick_out`: look for the least stick-out for this face, too, where it was not requested with the plan. An
-        OptionError for what is no face of the part, or more than one.
+        Parameters
+        ----------
+        which : int, str or object
+            A number, `F12`, the face's name, or a face of the kernel, CadQuery or build123d.
+        cutter : str, optional
+            Id; default the one `shown`.
+        stick_out : bool
+            Look for the least stick-out for this face, too, where it was not requested with the plan.
 
+        Raises
+        ------
+        OptionError
+            It is no face of the part, or more than one.
+
+        Examples
+        --------
         >>> from plan_cutters import plan
         >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
         >>> result.face("F1", "R6L80").reached
@@ -311,6 +375,8 @@ class Result:
         It says which cutter to take, or that none finishes; a line for each cutter; what is not reached and why; what makes it
         unsure.
 
+        Examples
+        --------
         >>> from plan_cutters import plan
         >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
         >>> print(result.summary().splitlines()[0])
@@ -323,9 +389,19 @@ class Result:
     def show(self, *, height: int = 640, card: Literal["full", "small"] = "full") -> Path | None:
         """Show the review page: in a notebook below the cell, `height` pixels high, else in a browser.
 
-        `card="small"` shows in a notebook headline, table and a small picture, at most 50 kB. Returns the file that the browser
-        shows, in the folder for temporary files, where it stays; None in a notebook. A CadIoError where the kernel cannot mesh
-        the part; a PlanError, which names the file, where no browser is found.
+        `card="small"` shows in a notebook headline, table and a small picture, at most 50 kB.
+
+        Returns
+        -------
+        Path or None
+            The file that the browser shows, in the folder for temporary files, where it stays; None in a notebook.
+
+        Raises
+        ------
+        CadIoError
+            The kernel cannot mesh the part.
+        PlanError
+            No browser is found; the message names the file.
         """
         from plan_cutters.report.notebook import show
 
@@ -340,10 +416,20 @@ class Result:
     def to_dataframe(self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None) -> "DataFrame":
         """A table of pandas, with units at the end of names; what is not known is nan or None.
 
-        `samples`: the columns of `axes.csv`, a row for each sample. `faces`: a row for each face of the part, with counts and
-        shares of area by verdict, the main reason and the deepest collision. `cutters`: a row for each cutter. `cutter`: the id
-        of the one that samples and faces are about; default the one `shown`. An OptionError where there is no such table or
-        cutter, a PlanError where pandas is not installed.
+        Parameters
+        ----------
+        of : str
+            `samples`: the columns of `axes.csv`, a row for each sample. `faces`: a row for each face of the part, with counts and
+            shares of area by verdict, the main reason and the deepest collision. `cutters`: a row for each cutter.
+        cutter : str, optional
+            Id of the cutter that samples and faces are about; default the one `shown`.
+
+        Raises
+        ------
+        OptionError
+            There is no such table or cutter.
+        PlanError
+            Pandas is not installed.
         """
         from plan_cutters.report.arrays import frame
 
@@ -363,10 +449,20 @@ class Result:
         What cannot be written behind these is named in the plan's `not_written`; the other files are there. Files that an
         earlier run wrote there are removed if its plan lists them as they are.
 
-        `formats`: of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands
-        of faces), `png` (the part with its verdicts, four views), and `csv` and `vtk` (tool axes for CAM: `docs/cam_outputs.md`).
-        `step_schema`: application protocol of the STEP file, `ap242`, `ap214` or `ap203`. Returns the plan as written, with its
-        `files`, `split` and `not_written`.
+        Parameters
+        ----------
+        out : path-like
+        formats : sequence of str
+            Of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands of
+            faces), `png` (the part with its verdicts, four views), and `csv` and `vtk` (tool axes for CAM:
+            `docs/cam_outputs.md`).
+        step_schema : str
+            Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
+
+        Returns
+        -------
+        Plan
+            The plan as written, with its `files`, `split` and `not_written`.
         """
         from plan_cutters.report.folder import write_all
 

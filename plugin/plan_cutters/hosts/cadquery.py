@@ -34,11 +34,25 @@ def assembly(result: "Result", *, at: "int | WitnessEntry | None" = None, cutter
     """A result as a CadQuery assembly, for CQ-editor, ocp_vscode and export.
 
     Target faces are split along the boundaries of the verdicts; every piece is a child called `F<number>_<verdict>` with the
-    colour of its verdict. Check faces keep their colours. Fixtures stand where they were. Children are `targets`, `check faces`,
-    `ignored faces`, `fixtures`, `tool <id>`, as far as there are any.
+    colour of its verdict. Check faces keep their colours. Fixtures stand where they were.
 
-    `at`: the row of a sample, or a witness such as `result.face("F3").worst`: there the tool assembly is put. `cutter`: id of the
-    one whose verdicts and tool are shown; default `result.shown`. Raises OptionError: no posture is known at that sample.
+    Parameters
+    ----------
+    result : Result
+    at : int or WitnessEntry, optional
+        The row of a sample, or a witness such as `result.face("F3").worst`: there the tool assembly is put.
+    cutter : str, optional
+        Id of the one whose verdicts and tool are shown; default `result.shown`.
+
+    Returns
+    -------
+    cadquery.Assembly
+        Children `targets`, `check faces`, `ignored faces`, `fixtures`, `tool <id>`, as far as there are any.
+
+    Raises
+    ------
+    OptionError
+        No posture is known at that sample.
     """
     import cadquery
 

@@ -20,16 +20,29 @@ def holder(
 ) -> Holder:
     """A holder that encloses a body of revolution. It is never smaller than the body; bores and undercuts count as filled.
 
-    `source`: a kernel shape, a CadQuery or build123d object, or a list of such. A planar face, sketch or wire in a plane through
-    the axis is turned about it. `axis`: `x`, `y` or `z`, or a point and a direction: it points from the nose of the holder, where
-    the cutter sticks out, to the spindle; the nose is the lowest point along it. `-z` points the other way. `enclose`: take what
-    is no body of revolution, too (flats, keyways, screws), as the body that it sweeps when it turns. `tolerance`: how far out
-    curved outlines may become stages, mm. Cylinders and cones stay as they are. It is doubled until there are at most 12 stages;
-    the name says so.
+    Parameters
+    ----------
+    source
+        A kernel shape, a CadQuery or build123d object, or a list of such. A planar face, sketch or wire in a plane through the
+        axis is turned about it.
+    axis
+        `x`, `y` or `z`, or a point and a direction. It points from the nose of the holder, where the cutter sticks out, to the
+        spindle; the nose is the lowest point along it. `-z` points the other way.
+    enclose
+        Take what is no body of revolution, too (flats, keyways, screws), as the body that it sweeps when it turns.
+    tolerance
+        How far out curved outlines may become stages, mm. Cylinders and cones stay as they are. It is doubled until there are at
+        most 12 stages; the name says so.
 
-    Raises OptionError: the axis or the tolerance has no meaning; CutterError: it is no body of revolution about the axis.
-    CadIoError: it holds no shape, or a profile that lies in no plane through the axis.
+    Raises
+    ------
+    OptionError
+        The axis or the tolerance has no meaning; CutterError: it is no body of revolution about the axis.
+    CadIoError
+        It holds no shape, or a profile that lies in no plane through the axis.
 
+    Examples
+    --------
     >>> import cadquery
     >>> holder(cadquery.Workplane().circle(15).extrude(30).faces(">Z").circle(20).extrude(40)).id
     'R15L30+R20L40'

@@ -214,7 +214,12 @@ class Scene(Record):
         """Gather the possible and the certain obstacles, unless that was done before.
 
         While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time. `cache`
-        keeps the triangles of the part. Raises FixtureError: a fixture stands in the part.
+        keeps the triangles of the part.
+
+        Raises
+        ------
+        FixtureError
+            A fixture stands in the part.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.around is None:
@@ -234,8 +239,17 @@ class Scene(Record):
     def surround_in(self, setup: tuple[float, float, float], shared: Sequence[Fixture], own: Sequence[Fixture]) -> Surroundings:
         """Gather the obstacles of another setup, with the same triangles of the part; `surround` must have been called.
 
-        `setup`: unit setup axis, across which the tables of `own` lie, fixtures of that setup alone; those of `shared`, which
-        stand in all setups, stay where they are in this one. Raises FixtureError: a fixture stands in the part.
+        Parameters
+        ----------
+        setup : (float, float, float)
+            Unit setup axis, across which the tables of `own` lie; those of `shared` stay where they are in this setup.
+        shared, own : sequence of Fixture
+            Those that stand in all setups, and those of that setup alone.
+
+        Raises
+        ------
+        FixtureError
+            A fixture stands in the part.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         mine = tuple(Fixture.each_of([*shared, *own]))
@@ -254,8 +268,12 @@ class Scene(Record):
         """Gather the obstacles where the part stands on a table across a setup axis, or in a vise or chuck, and nothing else
         holds it; or where its stock does so.
 
-        The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused. Raises
-        FixtureError: the vise or chuck has nothing to grip.
+        The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused.
+
+        Raises
+        ------
+        FixtureError
+            The vise or chuck has nothing to grip.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
@@ -264,7 +282,13 @@ class Scene(Record):
         return self._joined(memory.alone, Fixture.each_of([*blank, held]), chord, setup)
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
-        """Place a vise or chuck for a unit setup axis; `surround` must have been called. Raises FixtureError: nothing to grip."""
+        """Place a vise or chuck for a unit setup axis; `surround` must have been called.
+
+        Raises
+        ------
+        FixtureError
+            It has nothing to grip.
+        """
         memory = self._memory
         key = (fixture, tuple(setup), self.targets)
         if key not in memory.holds:

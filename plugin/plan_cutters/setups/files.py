@@ -52,6 +52,8 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
         machine's Z and X, three numbers or a word as `+z`; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those
         of `--fixture`: files are looked for in the setup file's folder.
 
+    Examples
+    --------
     >>> read_setup("none.toml")
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: none.toml: cannot be read: No such file or directory
