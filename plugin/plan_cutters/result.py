@@ -230,6 +230,16 @@ class Result:
         return self.over_setups.reaches
 
     @property
+    def here(self) -> dict[str, Verdicts]:
+        """Verdicts by cutter id, in the first setup alone."""
+        return self.over_setups.each[0][1]
+
+    @property
+    def elsewhere(self) -> tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...]:
+        """The axis of each other setup, and the verdicts there by cutter id."""
+        return self.over_setups.each[1:]
+
+    @property
     def served_in(self) -> dict[str, Ints]:
         """The setup (n,) whose posture a sample has, by cutter id: counted from 0 as in `plan.cutters[].setups`, -1 for none.
 
