@@ -174,7 +174,7 @@ def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, number, where)
     if number == signal.SIGKILL:
         # Whatever was killed could not tidy: the next run into that folder does.
         assert any(each.name.startswith(".out-") for each in tmp_path.iterdir())
-        from plan_cutters.report import Staging
+        from plan_cutters.report.folder import Staging
 
         Staging(tmp_path / "out").discard()
         assert leftovers(tmp_path, "hooks", "out") == []
