@@ -165,8 +165,8 @@ def _setups(part: Part, options: Options, document: Mapping[str, Any]) -> tuple[
             # Jaws below the part, on its stock, are not for its faces.
             grips += [_grip(wanted, placed, faces, s)] if wanted.to_place and not stock else []
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
-        standing = tuple(replace(each, up=along) if each.kind == "stock" else each for each in bodies)
-        setups.append(Setup(z, x, origin, standing, clamped_faces(part, place)))
+        fixtures = tuple(replace(each, up=along) if each.kind == "stock" else each for each in bodies)
+        setups.append(Setup(z, x, origin, fixtures, clamped_faces(part, place)))
     return tuple(setups), tuple(grips)
 
 

@@ -428,10 +428,10 @@ class Ranking:
         """
         every = self.candidates.preferred([k for k, held in self.held.items() if held is not None and k not in without])
         lying = [k for k in every if self.lying(k)]
-        most_lying, most_standing = (
+        most_lying, most_upright = (
             max((self._together((k,)) for k in some), default=0.0) for some in (lying, [k for k in every if k not in lying])
         )
-        if most_lying >= most_standing - _TURNED_FOR:
+        if most_lying >= most_upright - _TURNED_FOR:
             every.sort(key=lambda k: k not in lying)
         steady = [k for k in every if self.steady(k)]
         firm, free = self._chosen(steady, most), self._chosen(every, most)
