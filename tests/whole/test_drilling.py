@@ -117,6 +117,8 @@ def test_what_no_tool_makes_is_named(without, kind, missing):
     assert not of_kind(made, kind)
     assert [missing_words(each) for hole in made.holes for each in hole.missing] == [missing]
     assert f"no tool makes {missing}." in " ".join(" ".join(made.text.lines).split())
+    assert made.text.headline.endswith(f"; 1 of {len(made.holes)} holes lacks a tool or a setup.")
+    assert "a tool or a setup" not in made_with(*TOOLS).text.headline
 
 
 def test_a_counterbore_without_its_tool_is_milled():

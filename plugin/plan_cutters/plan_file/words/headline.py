@@ -447,12 +447,12 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     """Which cutter to take, with what holder, and why; where one alone does not do, how much all do together."""
     entries = {c.id: c for c in plan.cutters}
     part, setups = judged(plan), 1 + len(plan.effective.other_setups)
-    process = plan.process
+    process, holes = plan.process, _holes(plan)
 
     def take(name: str, why: str, *, where: str = "") -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
         whole = f": it finishes all {mm2(process.asked_mm2)}{_took(process)}" if process.finished_share >= 1.0 else ""
-        return Headline(f"Take {names[name]}{whole}", True, about, why + could_not(plan))
+        return Headline(f"Take {names[name]}{whole}{holes}", None if holes else True, about, why + could_not(plan))
 
     # The cutter that does alone, or over all setups, where the process has other cutters.
     does = plan.selected or plan.selected_over_setups
@@ -469,7 +469,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         if plan.selected_over_setups and not others:
             why = f"It reaches {every(plan)} in {setups} setups, and in none of them alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
-    share, title = process.finished_share, _title(process)
+    share, title = process.finished_share, f"{_title(process)}{holes}"
     machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
     about = f"{sized(plan, plan.part.file or 'part')}{machine}."
     if plan.scope.not_judged:
@@ -482,7 +482,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
         single = _alone_too(plan, others, names.get(others, ""))
-        return Headline(title, True, about, f"{why}.{single}{could_not(plan)}")
+        return Headline(title, None if holes else True, about, f"{why}.{single}{could_not(plan)}")
     undecided = not any(c.blocked for c in plan.cutters)
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
 
@@ -497,6 +497,14 @@ def _title(process: ProcessEntry) -> str:
     steps = count(len(process.steps), "step")
     finish = f"finish{'es' * (len(process.steps) == 1)} {'all' if much == '100 %' else f'{much} of'} {of}"
     return f"{steps} in {setups} {finish}{_took(process)}{_stays(process)}"
+
+
+def _holes(plan: Plan) -> str:
+    """How many holes lack a tool of the libraries or a setup, as the end of a sentence; empty where none does."""
+    if not any(library.drills for library in plan.libraries):
+        return ""
+    left = sum(bool(each.missing) for each in plan.holes)
+    return f"; {left} of {count(len(plan.holes), 'hole')} lack{'s' * (left == 1)} a tool or a setup" if left else ""
 
 
 #: From this share of what is left on a cause is most of it.
