@@ -285,7 +285,12 @@ function withPart({ state, stage: { table } }: Picture, aim: Aim, places: Vec[])
   const most = Math.max(...part.map(([low, high], k) => (high - low) / (2 * PART * aspects[k])));
   const wide = Math.sqrt(seenOf(state, cross(right, up)) / (4 * table.aspect * TOOL));
   const half = Math.min(Math.max(Math.min(aim.half, most), wide), (most * PART) / LEAST);
-  if (aim.half <= NEARLY * half) return { ...aim, half: Math.max(aim.half, half) };
+  const whole = Math.max(aim.half, half);
+  const seen = part.map(([low, high], k) => {
+    const [at, room] = [dot(aim.target, ways[k]), whole * aspects[k]];
+    return (Math.min(high, at + room) - Math.max(low, at - room)) / (2 * room);
+  });
+  if (aim.half <= NEARLY * half && Math.max(...seen) >= LEAST) return { ...aim, half: whole };
   // As much of the tool as there is room for beside the part.
   let { target } = aim;
   ways.forEach((way, k) => {
