@@ -20,6 +20,8 @@ How = Literal["overlaps", "stands_on", "touches_or_overlaps"]
 
 #: A contact is surely within a body from so many depths on beyond which a posture is blocked, and on its skin up to so many.
 _DEEP, _ON = 1.5, 1.5
+#: Contacts that are asked first.
+_FEW = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -70,8 +72,11 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     _, deep = certain.depths(ready.conditions.tolerance)
     point, shell = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
-    if balls_inside(point, _DEEP * deep, shell, ready.options.jobs).any():
-        return "overlaps"
+    # Where a body overlaps, a few of them tell.
+    few = np.arange(len(point)) % (1 + len(point) // _FEW) == 0
+    for some in (point[few], point[~few]):
+        if balls_inside(some, _DEEP * deep, shell, ready.options.jobs).any():
+            return "overlaps"
     near_shell(point, _ON * deep, shell.solids, on)
     return "stands_on" if on.all() else "touches_or_overlaps"
 
