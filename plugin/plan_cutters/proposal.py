@@ -144,13 +144,14 @@ def _stand(
 
 def _words(options: Options) -> tuple[str, ...]:
     """What may hold the part in each setup: what was requested, or any of them."""
-    requested = tuple(each.text for each in options.fixtures)
-    turning = [each for each in options.machine.axes if each.kind == "rotary" and each.carries == "part"]
-    # Along an axis that turns the part about the spindle, or that lies across it; nobody stands a chuck on one that leans.
-    able = not turning or any(abs(each.direction[2]) > _ALONG for each in turning)
+    if options.fixtures:
+        return tuple(each.text for each in options.fixtures)
     if options.machine.chuck_axis is not None:
-        return requested or (TABLE, CHUCK, VISE)
-    return requested or ((TABLE, VISE, CHUCK) if able else (TABLE, VISE))
+        return TABLE, CHUCK, VISE
+    turning = [each for each in options.machine.rotary if each.carries == "part"]
+    # Nobody stands a chuck along the spindle on an axis that leans.
+    upright = not turning or any(abs(each.direction[2]) > _ALONG for each in turning)
+    return (TABLE, VISE, CHUCK) if upright else (TABLE, VISE)
 
 
 def _among(words: tuple[str, ...]) -> str:
