@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -156,15 +156,14 @@ def _setups(part: Part, options: Options, document: Mapping[str, Any]) -> tuple[
     setups, grips = [], list[Grip]()
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
         x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
-        along: Sequence[float] = axis
+        along = z = (float(axis[0]), float(axis[1]), float(axis[2]))
         bodies, stock = list[Body](), s == 0 and any(each.stock for each in options.fixtures)
         for wanted in options.fixtures if s == 0 else (*options.shared_fixtures, *own):
             placed, faces = _where(wanted, s, document) if wanted.to_place else (wanted, ())
             bodies += bodies_of(placed)
-            along = placed.stands_along(axis) if placed.clamping is not None else along
+            along = along if placed.clamping is None else placed.stands_along(z)
             # Jaws below the part, on its stock, are not for its faces.
             grips += [_grip(wanted, placed, faces, s)] if wanted.to_place and not stock else []
-        z = (float(axis[0]), float(axis[1]), float(axis[2]))
         fixtures = tuple(replace(each, up=along) if each.kind == "stock" else each for each in bodies)
         setups.append(Setup(z, x, origin, fixtures, clamped_faces(part, place)))
     return tuple(setups), tuple(grips)

@@ -75,9 +75,7 @@ class PlacedFixture:
 
 def stock_frame(body: Body, setup: Setup) -> Floats:
     """The frame (3, 3) of stock, as rows: along what grips it, and beside that as near to the part's X as can be."""
-    return frame_of(
-        replace(setup, z=setup.z if body.up is None else (float(body.up[0]), float(body.up[1]), float(body.up[2])), x=None)
-    )
+    return frame_of(replace(setup, z=body.up or setup.z, x=None))
 
 
 def foot_of(margins: tuple[float, ...], low: Floats, high: Floats) -> tuple[float, ...]:

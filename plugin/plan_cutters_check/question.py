@@ -1,7 +1,7 @@
 """A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
@@ -100,7 +100,7 @@ class Body:
     source: Any
     unit: str | None
     placement: tuple[float, ...]
-    up: Sequence[float] | None = None
+    up: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,12 +18,6 @@ from plan_cutters.scene.surroundings import Surroundings
 GRIPPED_FOR = 0.9
 
 
-def vector(direction: Floats) -> Axis:
-    """A direction (3,) as numbers, without negative zeros."""
-    x, y, z = (direction + 0.0).tolist()
-    return x, y, z
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Held:
     """How a part is held in a direction that was searched."""

@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.answers.candidates import SAME, Candidates
-from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by, vector
+from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
+from plan_cutters.domain.posture import direction_of
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.stock import USUAL, Stock
 from plan_cutters.domain.verdicts import blank
@@ -198,7 +199,7 @@ class Ranking:
             for word in self.words[1:] if self.over_table and k not in self.settled else ():
                 for fixture, _ in self._fixtures(k, word):
                     with suppress(NothingToGripError):
-                        stands = fixture.stands_along(vector(self.candidates.axis[k]))
+                        stands = fixture.stands_along(direction_of(self.candidates.axis[k]))
                         self.gripped[k] |= not self.ready.scene.hold(fixture, stands).soft
         return self.gripped[k]
 
@@ -358,7 +359,7 @@ class Ranking:
         A chuck stands along a rotary axis that lies across the spindle: where the part is round across the direction and longest,
         it lies along that, one way or the other.
         """
-        fixture, along = Fixture.each_of(word)[0], self.ready.conditions.machine.chuck_axis
+        fixture, along = Fixture.parse(word), self.ready.conditions.machine.chuck_axis
         if fixture.kind != CHUCK or along is None:
             return [(fixture, None)]
         axis, tall = self.candidates.axis, self.candidates.tall
@@ -367,13 +368,14 @@ class Ranking:
         least = max(tall[k] if len(self.words) > 1 else 0.0, (1.0 - _EVEN) * max(tall[across], default=0.0))
         longest = [j for j in across if tall[j] >= least]
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in longest]
-        return [(replace(fixture, up=vector(up)), vector(x)) for up, x in lying]
+        return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]
 
     def lying(self, k: int) -> list[tuple[Fixture, Axis | None]]:
         """The chucks in which the part may lie along a rotary axis, in a direction; none where it would stand in them."""
-        along = self.ready.conditions.machine.chuck_axis
-        chuck = next((each for each in self.words if Fixture.each_of(each)[0].kind == CHUCK), None)
-        return [] if along is None or chuck is None else self._fixtures(k, chuck)
+        if self.ready.conditions.machine.chuck_axis is None:
+            return []
+        chuck = next((each for each in self.words if Fixture.parse(each).kind == CHUCK), None)
+        return [] if chuck is None else self._fixtures(k, chuck)
 
     def _held_in(self, k: int, fixture: Fixture, turned: Axis | None, bound: NDArray[np.bool_], stock: Stock | None) -> Held:
         axis, x = self.candidates.axis[k], None if turned is None else np.array(turned)
@@ -381,7 +383,7 @@ class Ranking:
         def among(surroundings: Surroundings) -> NDArray[np.bool_]:
             return self._over(replace(self.ready.conditions, setup=axis, x=x, surroundings=surroundings), bound)
 
-        held = replace(held_by(self.ready, vector(axis), fixture, among, stock), x=turned)
+        held = replace(held_by(self.ready, direction_of(axis), fixture, among, stock), x=turned)
         return held if held.kind != TABLE else replace(held, soft=self._stands_soft(k))
 
     def chosen_and_held(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
@@ -427,12 +429,10 @@ class Ranking:
         `without`: directions that failed. Returns candidates, that with the most area first; none where none serves anything.
         """
         every = self.candidates.preferred([k for k, held in self.held.items() if held is not None and k not in without])
-        lying = [k for k in every if self.lying(k)]
-        most_lying, most_upright = (
-            max((self._together((k,)) for k in some), default=0.0) for some in (lying, [k for k in every if k not in lying])
-        )
-        if most_lying >= most_upright - _TURNED_FOR:
-            every.sort(key=lambda k: k not in lying)
+        if lying := [k for k in every if self.lying(k)]:
+            serves = {k: self._together((k,)) for k in every}
+            if max(serves[k] for k in lying) >= max(serves.values()) - _TURNED_FOR:
+                every.sort(key=lambda k: k not in lying)
         steady = [k for k in every if self.steady(k)]
         firm, free = self._chosen(steady, most), self._chosen(every, most)
         best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)

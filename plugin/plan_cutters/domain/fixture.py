@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
@@ -13,6 +12,7 @@ from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.checks import did_you_mean, name, number, numbers, shown
 from plan_cutters.domain.clamping import CHUCK, FORMS, VISE, Clamping, Requested, requested
+from plan_cutters.domain.posture import Direction, direction_of
 from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import FixtureError
 
@@ -94,7 +94,7 @@ class Fixture:
     unit: str | None = None
     name: str = ""
     chord_error: float = 0.0
-    up: tuple[float, float, float] | None = None
+    up: Direction | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.source, PurePath):
@@ -137,9 +137,9 @@ class Fixture:
         source = self.source if isinstance(self.source, str) else id(self.source)
         return source, self.placement, self.unit, self.name, self.chord_error, self.up
 
-    def stands_along(self, setup: Sequence[float]) -> Sequence[float]:
-        """The direction (3,) along which a vise or chuck stands in a setup, or is to: the setup axis, or one across it."""
-        up = self.up if self.clamping is None else self.rotation[:, 2].tolist()
+    def stands_along(self, setup: Direction) -> Direction:
+        """The direction along which a vise or chuck stands in a setup, or is to: the setup axis, or one across it."""
+        up = self.up if self.clamping is None else direction_of(self.rotation[:, 2])
         return setup if up is None or float(np.dot(up, setup)) > _ALONG else up
 
     def _named(self) -> str:

@@ -134,6 +134,12 @@ def unit(vector: Any, what: str) -> Floats:
 Direction = tuple[float, float, float]
 
 
+def direction_of(vector: Floats) -> Direction:
+    """A direction (3,) as numbers, without negative zeros."""
+    x, y, z = (vector + 0.0).tolist()
+    return x, y, z
+
+
 class HostAxis(Protocol):
     """An axis as build123d has it, whose direction has X, Y and Z."""
 

@@ -24,6 +24,7 @@ from plan_cutters.domain.clamping import FORMS, Clamping, Vise
 from plan_cutters.domain.figures import mm
 from plan_cutters.domain.fixture import CAD, MESH, STOCK, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
+from plan_cutters.domain.posture import Direction
 from plan_cutters.domain.stock import StockBody
 from plan_cutters.errors import FixtureError, UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
@@ -95,9 +96,9 @@ def joined(
     fixtures: Sequence[Fixture],
     chord: float,
     cache: FixtureCache,
-    setup: Sequence[float] = (0.0, 0.0, 1.0),
+    setup: Direction = (0.0, 0.0, 1.0),
     own: Sequence[Fixture] = (),
-    own_setup: Sequence[float] = (0.0, 0.0, 1.0),
+    own_setup: Direction = (0.0, 0.0, 1.0),
     hold: Callable[[Fixture, Sequence[float]], Hold] | None = None,
     sign: Floats | None = None,
 ) -> Surroundings:

@@ -15,7 +15,7 @@ from plan_cutters.domain.checks import flag, number, spelled_out
 from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import STOCK, Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import plane_of, unit
+from plan_cutters.domain.posture import Direction, plane_of, unit
 from plan_cutters.domain.stock import Stock
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
@@ -203,8 +203,8 @@ class Scene(Record):
             read(each, self._memory.sources, timeout=timeout)
 
     def _joined(
-        self, alone: Surroundings, fixtures: Sequence[Fixture], chord: float, setup: Sequence[float] | None = None,
-        own: Sequence[Fixture] = (), own_setup: Sequence[float] = (0.0, 0.0, 1.0),
+        self, alone: Surroundings, fixtures: Sequence[Fixture], chord: float, setup: Direction | None = None,
+        own: Sequence[Fixture] = (), own_setup: Direction = (0.0, 0.0, 1.0),
     ) -> Surroundings:  # fmt: skip
         """Join surroundings without fixtures with some, as `joined` does, for this setup axis or another one."""
         sources, axis, sign = self._memory.sources, setup or self.setup, self.orientation.sign

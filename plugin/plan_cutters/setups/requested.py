@@ -12,7 +12,7 @@ from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.placement import Placement, frame_of
-from plan_cutters.domain.posture import Direction, along, plane_of, unit
+from plan_cutters.domain.posture import Direction, along, direction_of, plane_of, unit
 from plan_cutters.domain.stock import Stock
 from plan_cutters.errors import OptionError
 
@@ -86,8 +86,11 @@ def setups_requested(
         placed = _holding((axis, placed), gripping)
         stands = [(each.z, each) for each in (_holding(stand, gripping) for stand in stands)]
     if chuck_axis is not None and not propose:
-        common, placed = _on_rotary(common, chuck_axis, axis, placed)
-        stands = [(z, _on_rotary((), chuck_axis, z, place)[1]) for z, place in stands]
+        common = _on_rotary(common, (axis, placed), chuck_axis)
+        (_, placed), *stands = [
+            (z, place and replace(place, fixtures=_on_rotary(place.fixtures, (z, place), chuck_axis)))
+            for z, place in ((axis, placed), *stands)
+        ]
     setups = [_own(stand, shared) for stand in stands]
     known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
@@ -103,17 +106,12 @@ def _holding(stand: _Stand, gripping: Sequence[Fixture]) -> Placement:
     return replace(place, fixtures=joined_fixtures(place.fixtures, _to_place(gripping, place)))
 
 
-def _on_rotary(
-    fixtures: Sequence[Fixture], direction: Direction, axis: Direction, place: Placement | None
-) -> tuple[tuple[Fixture, ...], Placement | None]:
-    """Fixtures, and a setup, with chucks that are to be placed along a rotary axis that lies across the spindle."""
+def _on_rotary(fixtures: Sequence[Fixture], stand: _Stand, direction: Direction) -> tuple[Fixture, ...]:
+    """Fixtures of a setup, with chucks that are to be placed along a rotary axis that lies across the spindle."""
+    z, place = stand
     x = None if place is None or place.x is None else np.array(place.x)
-    up: Direction = tuple((np.array(direction) @ frame_of(np.array(axis), x) + 0.0).tolist())
-
-    def turned(every: Sequence[Fixture]) -> tuple[Fixture, ...]:
-        return tuple(replace(each, up=up) if each.to_place and each.kind == CHUCK else each for each in every)
-
-    return turned(fixtures), None if place is None else replace(place, fixtures=turned(place.fixtures))
+    up = direction_of(np.array(direction) @ frame_of(np.array(z), x))
+    return tuple(replace(each, up=up) if each.to_place and each.kind == CHUCK else each for each in fixtures)
 
 
 def _to_place(gripping: Sequence[Fixture], place: Placement | None) -> Sequence[Fixture]:

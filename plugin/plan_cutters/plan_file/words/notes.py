@@ -337,7 +337,7 @@ def _across(plan: Plan) -> Iterator[str]:
     along = abs(sum(one * other for one, other in zip(rotary[0].direction, process.setups[0].up, strict=True)))
     turned = {step.setup for step in process.steps if step.mode == "simultaneous" or any((step.angles_deg or {}).values())}
     chucks = [(each, Fixture.parse(each.clamping)) for each in process.setups if each.held == "chuck" and each.clamping]
-    upright = [each for each, chuck in chucks if chuck.stands_along(each.up) is each.up]
+    upright = [each for each, chuck in chucks if chuck.stands_along(each.up) == each.up]
     numbers = [str(each.number) for each in upright if each.number - 1 in turned]
     if numbers and along < _ALONG:
         yield (

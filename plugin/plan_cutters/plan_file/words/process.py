@@ -207,7 +207,7 @@ def stand_text(plan: Plan, setup: schema.ProcessSetup) -> str:
         what = f" on {listed(setup.grips, _FACES)}" if setup.grips else ""
         fixture = Fixture.parse(setup.clamping or setup.held or "")
         clamping, along = fixture.clamping, fixture.stands_along(setup.up)
-        if along is not setup.up:
+        if along != setup.up:
             what = f" along {_direction(along)}{what}"
         bored = isinstance(clamping, Vise) and clamping.bored
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
