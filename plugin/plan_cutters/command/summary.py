@@ -185,7 +185,7 @@ def _not_split(plan: "Plan") -> Iterator[str]:
     for where, split in [("", plan.split), *((f" in the {each.name} plan", each.split) for each in plans)]:
         for face, entry in split.items():
             if entry.rung != "contour":
-                how = "it is one piece in the STEP, and the GLB shows it by its samples"
+                how = "it is one piece in the models"
                 yield f"{face} could not be split in its place{where} ({entry.why}): {how}."
 
 
