@@ -6,6 +6,7 @@
 import build123d as bd
 
 from plan_cutters import Cutter, plan
+from plan_cutters.hosts import holder
 from plan_cutters.hosts.build123d import compound
 
 # The part: a block with a deep, drafted cavity whose floor is rounded.
@@ -17,8 +18,12 @@ half.label = "mould half"
 # The targets: all faces of the cavity, that is, those which lie within the block.
 targets = half.faces().filter_by(lambda face: face.bounding_box().size.X < 55 and face.bounding_box().size.Y < 55)
 
-# The holder from its nose up: a cone, then a cylinder.
-chuck = "R12:16L8+R16L52"
+# The holder as a sketch in a plane through its axis; its nose is at the bottom.
+with bd.BuildSketch(bd.Plane.XZ) as section:
+    with bd.BuildLine():
+        bd.Polyline((0, 0), (12, 0), (16, 8), (16, 60), (0, 60), (0, 0))
+    bd.make_face()
+chuck = holder(section.sketch, name="shrink chuck")
 
 # What holds the part: two clamps on the block's top.
 clamp = bd.Box(12, 20, 12, align=(bd.Align.CENTER, bd.Align.CENTER, bd.Align.MIN))

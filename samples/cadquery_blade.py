@@ -6,6 +6,7 @@
 import cadquery as cq
 
 from plan_cutters import Cutter
+from plan_cutters.hosts import holder
 from plan_cutters.hosts.cadquery import assembly, register
 
 # The part: a twisted blade that stands on a platform, with a fillet of 4 mm between them.
@@ -14,8 +15,9 @@ foot = cq.Workplane().workplane(offset=8).ellipse(20, 8)
 blade = foot.workplane(offset=30).transformed(rotate=(0, 0, 25)).ellipse(17, 6).loft()
 part = platform.union(blade).edges(cq.selectors.BoxSelector((-21, -9, 7.9), (21, 9, 8.1))).fillet(4)
 
-# The holder from its nose up.
-chuck = "R10:14L6+R14L24+R22L30"
+# The holder as it is drawn: half of its section, turned about the z axis; its nose is at the bottom.
+section = cq.Workplane("XZ").polyline([(0, 0), (10, 0), (14, 6), (14, 30), (22, 30), (22, 60), (0, 60)]).close()
+chuck = holder(section, name="collet chuck")
 
 # What holds the part: a jaw at each side of the platform.
 jaw = cq.Workplane().box(70, 20, 20, centered=(True, False, False))

@@ -151,8 +151,14 @@ def revolved(start: tuple[float, float], sides: Iterable[Side]) -> Any:
                 edge = BRepBuilderAPI_MakeEdge(arc).Edge()
             wire.Add(edge)
             at = side.end
-        axis = gp_Ax1(gp_Pnt(), gp_Dir(0.0, 0.0, 1.0))
-        return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), axis).Shape()
+        return turned(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def turned(shape: Any, origin: Sequence[float], direction: Sequence[float]) -> Any:
+    """Revolve a face, a wire or an edge by a full turn about an axis."""
+    with translated("turning a profile"):
+        made = BRepPrimAPI_MakeRevol(shape, gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction)))
+        return made.Shape()
 
 
 def prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Any:

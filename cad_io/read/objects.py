@@ -9,15 +9,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_Plane
+from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 from OCP.Quantity import Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cad_io.errors import ReadError
-from cad_io.kernel import explore, shape_map
-from cad_io.kernel.shapes import Node, as_one, compound, unwrapped
+from cad_io.errors import CadIoError, ReadError
+from cad_io.kernel import explore, faces, shape_map, translated
+from cad_io.kernel.shapes import Node, as_one, compound, turned, unwrapped
 from cad_io.kernel.shapes import children as children_of
 from cad_io.part import Part
 from cad_io.part.content import PartContent
@@ -360,3 +363,41 @@ class _Walk(FaceMarks):
     def mark(self, marks: Sequence[Mark], location: TopLoc_Location) -> None:
         for mark in marks:
             self.paint(self.numbers(mark.shape, location), mark.name, mark.colour, (mark.layer,) if mark.layer else ())
+
+
+#: Angle, rad, and distance, mm, up to which a profile's plane holds the axis.
+_FLAT, _ON = 1e-6, 1e-4
+
+
+def turned_part(source: Any, origin: Sequence[float], direction: Sequence[float]) -> Part:
+    """The part that an object stands for: solids and shells as they are; planar faces, wires and edges turned about an axis, mm.
+
+    The object is a kernel shape, a CadQuery or build123d object, or a list of such. Raises ReadError where it holds no shape, or
+    a profile that lies in no plane through the axis, or is not joined.
+    """
+    if isinstance(source, Part):
+        return source
+    if any(getattr(getattr(each, "ctx", None), "pendingEdges", ()) for each in each_of(source)):
+        raise ReadError("the lines of the Workplane are not joined to a profile: close() it, or wire()")
+    with translated("reading a body of revolution", error=ReadError):
+        axis = gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction))
+        profiles = [_turned(shape, axis, origin, direction) for each in each_of(source) for shape in shapes_of(each)]
+    if not profiles:
+        raise ReadError(f"the {type(source).__name__} holds no shape")
+    return Part(as_one(profiles))
+
+
+def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequence[float]) -> Any:
+    mine = faces(shape)
+    flat = [adaptor.Plane() for face in mine if (adaptor := BRepAdaptor_Surface(face)).GetType() == GeomAbs_Plane]
+    coplanar = (flat[0].Axis().IsParallel(plane.Axis(), _FLAT) and flat[0].Distance(plane.Location()) <= _ON for plane in flat)
+    if mine and not (len(flat) == len(mine) and all(coplanar)):
+        return shape
+    for plane in flat[:1]:
+        across = abs(plane.Axis().Direction().Dot(axis.Direction()))
+        if across > _FLAT or plane.Distance(axis.Location()) > _ON:
+            raise ReadError("the profile lies in no plane through the axis: draw it there, or give the axis that it turns about")
+    try:
+        return turned(shape, origin, direction)
+    except CadIoError:
+        raise ReadError("the profile cannot be turned about the axis: draw its one half, on one side of the axis") from None

@@ -7,6 +7,7 @@ import pytest
 
 import cad_io.tessellate.triangles as triangles
 from cad_io import read_part
+from cad_io.tessellate.meridian import _grown
 from cad_io.tessellate.proxies import _edges
 from cad_io.tessellate.start import _CELLS, _axes
 from cad_io.tessellate.triangles import _gathered
@@ -65,3 +66,11 @@ def test_a_grid_of_too_many_cells_is_not_laid():
     u, v = _axes((few, few), [])
     assert (u.tolist(), v.tolist()) == (few.tolist(), few.tolist())
     assert _axes((many, many), []) is None
+
+
+def test_lines_that_are_moved_enclose_all_that_is_near_them():
+    """Out by one distance and along the axis by another: both ends of a line go the same way, away from where it is wider."""
+    line = np.array([[1.0, 0.0, 3.0, 4.0], [3.0, 4.0, 1.0, 9.0], [2.0, 0.0, 2.0, 5.0]])
+    made = _grown(line, 0.25, 0.5)
+    assert made[:3] == pytest.approx(np.array([[1.25, -0.5, 3.25, 3.5], [3.25, 4.5, 1.25, 9.5], [2.25, 0.5, 2.25, 5.5]]))
+    assert made[3:] == pytest.approx(np.array([[3.25, 3.5, 3.25, 4.5], [3.25, 3.5, 3.25, 4.5], [2.25, -0.5, 2.25, 0.5]]))

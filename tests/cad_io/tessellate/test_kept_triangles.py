@@ -14,6 +14,7 @@ from cad_io.arrays import LostFace
 from cad_io.part.part import NO_AREA, Part
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.curves import farthest, packed, point, workspace
+from cad_io.tessellate.meridian import meridian
 from cad_io.tessellate.planar import delaunay
 from cad_io.tessellate.proxies import stand_ins
 from cad_io.tessellate.start import expected
@@ -76,6 +77,20 @@ def test_triangles_are_those_that_are_kept(keeps, name):
     few = [tessellate(part, chords[-1], budget=budget) for budget in (40, 310, 2100)]
     guess = [expected(part, numbers, chord) for chord in chords]
     keeps(f"triangles_{name.replace(' ', '_')}", {"made": made, "few": few, "expected": guess})
+
+
+AXES = (((0.3, -0.7, 4.1), (0, 0, -2.3)), ((2.1, 1.3, -3.7), (1, 2, 2)), ((0, 0, 0.9), (0, 0, 1.7)))
+BODIES = {
+    **{name: SHAPES[name] for name in ("ball", "ring", "cone", "rod", "cut ring", "cone as B-spline")},
+    "two": lambda: compound(rod(5.3, 17.1), ball(7.1, (0, 0, 29.3))),
+    "on a box": lambda: compound(rod(), box(4, 4, 4, (-2, -2, -6))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_profiles_about_an_axis_are_those_that_are_kept(keeps, name):
+    part = read_part(BODIES[name]())
+    keeps(f"profile_{name.replace(' ', '_')}", [meridian(part, *axis, chord) for axis in AXES for chord in (0.31, 0.023)])
 
 
 def test_proxies_are_those_that_are_kept(keeps):
