@@ -10,7 +10,7 @@ import click
 from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import Folder
 from plan_cutters_agents.access import Limits
 from plan_cutters_base.workers.child import INTERRUPTED
 
@@ -41,7 +41,7 @@ class McpRequest(Limits):
     ),
 )
 @_access(
-    "--root", "roots", type=Words("DIR"), multiple=True,
+    "--root", "roots", type=Folder("DIR"), multiple=True,
     help="Folder in which calls may read and write; all else is refused. Repeatable.  [default: those that the client offers]",
 )  # fmt: skip
 @_access("--client-roots", is_flag=True, help="With --root: folders that the client offers are roots as well.")

@@ -14,7 +14,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import CODES, FEASIBLE
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanningRequest, Reported, takes
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import File, Words
 from plan_cutters.files.pictures import with_pictures
 from plan_cutters.option_table import OPTIONS
 from plan_cutters.report.folder import DEFAULT_FORMATS
@@ -58,7 +58,7 @@ class BatchRequest(PlanningRequest, Reported):
     ),
     codes=(*((code, what) for code, what in CODES if code != "130"), ("130", "interrupted; parts that are done are stored")),
 )
-@click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=Words("SRC"))
+@click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
 @options(
     *(each.called for each in OPTIONS.values() if each.word not in ("process", "jobs")),
     "assume_stickout",
@@ -75,7 +75,7 @@ class BatchRequest(PlanningRequest, Reported):
     },
 )
 @_many("--cluster", brief="Scheduler of a running Dask cluster, or its scheduler file.", metavar="tcp://HOST:PORT|FILE",
-       type=Words("ADDRESS"),
+       type=Words("ADDRESS", files=True),
        help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
 @_many("--workers", brief="Workers of this machine, each for one part at a time.", type=click.IntRange(min=1), metavar="N",
        help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip

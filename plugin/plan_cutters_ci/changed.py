@@ -2,6 +2,7 @@
 
 import json
 import os
+import posixpath
 import re
 import shutil
 import subprocess
@@ -13,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from cad_io.read import step_text
 from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanRequest, Reported, takes
 from plan_cutters.command.terminal import error, hand_out, say
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import require_temporary
 from plan_cutters.files.pictures import with_pictures
@@ -97,7 +99,29 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         pair = Changed(None if status[0] in "AC" else old, None if status[0] == "D" else new)
         if Path(pair.name).suffix.lower() in PARTS:
             paths.append(pair)
+    files = {path for part in paths for path in (part.old, part.new) if path is not None}
+    paths += [Changed(path, path) for path in _referring(until, files) - files]
     return began, until, sorted(paths, key=lambda part: part.name)
+
+
+def _referring(at: str, files: Collection[str]) -> set[str]:
+    """STEP files of a commit that refer to some files, or to others that do: assemblies."""
+    if not files:
+        return set()
+    words = [part for word in step_text.WORDS for part in ("-e", word.decode())]
+    output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
+    paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
+    refers = {
+        path: {
+            posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
+            for name in step_text.names(git("cat-file", "--filters", f"{at}:{path}"))
+        }
+        for path in paths
+    }
+    reached = set(files)
+    while new := {path for path, names in refers.items() if path not in reached and names & reached}:
+        reached |= new
+    return {path for path in reached if path in refers}
 
 
 def content(at: str, path: str) -> bytes:
@@ -347,9 +371,9 @@ class ChangedRequest(Reported):
     help="lost: a face or cutter is lost, or a part cannot be planned; unreachable: or no cutter reaches some face whole; "
     "not-comparable: or plans are not comparable; none: never.  [default: lost]",
 )
-@_output("-o", "--out", type=Words("DIR"), default="plan-cutters-changed",
+@_output("-o", "--out", type=Folder("DIR"), default="plan-cutters-changed",
          help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]")  # fmt: skip
-@_output("--cache", type=Words("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
 @_output(
     "--annotations", type=click.Choice(KINDS),
     help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",

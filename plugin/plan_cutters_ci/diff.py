@@ -11,7 +11,7 @@ from plan_cutters.command.codes import ENDED, USAGE
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import File, Folder, Words
 from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
 
@@ -63,19 +63,19 @@ class DiffRequest:
         ENDED,
     ),
 )
-@click.argument("old", type=Words("OLD"))
-@click.argument("new", type=Words("NEW"))
+@click.argument("old", type=File("OLD"))
+@click.argument("new", type=File("NEW"))
 @_output("--json", "as_json", is_flag=True, help="All differences, as JSON on standard output.")
 @_output("--markdown", "as_markdown", is_flag=True, help="The same tables as Markdown, for the summary of a job.")
 @_output(
-    "-o", "--out", type=Words("DIR"),
+    "-o", "--out", type=Folder("DIR"),
     help="Both plans side by side, in DIR/review.html; of two folders of many, DIR/NAME/review.html for each pair that differs.",
 )  # fmt: skip
 @_rules(
     "--slack", type=click.FloatRange(0.0, 100.0), default=0.1, metavar="PERCENT",
     help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  [default: 0.1]",
 )  # fmt: skip
-@_rules("--despite", type=Words("LIST", listed=True), default="",
+@_rules("--despite", type=Words("LIST", requested_words, listed=True), default="",
         help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, "
         "fixtures.")  # fmt: skip
 @options("debug", junit={"help": "Also write JUnit XML: a test case for each face and cutter that differs."})

@@ -120,7 +120,7 @@ def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
     assert leftovers(tmp_path) == ["v_groove-plan"]
 
 
-# ---- help
+# ---- help and completion
 
 
 def test_help_is_in_groups_with_examples_and_fits(tmp_path):
@@ -136,6 +136,33 @@ def test_help_is_in_groups_with_examples_and_fits(tmp_path):
         name = f"plan-cutters {words.pop(0)}" if words[0] in entry.commands() else "plan-cutters"
         params = entry.module_of(name).command.make_context(name, words).params
         assert params.get("parts") or params["part"]
+
+
+def completed(words, cwd):
+    """What bash is offered after these words."""
+    asked = {"_PLAN_CUTTERS_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(["plan-cutters", *words]),
+             "COMP_CWORD": str(len(words))}  # fmt: skip
+    done = run(cwd=cwd, environment=ENV | asked, bare=True)
+    assert done.returncode == 0
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (["--machine", "trunnion-a"], ["plain,trunnion-ac"]),
+        (["--machine", "shop.f"], ["file,"]),
+        (["--formats", "json,g"], ["plain,json,glb"]),
+        (["--answers", "m"], ["plain,mend"]),
+        (["--faces", "s"], ["plain,sculptured"]),
+        (["--unit", "i"], ["plain,in"]),
+        (["--out", ""], ["dir,"]),
+        (["bla"], ["file,"]),
+        (["--list-c"], ["plain,--list-cutters"]),
+    ],
+)
+def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
+    assert completed(words, tmp_path) == offered
 
 
 # ---- what is said

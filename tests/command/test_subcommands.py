@@ -105,6 +105,30 @@ def test_one_help_names_all_subcommands(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (["m"], ["plain,map", "plain,machines", "plain,mcp"]),
+        ([""], [f"plain,{name}" for name in entry.commands()]),
+        (["blade"], ["file,"]),
+        (["blade.step", "m"], ["file,"]),
+        (["--map"], ["plain,--map-budget"]),
+        (["--cutter", "R6L80", "--map"], ["plain,--map-budget"]),
+        (["plan", "--map"], ["plain,--map-budget"]),
+        (["map", "--wi"], ["plain,--within"]),
+        (["map", "--machine", "trunnion-a"], ["plain,trunnion-ac"]),
+        (["tools", "--list"], ["plain,--list-holders"]),
+        (["machines", "trunnion-a"], ["plain,trunnion-ac"]),
+    ],
+)
+def test_a_shell_is_offered_subcommands_and_what_they_take(tmp_path, words, offered):
+    asked = {"_PLAN_CUTTERS_COMPLETE": "zsh_complete", "COMP_WORDS": " ".join(["plan-cutters", *words[:-1], f'"{words[-1]}"']),
+             "COMP_CWORD": str(len(words))}  # fmt: skip
+    done = run(cwd=tmp_path, environment=ENV | asked, bare=True)
+    lines = done.stdout.splitlines()
+    assert [f"{kind},{value.strip()}" for kind, value in zip(lines[::3], lines[1::3], strict=True)] == offered
+
+
+@pytest.mark.parametrize(
     ("words", "begun"),
     [
         ([GROOVE], [GROOVE]),

@@ -22,7 +22,7 @@ from plan_cutters.command.entry import module_of, sentences
 from plan_cutters.command.option_groups import EXAMPLES, options
 from plan_cutters.command.progress import PartCases
 from plan_cutters.command.request import PlanRequest, takes
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import File
 from plan_cutters.errors import OptionError
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.workers.child import (
@@ -99,7 +99,7 @@ _SELF = "plan-cutters"
 
 
 @click.command(cls=option_groups.Command, subcommands=sentences, examples=EXAMPLES, codes=CODES)
-@click.argument("parts", nargs=-1, required=True, metavar="PART...", type=Words("PART"))
+@click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
 @takes(PlanRequest)
 def command(request: PlanRequest) -> int:

@@ -150,6 +150,8 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
         for number in () if is_child() else (signal.SIGINT, signal.SIGTERM):
             if signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, at_once)
+        if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
+            import_module("plan_cutters.command.validation").complete(name)
         if subcommand(name) == "plan":
             from plan_cutters_base.workers.child import begin_early
             from plan_cutters_base.workers.prompt import at_prompt, copy_and_wait

@@ -12,7 +12,7 @@ from plan_cutters.command.codes import ENDED, USAGE, faults
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.validation import Words, three
+from plan_cutters.command.validation import File, Words, machine_names, three
 from plan_cutters.domain.figures import exact_angle
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters_base.terminal_text import clean
@@ -38,11 +38,11 @@ _questions, _output = heading("Questions"), heading("Output")
     ),
     codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong"), ENDED),
 )
-@click.argument("machines", nargs=-1, metavar="[NAME|FILE]...", type=Words("NAME|FILE"))
+@click.argument("machines", nargs=-1, metavar="[NAME|FILE]...", type=Words("NAME|FILE", machine_names, files=True))
 @_questions("--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions.")
 @_questions("--axis", type=Words("A=DEG,C=DEG", listed=True), help="The tool axis at these angles; those not named are 0.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
-@_output("--to-toml", type=Words("FILE"), help="Write the machine in our own format.")
+@_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")
 @takes(MachinesRequest)
 def command(request: MachinesRequest) -> int:

@@ -16,7 +16,7 @@ from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
-from plan_cutters.command.validation import Setup, Words, three
+from plan_cutters.command.validation import File, Setup, Words, cutter_ids, three
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.option_table import LEAST_TOLERANCE, OF_A_SCENE, OPTIONS
 from plan_cutters_base.terminal_text import clean
@@ -55,7 +55,7 @@ _point = heading("Point")
         ENDED,
     ),
 )
-@click.argument("part", metavar="PART", type=Words("PART"))
+@click.argument("part", metavar="PART", type=File("PART"))
 @_point("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
 @_point(
     "--within",
@@ -66,14 +66,14 @@ _point = heading("Point")
 )
 @options(
     *(each.called for each in OPTIONS.values() if each.of_a_point), "debug",
-    cutter={"multiple": False, "default": None, "type": Words("SPEC|NAME"),
+    cutter={"multiple": False, "default": None, "type": Words("SPEC|NAME", cutter_ids),
             "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there, unless it holds one alone."},
     cutters={"multiple": False, "default": None, "help": "Tool library that the cutter is taken from."},
-    setup={"multiple": False, "default": "0,0,1", "type": Words("AXIS|FILE"),
+    setup={"multiple": False, "default": "0,0,1", "type": File("AXIS|FILE"),
            "help": "Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file.  [default: 0,0,1]"},
     rotation_step={"default": 5.0, "help": "Step between rotations.  [default: 5]"},
     tolerance={"help": "Gouge tolerance; 0: the nominal answer, which proves nothing.  [default: 0.01]"},
-    out={"multiple": True, "type": Words("FILE"), "help": ".png or .svg. Repeatable.  [default: <part>-map.png and .svg]"},
+    out={"multiple": True, "type": File("FILE"), "help": ".png or .svg. Repeatable.  [default: <part>-map.png and .svg]"},
     json={"help": "The map on standard output, and no table."},
     quiet={"help": "No table."},
 )  # fmt: skip

@@ -8,7 +8,8 @@ from typing import Any
 import click
 
 from plan_cutters import __version__
-from plan_cutters.command.validation import Faces, File, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
+from plan_cutters.command import validation
+from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
 from plan_cutters.option_table import GROUPS, OPTIONS, Option
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
@@ -165,23 +166,23 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -
 
 #: Of options whose values are no plain numbers, texts and choices.
 _SPECIAL: dict[str, dict[str, Any]] = {
-    "cutters": {"type": Words("SPEC")},
+    "cutters": {"type": Words("SPEC", validation.cutter_ids)},
     "libraries": {"type": File("FILE")},
-    "holder": {"type": File("SPEC|FILE")},
+    "holder": {"type": Words("SPEC|FILE", validation.holder_words, files=True)},
     "list_cutters": {"is_eager": True, "expose_value": False, "callback": _list_cutters},
-    "machine": {"type": File("NAME|FILE")},
+    "machine": {"type": Words("NAME|FILE", validation.machine_names, files=True)},
     "setup": {"type": Setup(), "callback": named_setups},
     "fixtures": {"type": File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), "callback": fixtures_of_setups},
     "faces": {"type": Faces()},
     "ignore": {"type": Faces()},
     "tilt": {"type": Range()},
     "rotation": {"type": Range()},
-    "out": {"type": Words("DIR")},
-    "formats": {"type": Words("LIST", listed=True)},
-    "json_out": {"type": Words("-")},
+    "out": {"type": Folder("DIR")},
+    "formats": {"type": Words("LIST", lambda: FORMATS, listed=True)},
+    "json_out": {"type": Words("-", lambda: ("-",))},
     "junit": {"type": File("FILE")},
     "sarif": {"type": File("FILE")},
-    "answers": {"type": Words("LIST", listed=True)},
+    "answers": {"type": Words("LIST", validation.answers, listed=True)},
     "operations": {"type": Plans(OPTIONS["operations"].choices)},
     "process": {"type": File("FILE")},
     "check_operations": {"type": File("FILE")},

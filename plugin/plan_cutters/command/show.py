@@ -12,7 +12,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import ENDED, UNREADABLE, ended, interrupt, invoked
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import takes
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import File, Folder
 from plan_cutters.errors import PlanError
 from plan_cutters_base.workers.child import began, can_supervise, is_child, report, report_work
 from plan_cutters_base.workers.supervise import supervise
@@ -51,8 +51,8 @@ class ShowRequest:
         ENDED,
     ),
 )
-@click.argument("folder", metavar="DIR", type=Words("DIR"))
-@_input("--part", type=Words("FILE"), help="File of the part.  [default: by its name, here, in DIR or above it]")
+@click.argument("folder", metavar="DIR", type=Folder("DIR"))
+@_input("--part", type=File("FILE"), help="File of the part.  [default: by its name, here, in DIR or above it]")
 @options("formats", "verbose", "quiet", "debug")
 @takes(ShowRequest)
 def command(request: ShowRequest) -> int:

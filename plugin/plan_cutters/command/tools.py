@@ -13,7 +13,7 @@ from plan_cutters.command.codes import ENDED, USAGE, faults
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
-from plan_cutters.command.validation import Words
+from plan_cutters.command.validation import File, Folder
 from plan_cutters.errors import PlanError
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
@@ -47,7 +47,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
         ENDED,
     ),
 )
-@click.argument("files", nargs=-1, metavar="[FILE]...", type=Words("FILE"))
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
 @options(
     "holder",
     "assume_stickout",
@@ -56,8 +56,8 @@ _cutters, _output = heading("Cutters"), heading("Output")
 )
 @_cutters("--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
-@_output("--to-toml", type=Words("FILE"), help="Write the tools that can be judged in our own format.")
-@_output("--draw", type=Words("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
+@_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
+@_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
 @options("debug")
 @takes(ToolsRequest)
 def command(request: ToolsRequest) -> int:

@@ -1,17 +1,19 @@
-"""Read and check the words of the command line before any large module is loaded."""
+"""Read and check the words of the command line before any large module is loaded, and tell the shell which it may offer."""
 
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
+from click.shell_completion import CompletionItem, shell_complete
 
 from cad_io.errors import CadIoError, ReadError
-from plan_cutters.command.entry import commands, instead
+from plan_cutters.command.codes import ended
+from plan_cutters.command.entry import OURS, commands, instead, module_of
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.option_table import OF_OPERATIONS, OPTIONS
@@ -23,13 +25,20 @@ if TYPE_CHECKING:
 
 #: Where the context of a command says that setups are named behind `auto`.
 _NAMED = "plan_cutters.named_setups"
+#: What the shell itself completes, which knows about `~` and blanks.
+FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
 
 class Words(click.ParamType):
-    """A text that help calls by a name, or a list of them, parted by commas; of `files` it may be a path."""
+    """A text that help calls by a name, or a list of them, parted by commas.
 
-    def __init__(self, name: str, *, files: bool = False, listed: bool = False) -> None:
-        self.name, self.files, self.listed = name, files, listed
+    A shell offers the words, which are asked for only then, and `files` where none of them fits.
+    """
+
+    def __init__(
+        self, name: str, offered: Callable[[], Iterable[str]] = tuple, *, files: bool = False, listed: bool = False
+    ) -> None:
+        self.name, self.offered, self.files, self.listed = name, offered, files, listed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         for each in str(value).split(",") if self.listed else ():
@@ -41,19 +50,34 @@ class Words(click.ParamType):
         """One value for all of an option that is repeated; None where they do not add up."""
         return ",".join(filter(None, values)) if self.listed else None
 
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        before, comma, last = incomplete.rpartition(",") if self.listed else ("", "", incomplete)
+        words = before.split(",")
+        items = [
+            CompletionItem(f"{before}{comma}{word}") for word in self.offered() if word.startswith(last) and word not in words
+        ]
+        return items or ([FILE] if self.files else [])
+
 
 class Faces(Words):
     """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone."""
 
     def __init__(self) -> None:
-        super().__init__("SELECT", listed=True)
+        super().__init__("SELECT", face_words, listed=True)
 
     def added(self, values: Sequence[str]) -> str | None:
         return None if any(":" in value or "!" in value for value in values) else super().added(values)
 
 
-#: A path.
+#: A path, completed as a file.
 File = partial(Words, files=True)
+
+
+class Folder(Words):
+    """A path, completed as a folder."""
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        return [_FOLDER]
 
 
 class Plans(click.Choice[str]):
@@ -136,6 +160,10 @@ class Setup(click.ParamType):
             self.fail(f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), a setup file, or auto", param, ctx)
         return x, y, z
 
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        items = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"] + [CompletionItem("auto")]
+        return [each for each in items if each.value.startswith(incomplete)] or [FILE]
+
 
 def three(text: str, why: str) -> tuple[float, float, float]:
     """The numbers of `x,y,z`; an OptionError that says why it is none."""
@@ -144,6 +172,66 @@ def three(text: str, why: str) -> tuple[float, float, float]:
     except ValueError:
         raise OptionError(why) from None
     return x, y, z
+
+
+def machine_names() -> Sequence[str]:
+    from plan_cutters.domain.machine import builtin_machines
+
+    return ["unlimited", "tilt:", *builtin_machines()]
+
+
+def cutter_ids() -> Sequence[str]:
+    from plan_cutters.domain.standard_tools import builtin
+
+    return [cutter.id for cutter in builtin()]
+
+
+def holder_words() -> Sequence[str]:
+    from plan_cutters.domain.holder import words
+
+    return [*words(), "none"]
+
+
+def answers() -> Sequence[str]:
+    from plan_cutters.domain.answer_kinds import ANSWERS
+
+    return [*ANSWERS, "all"]
+
+
+def face_words() -> Sequence[str]:
+    return ("sculptured", "blends", "all", "component:", "name:", "color:#")
+
+
+class Subcommands(click.Group):
+    """All subcommands as a shell sees them: words after none of them are those of the first."""
+
+    def __init__(self) -> None:
+        # An option may come first, and is one of the first subcommand.
+        super().__init__(context_settings={"ignore_unknown_options": True}, add_help_option=False)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(commands())
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+        command: click.Command = module_of(f"plan-cutters {cmd_name}").command
+        return command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
+        return super().resolve_command(ctx, args if args[0] in commands() else [next(iter(OURS)), *args])
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        if incomplete.startswith("-"):
+            first = module_of("plan-cutters").command
+            items: list[CompletionItem] = first.shell_complete(click.Context(first, resilient_parsing=True), incomplete)
+            return items
+        return [CompletionItem(name) for name in commands() if name.startswith(incomplete)] or [FILE]
+
+
+def complete(name: str) -> NoReturn:
+    """Answer the shell that asks about the program of this name, as the environment says."""
+    variable = f"_{name.replace('-', '_').upper()}_COMPLETE"
+    main_command = Subcommands() if name == "plan-cutters" else module_of(name).command
+    ended(name, [], lambda: shell_complete(main_command, {}, name, variable, os.environ[variable]))
 
 
 #: Bytes of memory below which nothing can be planned.
