@@ -21,8 +21,8 @@ from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
 
 _INCH = 25.4
-#: Tools that cut with a cone; the way of a tool at its feed in depths of the hole.
-_CONES, _WAY = ("centre drill", "countersink"), 1.3
+#: Tools that cut with a cone.
+_CONES = ("centre drill", "countersink")
 #: How much wider or narrower than its hole a tool may be, mm, and as a share; by how much the angle of its cone may be off, deg.
 _WIDE, _SHARE, _POINT, _SINK = 0.05, 0.01, 3.0, 1.0
 #: What a reamer takes off: at least, mm, and at most besides as a share of its diameter.
@@ -40,20 +40,14 @@ def entries(question: Question) -> list[Any]:
     """Reckon `process.drilling`, as far as it follows from the libraries, the holes and the command."""
     document = question.document
     written: Sequence[Mapping[str, Any]] = document["process"].get("drilling", [])
-    timed = any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
-    seen, steps = set[tuple[Any, ...]](), list[Any]()
+    steps = list[Any]()
     for step in written:
         drill = question.drills.get(step["tool"])
         if drill is None:
             steps.append("a step with a tool of the libraries")
             continue
-        number, deep, feed = len(step["holes"]), float(step["depth_mm"]), drill.feed
-        feed = document["effective"]["feed_mm_min"] if feed is None else feed
-        turn = step["setup"], step["tool"], tuple(np.round(step["axis"], 5).tolist())
-        first, rates = turn not in seen, question.machine.rates
-        seen.add(turn)
-        constant = document["operations"]["assumed"]["index_s"]
-        index = 0.0 if not first or not timed else Loose(0.0, math.inf) if rates or not question.machine.names else constant
+        deep = float(step["depth_mm"])
+        feed = document["effective"]["feed_mm_min"] if drill.feed is None else drill.feed
         first_way = np.array(step["holes"][0]["mouth_mm"], float) - np.array(step["holes"][0]["tip_mm"], float)
         tip = (np.array([each["mouth_mm"] for each in step["holes"]]) - (deep + drill.beyond) * np.array(step["axis"])).tolist()
         steps.append({
@@ -65,10 +59,8 @@ def entries(question: Question) -> list[Any]:
             ],
             **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
             "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
-            "seconds": None if feed is None else number * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
-            **({} if feed is None else {"feed_mm_min": feed}), "index_seconds": index,
-            "link_seconds": number * document["effective"]["link_time_s"],
+            **({} if feed is None else {"feed_mm_min": feed}),
         })  # fmt: skip
     return steps
 
@@ -116,31 +108,6 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
         # What the machine has no word for is not written.
         **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
     }  # fmt: skip
-
-
-def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:
-    """The seconds of a process whose `steps` of mills have those of the entry, with those that drill."""
-    drilling, document = entries(question), question.document
-    known = [step for step in drilling if isinstance(step, dict)]
-    if not known or process["seconds"] is None:
-        return {"drilling": drilling} if drilling else {}
-    names = ("cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
-    if any(step["seconds"] is None for step in known):
-        return {"drilling": drilling, "seconds": None, **dict.fromkeys(names)}
-    assumed, written = document["operations"]["assumed"], document["process"]
-    turns = [step["index_seconds"] for step in known]
-    loose = any(isinstance(each, Loose) for each in turns)
-    tools = len({step["tool"] for step in known}) + len({step["cutter"] for step in steps if step["operation"]})
-    made = {
-        "cutting_seconds": process["cutting_seconds"] + sum(step["seconds"] for step in known),
-        "link_seconds": process["link_seconds"] + sum(step["link_seconds"] for step in known),
-        "index_seconds": process["index_seconds"] + (
-            sum(float(step["index_seconds"]) for step in written["drilling"]) if loose else sum(turns)
-        ),
-        "change_seconds": assumed["change_s"] * (tools - 1),
-        "setup_seconds": assumed["setup_s"] * (len({step["setup"] for step in (*known, *steps)}) - 1),
-    }  # fmt: skip
-    return {"drilling": drilling, "seconds": sum(made.values()), **made}
 
 
 def hole(question: Question, number: int) -> dict[str, Any]:

@@ -90,20 +90,10 @@ def falling(sizes: Sequence[float]) -> bool:
     return all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes))
 
 
-def _runs(rows: Rows) -> list[list[int]]:
-    """First and last of runs of consecutive numbers."""
-    ends = np.flatnonzero(np.diff(rows) != 1)
-    first, last = rows[np.append(0, ends + 1)[: len(rows)]], rows[np.append(ends, len(rows) - 1)[: len(rows)]]
-    return np.column_stack([first, last]).tolist()
-
-
 _KINDS: dict[str, Callable[[Weights, Rows], Any]] = {
     "samples": lambda by, rows: len(rows),
     "area_mm2": lambda by, rows: float(by.area[rows].sum()),
     "share": lambda by, rows: min(1.0, float(by.area[rows].sum()) / by.whole) if by.whole > 0.0 else 0.0,
-    "low": lambda by, rows: by.samples["point"][rows].min(axis=0, initial=np.inf).tolist(),
-    "high": lambda by, rows: by.samples["point"][rows].max(axis=0, initial=-np.inf).tolist(),
-    "rows": lambda by, rows: _runs(rows),
 }
 
 

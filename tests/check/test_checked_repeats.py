@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from plan_cutters_check.paper import ill_formed
+from plan_cutters_check.paper import motion
 from plan_cutters_check.reckoned import Planned, evenly
 
 
@@ -16,11 +16,7 @@ def operation(k: int, **changes) -> dict:
 def repeated(*operations: dict) -> list[str]:
     arrays = {"operation": np.zeros(1, int), "moving_axis": np.full((1, 3), np.nan), "moving_piece": np.full(1, -1)}
     plan = Planned(0, {"name": "fastest", "operations": list(operations)}, arrays)
-
-    class Reckoned:
-        question, plans = None, [plan]
-
-    return [each.words for each in ill_formed(Reckoned()) if each.holds is False]
+    return [each.words for each in motion(plan) if each.holds is False]
 
 
 @pytest.mark.parametrize("changes", [{"cutter": "b"}, {"setup": 1}, {"mode": "simultaneous"}])
