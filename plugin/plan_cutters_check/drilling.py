@@ -14,15 +14,15 @@ import numpy as np
 from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Finding, Loose
+from plan_cutters_check.findings import Between, Exactly, Finding
 from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, tool_frame
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
 
 _INCH = 25.4
-#: Tools that cut with a cone.
-_CONES = ("centre drill", "countersink")
+#: Tools that cut with a cone; the way of a tool at its feed in depths of the hole.
+_CONES, _WAY = ("centre drill", "countersink"), 1.3
 #: How much wider or narrower than its hole a tool may be, mm, and as a share; by how much the angle of its cone may be off, deg.
 _WIDE, _SHARE, _POINT, _SINK = 0.05, 0.01, 3.0, 1.0
 #: What a reamer takes off: at least, mm, and at most besides as a share of its diameter.
@@ -61,6 +61,8 @@ def entries(question: Question) -> list[Any]:
             "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
             **({} if feed is None else {"feed_mm_min": feed}),
+            "seconds": None if feed is None
+            else len(step["holes"]) * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
         })  # fmt: skip
     return steps
 
@@ -99,7 +101,7 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     others = other_angles(question, step["setup"], degrees[0])
     other = dict(zip(machine.names, others[0], strict=True)) if others else None
     words = words_of(machine, step, plane, other)
-    near = {"x": [Loose(-1.0, 1.0)] * 3, "z": [Between(a - _AXIS, a + _AXIS) for a in axis.tolist()]}
+    near = {"z": [Between(a - _AXIS, a + _AXIS) for a in axis.tolist()]}
     if np.isfinite(x).all():
         near["x"] = [Between(a - _AXIS, a + _AXIS) for a in x.tolist()]
     return {

@@ -24,8 +24,6 @@ _OF_SAMPLES: _Arrays = {"point": ((3,), "f"), "normal": ((3,), "f"), "direction_
 _OF_CUTTERS: _Arrays = {"verdict": ((), "u"), "axis": ((3,), "f"), "lean": ((3,), "f"), "reason": ((), "u")}
 #: Parts and lengths of unit vectors, and mm, that differ by less are one; shares by which areas of a face may.
 _SAME, _SAME_MM, _SAME_AREA = 1e-6, 1e-5, 0.01
-#: What may be missing of what is reached, where something is missing anyway: mm2, and a share of the area.
-_SHORT_MM2, _SHORT_SHARE = 0.1, 0.001
 #: Arrays of operations.npz that are of the fewest orientations, which are not proved again.
 _NOT_READ = {"candidate_cutter", "candidate_setup", "candidate_angle", "candidate_axis", "chosen"}
 
@@ -130,16 +128,9 @@ def _labels(reckoned: Reckoned, plan: Planned) -> Iterator[Finding]:
     """Samples go with operations that there are, and only those that are finished."""
     label = plan.label
     bad = (label < -1) | (label >= len(plan.operations)) | ((label >= 0) & ~reckoned.finished)
-    if reckoned.all_planned:
-        # Steps that would be hardly any may be missing, where something is missing anyway.
-        missing = (label < 0) & reckoned.reached
-        area, whole = float(reckoned.area[missing].sum()), float(reckoned.area.sum())
-        complete = not (reckoned.finished & ~reckoned.reached).any()
-        if complete or area >= max(_SHORT_MM2, _SHORT_SHARE * whole):
-            bad |= missing
     bad |= (label < 0) & (np.isfinite(plan["lean"]).any(axis=1) | plan["exclusive"])
     if bad.any():
-        words = f"{int(bad.sum())} of {len(label)} samples go with operations that there are not, or with none though they"
+        words = f"{int(bad.sum())} of {len(label)} samples go with operations that there are not, or with none, though they"
         yield Finding(False, f"{plan}: {words} are reached.")
 
 

@@ -1,7 +1,6 @@
 """All that plan.json must say, record by record: what its files give, what the command says, and what the words are made of."""
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,9 +9,9 @@ from numpy.typing import NDArray
 
 from plan_cutters_check import drilling
 from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Loose, merged_trees
-from plan_cutters_check.question import FREE, axes_of, degrees_of, other_angles, tool_frame
-from plan_cutters_check.reckoned import NO_REASON, NOT_REACHED, WALL, WORDS, Planned, Reckoned, Rows, Weights, evenly
+from plan_cutters_check.findings import Between, Exactly, Such, merged_trees
+from plan_cutters_check.question import FREE, degrees_of, other_angles, tool_frame
+from plan_cutters_check.reckoned import NOT_REACHED, WALL, WORDS, Planned, Reckoned, Rows, Weights, evenly
 
 #: Words for how samples are cut, and the share of an operation's area from which on one of them is that of all of it.
 _STRATEGIES, _NEARLY_ALL = ("point", "floor", "wall"), 0.95
@@ -28,8 +27,8 @@ _PREFERRED, _ORDER = ("process", "fastest", "fewest"), ("floor", "mixed", "wall"
 _PARTS = ("cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
 #: Share of its radius by which faces of one wall may differ.
 _WALL = 2e-3
-#: A number of a reason that is none: a step for it would be hardly any.
-_SHORT = 1000
+#: Sums of areas are written to so much, as a share.
+_SUM = 1e-6
 
 
 def document_of(reckoned: Reckoned) -> dict[str, Any]:
@@ -44,11 +43,8 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
     }
     mine = {
         "operations": _operations(reckoned),
-        "scope": {
-            **{name: len(some) for name, some in sets.items()},
-            **{f"{name}_mm2": math.fsum(f["area_mm2"] or 0.0 for f in some) for name, some in sets.items()},
-            **{f"{name}_by_kind": Exactly(Counter(f["kind"] for f in some)) for name, some in sets.items()},
-        },
+        "scope": {name: value for word, some in sets.items() for name, value in (
+            (word, len(some)), (f"{word}_mm2", math.fsum(f["area_mm2"] or 0.0 for f in some)))},
         "machine": {
             "tilt_limit_deg": None if machine.tilt_limit >= math.pi else math.degrees(machine.tilt_limit),
             "rotary": [
@@ -56,7 +52,7 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
                 for name, limits in zip(machine.names, machine.limits, strict=True)
             ] if machine.names != FREE else None,
         },
-        "process": _Process(reckoned).entry(),
+        "process": _process(reckoned),
         "cutters": made,
         **_chosen(document, made),
         "samples": {
@@ -93,7 +89,6 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
         "asked": effective["operations"],
         "rotary": list(question.machine.names),
         "plans": plans,
-        "fewest": None if reckoned.without_fewest else {},
         "fastest": {"seconds": seconds} if "fastest" in names else None,
         "assumed": {name: effective[option] for name, option in _ASSUMED.items()},
     }
@@ -102,10 +97,7 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
 def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
     label, written, cutting = plan.label, plan.operations, float(plan["seconds"][plan.label >= 0].sum())
     made = [_operation(reckoned, plan, i, each) for i, each in enumerate(written)]
-    # What no operation takes, and why by the first cutter.
-    rest, words = np.flatnonzero(reckoned.finished & (label < 0)), reckoned.question.document["reasons"]
-    first = reckoned.question.samples[f"reason_{reckoned.considered[0]}"][rest]
-    known = [c for c in np.unique(first).tolist() if c != NO_REASON and c < len(words)]
+    rest = np.flatnonzero(reckoned.finished & (label < 0))
     links = sum(each["link_seconds"] for each in made)
     return {
         "name": plan.entry["name"],
@@ -117,9 +109,7 @@ def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
         "changes": max(0, len({each["cutter"] for each in written}) - 1),
         "pieces": sum(len(each["regions"]) for each in made),
         "operations": made,
-        "rest": reckoned.judged.of(rest, "samples", "area_mm2", "share")
-        | {"short": int(reckoned.reached[rest].sum()) if reckoned.all_planned else Loose(0, len(rest))}
-        | {"reason_counts": Exactly({words[c]: int((first == c).sum()) for c in known})},
+        "rest": reckoned.judged.of(rest, "samples", "area_mm2", "share"),
     }
 
 
@@ -135,7 +125,7 @@ def _operation(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any
         "step": _step(reckoned, each),
         "mode": "simultaneous" if each["axis"] is None else "fixed",
         "strategy": _STRATEGIES[int(size.argmax())] if most else "mixed",
-        "cutter": each["cutter"] if each["cutter"] in reckoned.considered else "one of the cutters that were compared",
+        "cutter": each["cutter"] if each["cutter"] in reckoned.ids else "one of the cutters",
         "setup": each["setup"] if each["setup"] in range(len(reckoned.question.setups)) else "one of the setups",
         **reckoned.judged.of(rows, "samples", "area_mm2", "share"),
         "exclusive_mm2": float(area[alone].sum()),
@@ -143,12 +133,11 @@ def _operation(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any
         "seconds": float(seconds.sum()) if timed else None,
         "link_seconds": float(link.sum()) + len(each["regions"]) * assumed["link_s"] if timed else 0.0,
         "faces": reckoned.judged.by_face(rows, each["faces"]),
-        "regions": _regions(reckoned, plan, i, each, rows),
+        "regions": _regions(reckoned, each, rows),
     }
     if each["axis"] is None:
-        return entry | dict.fromkeys(
-            ("axis", "angles_deg", "other_angles_deg", "frame", "g68_2", "g53_1", "rotary_words")
-        )
+        names = ("axis", "angles_deg", "other_angles_deg", "frame", "g68_2", "g53_1", "rotary_words")
+        return entry | dict.fromkeys(names)
     return entry | _orientation(reckoned, each) if entry["setup"] == each["setup"] else entry
 
 
@@ -175,17 +164,17 @@ def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
         # Of those that are as large any may be written.
         near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]))
         other = Exactly({name: Between(a - _ROUNDED, a + _ROUNDED) for name, a in zip(machine.names, near, strict=True)})
-    across = x.tolist() if np.isfinite(x).all() else [Loose(-1.0, 1.0)] * 3
+    across = {"x": x.tolist()} if np.isfinite(x).all() else {}
     return {
         "axis": axis.tolist(),
         "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
         "other_angles_deg": other,
-        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(), "x": across},
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(), **across},
         **words_of(machine, each, plane, each["other_angles_deg"]),
     }
 
 
-def _regions(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any], rows: Rows) -> Any:
+def _regions(reckoned: Reckoned, each: Mapping[str, Any], rows: Rows) -> Any:
     """The regions of an operation: their samples are those that are written, if together they are the operation's."""
     seen = [np.concatenate([np.arange(first, last + 1) for first, last in one["rows"]]) for one in each["regions"]]
     if not np.array_equal(np.sort(np.concatenate([np.zeros(0, np.int64), *seen])), rows):
@@ -193,138 +182,80 @@ def _regions(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any],
     return [reckoned.judged.of(mine, "samples", "area_mm2") for mine in seen]
 
 
-class _Process:
-    """Reckon what `process` must be: its steps, what they finish, and what is left."""
+def _process(reckoned: Reckoned) -> dict[str, Any]:
+    """Reckon `process`, as far as it follows from the operations, the samples and the labels."""
+    question, written = reckoned.question, reckoned.question.document["process"]
+    plan = min(reckoned.plans, key=lambda plan: _PREFERRED.index(plan.entry["name"]))
+    done, whole, parts = (plan.label >= 0) & reckoned.finished, reckoned.required.whole, [written[name] for name in _PARTS]
+    finished = float(reckoned.required.area[done].sum())
+    share = min(max(finished / max(1e-300, whole), math.ulp(0.0)), math.nextafter(1.0, 0.0))
+    missing = bool((reckoned.finished & ~done).any() or reckoned.unjudged.any() or reckoned.empty)
+    exempt = np.flatnonzero(reckoned.exempt)
+    edges = Weights(question.samples, np.where(question.samples["inside_bodies"], 0.0, reckoned.sampled), whole)
+    drilled = drilling.entries(question)
+    return {
+        "setups": [{"number": k, "up": list(each.z)} for k, each in enumerate(question.setups, 1)],
+        "steps": _steps(reckoned, plan), "plan": plan.entry["name"], "finished_mm2": finished, "asked_mm2": whole,
+        "left": _left(written["left"], whole, whole - finished, missing),
+        "finished_share": 1.0 if not missing else share if done.any() else 0.0,
+        "seconds": None if None in parts else sum(parts),
+        "exempt": {"cause": "sharp_edge", **edges.of(exempt, "area_mm2", "share", "samples")} if len(exempt) else None,
+        **({"drilling": drilled} if drilled else {}),
+    }  # fmt: skip
 
-    def __init__(self, reckoned: Reckoned) -> None:
-        self.reckoned, self.question = reckoned, reckoned.question
-        self.plan = min(reckoned.plans, key=lambda plan: _PREFERRED.index(plan.entry["name"]))
-        self.done = (self.plan.label >= 0) & reckoned.finished
-        self.written: Mapping[str, Any] = self.question.document["process"] or {}
 
-    def entry(self) -> dict[str, Any]:
-        """Reckon it, as far as it follows from the operations, the samples and the labels."""
-        steps, requested = self._steps(), self.reckoned.required.whole
-        left, parts = self._by_cause(steps), [self.written[name] for name in _PARTS]
-        finished = float(self.reckoned.required.area[self.done].sum())
-        share = min(max(finished / max(1e-300, requested), math.ulp(0.0)), math.nextafter(1.0, 0.0))
-        exempt = np.flatnonzero(self.reckoned.exempt)
-        strips = np.where(self.question.samples["inside_bodies"], 0.0, self.reckoned.sampled)
-        edges = Weights(self.question.samples, strips, requested)
-        entry = {
-            "setups": [self._stand(k, each.z) for k, each in enumerate(self.question.setups)],
-            "steps": steps, "plan": self.plan.entry["name"], "left": left, "finished_mm2": finished, "asked_mm2": requested,
-            "finished_share": 1.0 if not left else share if self.done.any() else 0.0,
-            "seconds": None if None in parts else sum(parts),
-            "exempt": self._remaining("sharp_edge", exempt, edges, self.written.get("exempt")) if len(exempt) else None,
-        }  # fmt: skip
-        drilled = drilling.entries(self.question)
-        return entry | ({"drilling": drilled} if drilled else {})
+def _left(written: Sequence[Mapping[str, Any]], whole: float, rest: float, missing: bool) -> Any:
+    """What no step finishes: areas that together are the rest; why each is left is not looked at."""
+    areas = [each["area_mm2"] for each in written]
+    if missing != bool(areas) or not math.isclose(math.fsum(areas), rest, rel_tol=_SUM, abs_tol=_SUM * whole):
+        return f"areas of {rest:.6g} mm2 together" if missing else []
+    return [{"area_mm2": area, "share": min(1.0, area / max(1e-300, whole))} for area in areas]
 
-    def _stand(self, setup: int, up: tuple[float, float, float]) -> dict[str, Any]:
-        """How the part stands in a setup, as far as the fixtures say it: whether jaws are there is looked at by itself."""
-        stand: dict[str, Any] = {"number": setup + 1, "up": list(up)}
-        jaws = [each for each in self.question.document["fixtures"] if each["clamping"] and setup in each["setups"]]
-        if jaws:
-            stand |= {"held": jaws[0]["clamping"].partition(":")[0], "clamping": jaws[0]["clamping"]}
-            stand |= {"grips": jaws[0]["grips"]} if jaws[0]["grips"] else {}
-        return stand
 
-    def _steps(self) -> list[dict[str, Any]]:
-        """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""
-        operations, own = self.plan.operations, self.reckoned.own or []
-        size = {
-            each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
-            for k, each in enumerate(self.question.document["cutters"])
-        }
+def _steps(reckoned: Reckoned, plan: Planned) -> list[dict[str, Any]]:
+    """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""
+    operations, own = plan.operations, reckoned.own or []
+    size = {
+        each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
+        for k, each in enumerate(reckoned.question.document["cutters"])
+    }
 
-        def rank(each: Mapping[str, Any]) -> tuple[Any, ...]:
-            kind = _ORDER.index(each["strategy"]) if each["mode"] == "fixed" else len(_ORDER)
-            return each["setup"], size[each["cutter"]], kind, -each["area_mm2"]
+    def rank(each: Mapping[str, Any]) -> tuple[Any, ...]:
+        kind = _ORDER.index(each["strategy"]) if each["mode"] == "fixed" else len(_ORDER)
+        return each["setup"], size[each["cutter"]], kind, -each["area_mm2"]
 
-        def turned(k: int) -> list[float]:
-            return [angle % 360.0 for angle in (operations[k]["angles_deg"] or {}).values()]
+    def turned(k: int) -> list[float]:
+        return [angle % 360.0 for angle in (operations[k]["angles_deg"] or {}).values()]
 
-        groups: dict[Any, list[int]] = {}
-        for k in sorted((k for k, each in enumerate(operations) if each.get("step") is None), key=lambda k: rank(operations[k])):
-            orbit = operations[k].get("orbit")
-            groups.setdefault(operations[k]["id"] if orbit is None else orbit, []).append(k)
-        steps = [self._own(step, number) for number, step in enumerate(own, 1)]
-        steps += sorted((self._step(sorted(same, key=turned)) for same in groups.values()), key=rank)
-        written = [*self.written.get("steps", []), *[{}] * len(steps)]
-        for step, each in zip(steps, written, strict=False):
-            step["faces"] = self.reckoned.required.faces(step.pop("rows"), each.get("faces", []))
-            same = step.pop("same")
-            if step.get("repeat", 1) > 1 and each.get("repeat_deg") is not None:
-                step["repeat_deg"] = evenly(each["repeat_deg"], [operations[k]["angles_deg"] for k in same])
-        return steps
+    groups: dict[Any, list[int]] = {}
+    for k in sorted((k for k, each in enumerate(operations) if each.get("step") is None), key=lambda k: rank(operations[k])):
+        orbit = operations[k].get("orbit")
+        groups.setdefault(operations[k]["id"] if orbit is None else orbit, []).append(k)
+    steps = []
+    for number, step in enumerate(own, 1):
+        mine = [k for k, each in enumerate(operations) if each.get("step") == number]
+        # One that serves nothing has no operation.
+        none = {"setup": step["setup"] - 1, "area_mm2": 0.0, "share": 0.0, "operation": "", "faces": []}
+        steps.append(_made_of(reckoned, plan, mine) if mine else {"mode": step["mode"], "cutter": step["cutter"], **none})
+    return steps + sorted((_made_of(reckoned, plan, sorted(same, key=turned)) for same in groups.values()), key=rank)
 
-    def _own(self, step: Mapping[str, Any], number: int) -> dict[str, Any]:
-        """A step of the planner's own: what its operation, if it has one, says of it."""
-        mine = [k for k, each in enumerate(self.plan.operations) if each.get("step") == number]
-        if mine:
-            made = self._step(mine)
-            return {name: made[name] for name in made if name not in ("alone_mm2", "take", "own")}
-        steps, machine, turned = self.written.get("steps", []), self.question.machine, dict[str, Any]()
-        # Angles and axis where the plan has them: a machine may not hold those that a person wrote.
-        if "angles" in step and len(steps) >= number and steps[number - 1]["angles_deg"] is not None:
-            degrees = [step["angles"][name] for name in machine.names]
-            axis = axes_of(machine, self.question.setups[step["setup"] - 1], np.array([degrees], float))[0].tolist()
-            near = [Between(x - _ROUNDED, x + _ROUNDED) for x in (*degrees, *axis)]
-            turned = {"angles_deg": Exactly(zip(machine.names, near, strict=False)), "axis": near[-3:]}
-        return turned | {
-            "setup": step["setup"] - 1, "mode": step["mode"], "cutter": step["cutter"], "strategy": "point", "repeat": 1,
-            "repeat_deg": None,
-            "area_mm2": 0.0, "share": 0.0, "seconds": 0.0, "link_seconds": 0.0, "clearance_mm": None,
-            "operation": "", "rows": np.zeros(0, np.int64), "same": (),
-        }  # fmt: skip
 
-    def _step(self, same: Sequence[int]) -> dict[str, Any]:
-        """A step of some operations, the first one first."""
-        each, first = [self.plan.operations[k] for k in same], self.plan.operations[same[0]]
-        rows, alone = np.flatnonzero(np.isin(self.plan.label, same)), len(same) == 1
-        clearances, seconds = [e["clearance_mm"] for e in each], [e["seconds"] for e in each]
-        size = self.reckoned.required.of(rows, "area_mm2", "share")
-        step: dict[str, Any] = {
-            **{name: first[name] for name in _OF_FIRST if name in first},
-            **size, "operation": first["id"], "take": "share", "own": None,
-            "rows": rows, "same": same,
-            "link_seconds": sum(e["link_seconds"] for e in each),
-            "seconds": None if None in seconds else sum(seconds), "clearance_mm": None if None in clearances else min(clearances),
-            "alone_mm2": first["exclusive_mm2"] if alone else Loose(0.0, size["area_mm2"]),
-        }  # fmt: skip
-        if first["mode"] == "fixed":
-            step |= {"repeat": len(same)} | ({"repeat_deg": None} if alone else {})
-        return step
-
-    def _by_cause(self, steps: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        """What no step finishes by its cause: that of the finest cutter of the process, else of any."""
-        reckoned, document, used = self.reckoned, self.question.document, {step["cutter"] for step in steps}
-        cutters = sorted(document["cutters"], key=lambda c: (c["id"] not in used, c["radius"], c["corner_radius"]))
-        left, reason = reckoned.finished & ~self.done, np.full(len(self.done), NO_REASON)
-        for name in (cutter["id"] for cutter in cutters):
-            mine = left & (reason == NO_REASON) & np.isin(reckoned.verdict[name], NOT_REACHED)
-            reason[mine] = self.question.samples[f"reason_{name}"][mine]
-        if reckoned.all_planned:
-            reason[left & reckoned.reached] = _SHORT
-        words = {_SHORT: "short_step", NO_REASON: "not_planned"}
-        causes = {
-            words.get(code) or document["reasons"][code]: np.flatnonzero(left & (reason == code))
-            for code in np.unique(reason[left]).tolist()
-        }
-        if reckoned.unjudged.any() or reckoned.not_sampled > 0.0 or reckoned.empty:
-            causes["unjudged"] = np.flatnonzero(reckoned.unjudged)
-        written = {each["cause"]: each for each in self.written.get("left", [])}
-        entries = [self._remaining(cause, rows, reckoned.required, written.get(cause)) for cause, rows in causes.items()]
-        return sorted(entries, key=lambda each: (-each["area_mm2"], each["cause"]))
-
-    def _remaining(self, cause: str, rows: Rows, by: Weights, written: Mapping[str, Any] | None) -> dict[str, Any]:
-        entry, faces = by.of(rows, "area_mm2", "share", "samples"), by.faces(rows, (written or {}).get("faces", []))
-        if cause == "unjudged":
-            entry["area_mm2"] += self.reckoned.not_sampled
-            entry["share"] = min(1.0, entry["area_mm2"] / max(1e-300, by.whole))
-            faces = list(dict.fromkeys([*faces, *self.reckoned.empty]))
-        return {"cause": cause, **entry, "faces": faces}
+def _made_of(reckoned: Reckoned, plan: Planned, same: Sequence[int]) -> dict[str, Any]:
+    """A step of some operations, the first one first."""
+    each, first = [plan.operations[k] for k in same], plan.operations[same[0]]
+    rows, alone = np.flatnonzero(np.isin(plan.label, same)), len(same) == 1
+    clearances, seconds, faces = [e["clearance_mm"] for e in each], [e["seconds"] for e in each], reckoned.required.faces(rows)
+    repeat = {"repeat": len(same), "repeat_deg": None if alone else Such(
+        "what the angles of its operations turn by", lambda by: by is None or evenly(by, [e["angles_deg"] for e in each])
+    )} if first["mode"] == "fixed" else {}  # fmt: skip
+    return {
+        **{name: first[name] for name in _OF_FIRST if name in first},
+        **reckoned.required.of(rows, "area_mm2", "share"), "operation": first["id"],
+        "faces": Such(", ".join(faces), lambda written: sorted(written) == sorted(faces)),
+        "link_seconds": sum(e["link_seconds"] for e in each),
+        "seconds": None if None in seconds else sum(seconds), "clearance_mm": None if None in clearances else min(clearances),
+        **({"alone_mm2": first["exclusive_mm2"]} if alone and first.get("step") is None else {}), **repeat,
+    }  # fmt: skip
 
 
 def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:

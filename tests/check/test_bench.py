@@ -205,9 +205,7 @@ def test_the_search_and_the_checker_agree(words):
         turned = np.repeat(axis[None], len(rows), axis=0)
         tilted = np.abs(samples.normal @ axis - 0.5) < 0.495
         at = Contacts(samples.point, samples.normal, benches[0].own_tilt_direction(rows, turned))
-        surely, strictly = (
-            bench.put_down(0, bench.tools[cutter.id], rows, turned, at, NEVER)[0] == FREE for bench in benches
-        )
+        surely, strictly = (bench.put_down(0, bench.tools[cutter.id], rows, turned, at, NEVER)[0] == FREE for bench in benches)
         inside = ready.inside >= 0
         assert not (search & ~surely & tilted).any()
         assert not (strictly & ~search & ~inside & tilted).any()

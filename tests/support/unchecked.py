@@ -5,6 +5,7 @@ import re
 #: Why, under which path, and the names there; those that end in `**` with all that is under them.
 _LISTED = (
     ("it rests on a bound of the fastest plan", "operations.plans[].", "ratio_at_most"),
+    ("why no operation takes them is no question of safety", "operations.plans[].rest.", "short reason_counts**"),
     ("the area between samples is proved by the plan alone", "operations.plans[].", "proved_share approaches_proved"),
     ("the models are not read", "operations.plans[].", "split**"),
     ("widths of passes are taken from operations.npz", "operations.plans[].operations[].", "strip_mm**"),
@@ -24,8 +25,9 @@ _LISTED = (
     ("it is how much was looked at", "operations.", "probes"),
     ("they are sentences", "operations.", "notes**"),
     ("how long it takes is no question of safety", "process.",
-     "cutting_seconds link_seconds index_seconds change_seconds setup_seconds drilling[].seconds drilling[].link_seconds"),
-    ("it is a place to look at", "process.", "left[].place_mm** exempt.place_mm**"),
+     "cutting_seconds link_seconds index_seconds change_seconds setup_seconds drilling[].link_seconds"),
+    ("areas alone are compared", "process.",
+     "left[].cause left[].samples left[].faces** left[].place_mm** exempt.faces** exempt.place_mm**"),
     ("what they advise rests on judgements of other tools", "process.", "left[].fits** left[].points** left[].helped**"),
     ("whether jaws are where the plan says is looked at by itself", "process.setups[].",
      "stands_on** held grips** apart_mm grip_mm clamping soft"),
@@ -34,7 +36,7 @@ _LISTED = (
     ("the volume of the part is not reckoned again", "process.", "stock**"),
     ("what other orientations would do is not looked for", "process.steps[].", "own** take"),
     ("of repeated, simultaneous and own steps alone it does not follow from the files", "process.steps[].",
-     "repeat repeat_deg** alone_mm2 below_mm2 angles_deg** axis** g68_2 g53_1 rotary_words"),
+     "repeat repeat_deg** alone_mm2 strategy seconds link_seconds clearance_mm angles_deg** axis** g68_2 g53_1 rotary_words"),
     ("the command that checks does not say it", "", "effective.**"),
     ("it is no part of the operations", "cutters[].",
      "axis_limit_with** setups** lost_in_all witnesses** witnesses_untried beyond_setup area** singular travel** "
