@@ -50,7 +50,7 @@ class Exactly(dict[str, Any]):
 
 @dataclass(slots=True)
 class Compared:
-    """Leaves of plan.json that agree, that differ (a line each), and that are unchecked, by their paths."""
+    """Leaves of plan.json that agree, by their paths; lines on those that differ; paths of all below which nothing is expected."""
 
     agree: list[str] = field(default_factory=list)
     differ: list[str] = field(default_factory=list)
@@ -68,7 +68,7 @@ class Compared:
                 elif isinstance(expected, Exactly):
                     self.differ.append(f"{below} is an entry that no plan has")
                 else:
-                    self.unchecked += (leaf for leaf, _ in leaves(actual[name], below))
+                    self.unchecked.append(below)
         elif isinstance(expected, list) and isinstance(actual, list):
             if len(expected) != len(actual):
                 self.differ.append(f"{path} has {len(actual)} entries, not {len(expected)}")
@@ -209,12 +209,9 @@ class Answer:
         reasons = f" ({', '.join(why)})" if why else ""
         text = f"{open_:,} of {every:,} postures are not decided{reasons}." if every else "No posture was put down."
         head = "holds" if self.holds and not beyond else "not decided" if self.holds else "FAILS"
-        # Each by its shortest beginning that no checked path has.
-        known = {begin for path in {*map(pattern, self.entries.agree)} for begin in _beginnings(path)}
         under: dict[str, dict[str, None]] = {}
-        for path in dict.fromkeys(map(pattern, self.entries.unchecked)):
-            name = next((each for each in _beginnings(path) if each not in known), path).replace("[]", "")
-            begin, dot, rest = name.partition(".")
+        for path in map(pattern, self.entries.unchecked):
+            begin, dot, rest = path.replace("[]", "").partition(".")
             under.setdefault(begin, {}).update({rest: None} if dot else {})
         names = [f"{name} ({', '.join(some)})" if some else name for name, some in under.items()]
         if not names:
@@ -226,8 +223,3 @@ class Answer:
         """The answer in lines."""
         words = {True: "holds", False: "FAILS", None: "not checked"}
         return [self.first, *(f"{words[each.holds]}: {each.words}" for each in self.findings)]
-
-
-def _beginnings(path: str) -> Iterator[str]:
-    yield from (path[:k].removesuffix("[]") for k, letter in enumerate(path) if letter == ".")
-    yield path

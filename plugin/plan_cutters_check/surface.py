@@ -302,7 +302,11 @@ def met(
         while stack and not clock.over:
             who, cell = stack.pop()
             open_ = (hits.verdict[who] != MET) & (cells.state[cell] != OUTSIDE)
-            who, cell = _at_most(who[open_], cell[open_], stack)
+            who, cell = who[open_], cell[open_]
+            while len(who) > _MOST:
+                half = len(who) // 2
+                stack.append((who[half:], cell[half:]))
+                who, cell = who[:half], cell[:half]
             near = np.zeros(len(who), bool)
             for k, solid in enumerate(tool.solids if len(who) else ()):
                 deep, most = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
@@ -311,30 +315,13 @@ def met(
                 hits.verdict[who[hit]], hits.cell[who[hit]] = MET, cell[hit]
                 hits.depth[who[hit]], hits.solid[who[hit]] = deep[hit], k
             near &= (hits.verdict[who] != MET) & (cells.size[cell] > grain)
-            _cut(cells, who[near], cell[near], stack)
+            if near.any():
+                pieces, owner = cells.children(cell[near])
+                stack.append((who[near][owner], pieces))
         if stack:
             break
         hits.verdict[some[hits.verdict[some] == OPEN]] = FREE
     return hits
-
-
-_Stack = list[tuple[Rows, Rows]]
-
-
-def _at_most(who: Rows, cell: Rows, stack: _Stack) -> tuple[Rows, Rows]:
-    """As many pairs of a tool and a cell as are looked at at once; the others go back on the stack."""
-    while len(who) > _MOST:
-        half = len(who) // 2
-        stack.append((who[half:], cell[half:]))
-        who, cell = who[:half], cell[:half]
-    return who, cell
-
-
-def _cut(cells: Cells, who: Rows, cell: Rows, stack: _Stack) -> None:
-    """Put the pieces of cells on the stack."""
-    if len(cell):
-        pieces, owner = cells.children(cell)
-        stack.append((who[owner], pieces))
 
 
 def lowest(cells: Cells, root: int, direction: Floats, grain: float) -> float:

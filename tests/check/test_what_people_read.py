@@ -15,7 +15,7 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters_check.asking import question_of, stated_by
 from plan_cutters_check.bench import Bench, Contacts
 from plan_cutters_check.check import check
-from plan_cutters_check.findings import _beginnings, leaves, pattern
+from plan_cutters_check.findings import leaves, pattern
 from plan_cutters_check.fixtures import faults
 from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.surface import FREE, MET, Clock
@@ -65,12 +65,11 @@ def answered(one, document=None, arrays=None):
 
 
 def named(answer, path):
-    """Whether the first line names an entry as not checked."""
+    """Whether the first line names an entry, or what holds it, as not checked."""
     names = answer.first.partition("Not checked: ")[2]
-    plain = [each.replace("[]", "") for each in _beginnings(pattern(path))]
-    begin = plain[0].partition(".")[0]
-    unchecked = any(each.startswith(path) for each in answer.entries.unchecked)
-    return unchecked and begin in names and any(each.removeprefix(f"{begin}.") in names for each in plain)
+    holds = [each for each in answer.entries.unchecked if path == each or path.startswith((f"{each}.", f"{each}["))]
+    parts = [pattern(each).replace("[]", "").partition(".") for each in holds]
+    return any(begin in names and rest in names for begin, _, rest in parts)
 
 
 def test_what_is_written_holds(one):
@@ -86,6 +85,8 @@ def test_what_is_written_holds(one):
         "process.steps",
         "process.setups",
         "process.stock",
+        "process.exempt",
+        *(f"process.{word}_seconds" for word in ("cutting", "link", "index", "change", "setup")),
         *(
             f"process.left[{k}].{word}"
             for k in range(9)
