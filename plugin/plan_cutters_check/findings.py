@@ -50,7 +50,7 @@ class Exactly(dict[str, Any]):
 
 @dataclass(slots=True)
 class Compared:
-    """Leaves of plan.json that agree, by their paths; lines on those that differ; paths of all below which nothing is expected."""
+    """Leaves of plan.json that agree, lines on what differs, and paths of which, and below which, nothing is expected."""
 
     agree: list[str] = field(default_factory=list)
     differ: list[str] = field(default_factory=list)
