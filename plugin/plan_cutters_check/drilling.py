@@ -13,9 +13,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
-from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Finding
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, tool_frame
+from plan_cutters_check.control import orientation
+from plan_cutters_check.findings import Between, Finding, about
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
@@ -53,12 +53,12 @@ def entries(question: Question) -> list[Any]:
         steps.append({
             "kind": drill.kind, "tool": drill.sizes.id, "name": drill.name, "setup": step["setup"],
             "holes": [
-                {"hole": each["hole"], "mouth_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in _on_axis(document, each)],
-                 "tip_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in point]}
+                {"hole": each["hole"], "mouth_mm": about(_on_axis(document, each), _ROUNDED),
+                 "tip_mm": about(point, _ROUNDED)}
                 for each, point in zip(step["holes"], tip, strict=True)
             ],
             **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
-            "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
+            "depth_mm": about(float(np.linalg.norm(first_way)) - drill.beyond, _ROUNDED),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
             **({} if feed is None else {"feed_mm_min": feed}),
             "seconds": None if feed is None
@@ -85,7 +85,7 @@ def _diameter(drill: DrillSizes, wide: float) -> Any:
     """The diameter that a tool leaves: its own, of a cone any that is no wider."""
     own = 2.0 * drill.sizes.radius
     off = max(_WIDE, _SHARE * wide)
-    return Between(0.0, own + off) if drill.kind in _CONES else Between(own - off, own + off)
+    return Between(0.0, own + off) if drill.kind in _CONES else about(own, off)
 
 
 def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,19 +97,10 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     degrees = degrees_of(question, step)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis, x, plane = tool_frame(question, step["setup"], degrees)
-    others = other_angles(question, step["setup"], degrees[0])
-    other = dict(zip(machine.names, others[0], strict=True)) if others else None
-    words = words_of(machine, step, plane, other)
-    near = {"z": [Between(a - _AXIS, a + _AXIS) for a in axis.tolist()]}
-    if np.isfinite(x).all():
-        near["x"] = [Between(a - _AXIS, a + _AXIS) for a in x.tolist()]
-    return {
-        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"],
-        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
-        # What the machine has no word for is not written.
-        **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
-    }  # fmt: skip
+    made = orientation(question, step, _AXIS)
+    del made["other_angles_deg"]
+    # What the machine has no word for is not written.
+    return {name: value for name, value in made.items() if value is not None or step.get(name) is not None}
 
 
 def hole(question: Question, number: int) -> dict[str, Any]:

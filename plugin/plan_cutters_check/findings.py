@@ -33,6 +33,11 @@ class Between:
         return f"from {self.low:.6g} to {self.high:.6g}"
 
 
+def about(value: Any, by: float) -> Any:
+    """A number, or numbers of a list, that may be off by so much."""
+    return [about(each, by) for each in value] if isinstance(value, list) else Between(value - by, value + by)
+
+
 @dataclass(frozen=True, slots=True)
 class Such:
     """A value for which something holds; `words` say what that is."""

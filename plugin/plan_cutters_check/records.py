@@ -8,15 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters_check import drilling
-from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Such, merged_trees
-from plan_cutters_check.question import FREE, degrees_of, other_angles, tool_frame
+from plan_cutters_check.control import orientation
+from plan_cutters_check.findings import Exactly, Such, about, merged_trees
+from plan_cutters_check.question import FREE
 from plan_cutters_check.reckoned import NOT_REACHED, WALL, WORDS, Planned, Reckoned, Rows, Weights, evenly
 
 #: Words for how samples are cut, and the share of an operation's area from which on one of them is that of all of it.
 _STRATEGIES, _NEARLY_ALL = ("point", "floor", "wall"), 0.95
-#: By how much angles may be off that are rounded for a control, deg.
-_ROUNDED = 0.0015
 #: Entries of `assumed` that repeat what was asked for in `effective`, and of a step those of its first operation.
 _ASSUMED = {"scallop_mm": "scallop_mm", "stepover": "stepover", "overlap_mm": "overlap_mm", "change_s": "change_time_s",
             "setup_s": "setup_time_s", "link_s": "link_time_s"}  # fmt: skip
@@ -70,7 +68,7 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
             }
             for each in question.part.faces
         ] if not inside else "faces whose samples were judged are targets",
-        "part": {"faces": len(question.part.faces), "size_mm": [Between(s - 1e-6, s + 1e-6) for s in question.part.size]},
+        "part": {"faces": len(question.part.faces), "size_mm": about([*question.part.size], 1e-6)},
     }  # fmt: skip
     merged: dict[str, Any] = merged_trees(mine, question.stated)
     return merged
@@ -138,7 +136,7 @@ def _operation(reckoned: Reckoned, plan: Planned, i: int, each: Mapping[str, Any
     if each["axis"] is None:
         names = ("axis", "angles_deg", "other_angles_deg", "frame", "g68_2", "g53_1", "rotary_words")
         return entry | dict.fromkeys(names)
-    return entry | _orientation(reckoned, each) if entry["setup"] == each["setup"] else entry
+    return entry | orientation(reckoned.question, each, 0.0) if entry["setup"] == each["setup"] else entry
 
 
 def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:
@@ -152,26 +150,6 @@ def _step(reckoned: Reckoned, each: Mapping[str, Any]) -> Any:
     same = (step["cutter"], step["setup"] - 1, step["mode"]) == (each["cutter"], each["setup"], mode)
     same = same and (step["faces"] == "left" or {one["face"] for one in each["faces"]} <= {*step["faces"]})
     return number if same else "a step with this cutter, setup and mode, on these faces"
-
-
-def _orientation(reckoned: Reckoned, each: Mapping[str, Any]) -> dict[str, Any]:
-    question = reckoned.question
-    setup, machine, degrees = question.setups[each["setup"]], question.machine, degrees_of(question, each)
-    axis, x, plane = tool_frame(question, each["setup"], degrees)
-    others, stated = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
-    other = None
-    if others:
-        # Of those that are as large any may be written.
-        near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]))
-        other = Exactly({name: Between(a - _ROUNDED, a + _ROUNDED) for name, a in zip(machine.names, near, strict=True)})
-    across = {"x": x.tolist()} if np.isfinite(x).all() else {}
-    return {
-        "axis": axis.tolist(),
-        "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
-        "other_angles_deg": other,
-        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(), **across},
-        **words_of(machine, each, plane, each["other_angles_deg"]),
-    }
 
 
 def _regions(reckoned: Reckoned, each: Mapping[str, Any], rows: Rows) -> Any:
@@ -318,9 +296,9 @@ def _hole(reckoned: Reckoned, written: Mapping[str, Any]) -> dict[str, Any]:
     axis = (direction if direction @ np.array(written["axis"]) > 0.0 else -direction).tolist()
     on_axis = np.array(wall.point) + ((np.array(written["place_mm"]) - np.array(wall.point)) @ direction) * direction
     return {
-        "diameter_mm": Between(diameter * (1.0 - _WALL), diameter * (1.0 + _WALL)),
-        "axis": [Between(x - _WALL, x + _WALL) for x in axis],
-        "place_mm": [Between(x - _WALL * diameter, x + _WALL * diameter) for x in on_axis.tolist()],
+        "diameter_mm": about(diameter, _WALL * diameter),
+        "axis": about(axis, _WALL),
+        "place_mm": about(on_axis.tolist(), _WALL * diameter),
     }
 
 
