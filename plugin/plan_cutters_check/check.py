@@ -16,8 +16,9 @@ from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.records import document_of
 from plan_cutters_check.surface import Clock
 
-#: Seconds that a check takes at most unless another time is set, and the share of them by which the operations must be put down.
-SECONDS, _PLACED = 60.0, 0.8
+#: Seconds that a check takes at most unless another time is set, and the shares of them by which operations, drills and postures of
+#: verdicts must be put down.
+SECONDS, _UNTIL = 60.0, (0.6, 0.8, 1.0)
 
 
 def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str], None] = lambda doing: None) -> Answer:
@@ -48,14 +49,14 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
         none = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
         return replace(first, findings=(*first.findings, none))
     bench = Bench(fixtures.resting(question), tell)
-    clock, last = Clock(start + seconds * _PLACED), Clock(start + seconds)
+    operations, drills, verdicts = (Clock(start + seconds * share) for share in _UNTIL)
     if bench.unread:
         findings.append(Finding(None, f"Nothing is known of what {', '.join(bench.unread)} are in the way of."))
     if bench.hollow:
         findings.append(Finding(None, f"Whether a tool stands wholly within {', '.join(bench.hollow)} is not looked at."))
-    findings += trials.placed(reckoned, bench, clock, tell, expected["operations"])
-    findings += drilling.findings(question, bench, last)
-    findings += trials.postures(reckoned, bench, last)
+    findings += trials.placed(reckoned, bench, operations, tell, expected["operations"])
+    findings += drilling.findings(question, bench, drills)
+    findings += trials.postures(reckoned, bench, verdicts)
     return _compared(question, findings, Compared().compare(expected, question.document))
 
 

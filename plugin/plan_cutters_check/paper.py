@@ -146,9 +146,10 @@ def _passes(reckoned: Reckoned, plan: Planned) -> Iterator[Finding]:
     wrong = (strategy > WALL) | (((strategy > 0) | known) & ~fixed)
     wrong |= ((strategy == WALL) & ~known) | ((strategy == FLOOR) & known)
     wrong |= np.isfinite(plan["contact"]).any(axis=1) != known
+    wrong |= np.isfinite(plan["path_mm"]) & ~np.isfinite(strip)
     wrong |= np.isfinite(strip) & ~((strip > 0.0) & (strip <= widest * (1.0 + _SAME)))
     if wrong.any():
-        words = f"{int(wrong.sum())} samples have a strategy that cannot be, a contact without one, or too wide a strip."
+        words = f"{int(wrong.sum())} samples have a strategy that cannot be, a contact without one, or no strip of their tool."
         yield Finding(False, f"{plan}: {words}")
 
 

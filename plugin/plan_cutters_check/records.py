@@ -1,4 +1,4 @@
-"""All that plan.json must say, record by record: what its files give, what the command says, and what the words are made of."""
+"""All that plan.json must say, record by record, as far as it follows from its files, the part and the command."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -41,8 +41,10 @@ def document_of(reckoned: Reckoned) -> dict[str, Any]:
     }
     mine = {
         "operations": _operations(reckoned),
-        "scope": {name: value for word, some in sets.items() for name, value in (
-            (word, len(some)), (f"{word}_mm2", math.fsum(f["area_mm2"] or 0.0 for f in some)))},
+        "scope": {
+            **{name: len(some) for name, some in sets.items()},
+            **{f"{name}_mm2": math.fsum(f["area_mm2"] or 0.0 for f in some) for name, some in sets.items()},
+        },
         "machine": {
             "tilt_limit_deg": None if machine.tilt_limit >= math.pi else math.degrees(machine.tilt_limit),
             "rotary": [
@@ -223,17 +225,19 @@ def _made_of(reckoned: Reckoned, plan: Planned, same: Sequence[int]) -> dict[str
     each, first = [plan.operations[k] for k in same], plan.operations[same[0]]
     rows, alone = np.flatnonzero(np.isin(plan.label, same)), len(same) == 1
     clearances, seconds, faces = [e["clearance_mm"] for e in each], [e["seconds"] for e in each], reckoned.required.faces(rows)
-    repeat = {"repeat": len(same), "repeat_deg": None if alone else Such(
-        "what the angles of its operations turn by", lambda by: by is None or evenly(by, [e["angles_deg"] for e in each])
-    )} if first["mode"] == "fixed" else {}  # fmt: skip
-    return {
+    step: dict[str, Any] = {
         **{name: first[name] for name in _OF_FIRST if name in first},
         **reckoned.required.of(rows, "area_mm2", "share"), "operation": first["id"],
         "faces": Such(", ".join(faces), lambda written: sorted(written) == sorted(faces)),
         "link_seconds": sum(e["link_seconds"] for e in each),
         "seconds": None if None in seconds else sum(seconds), "clearance_mm": None if None in clearances else min(clearances),
-        **({"alone_mm2": first["exclusive_mm2"]} if alone and first.get("step") is None else {}), **repeat,
     }  # fmt: skip
+    if alone and first.get("step") is None:
+        step["alone_mm2"] = first["exclusive_mm2"]
+    if first["mode"] == "fixed":
+        even = Such("what its angles turn by", lambda by: by is None or evenly(by, [e["angles_deg"] for e in each]))
+        step |= {"repeat": len(same), "repeat_deg": None if alone else even}
+    return step
 
 
 def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:
@@ -330,8 +334,6 @@ def _chosen(document: Mapping[str, Any], entries: list[dict[str, Any]]) -> dict[
     """Which cutters must be named as those that finish; not where several setups hide the verdicts of the first one."""
     over = [each["id"] for each in entries if each.get("lost_in_all") == 0]
     named: dict[str, Any] = {"selected_over_setups": over[0] if over and not document["missing"] else None}
-    if any("feasible" not in each for each in entries):
-        return named
     feasible = [each["id"] for each in entries if each["feasible"]]
     named["selected"] = document["selected"] if document["selected"] in [None, *feasible[:1]] else "a cutter that finishes"
     stood = any(each["by_reason"].get("another_setup") for each in entries)
