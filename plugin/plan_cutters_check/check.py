@@ -16,8 +16,8 @@ from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.records import document_of
 from plan_cutters_check.surface import Clock
 
-#: Seconds that a check takes at most unless another time is set, and the shares of them by which operations, drills and postures of
-#: verdicts must be put down.
+#: Seconds that a check takes at most unless another time is set, and the shares of them by which operations, drills and postures
+#: of verdicts must be put down.
 SECONDS, _UNTIL = 60.0, (0.6, 0.8, 1.0)
 
 

@@ -48,8 +48,9 @@ _LISTED = (
     ("holes are not looked for again", "holes[].", "faces** depth_mm through bottom cone_deg countersink** counterbore** group"),
     ("which other tools would do is not looked for", "holes[].", "missing**"),
     ("the best order of the rotary axes is not looked for", "process.drilling[].", "index_seconds"),
+    ("it describes the input", "scope.", "judged_by_kind** not_judged_by_kind**"),
     ("it describes the input", "faces[].", "kind component carrier** neighbours** centre_mm** gap_mm chord_error_mm unjudged"),
-    ("it describes the input", "", "scope.judged_by_kind** scope.not_judged_by_kind** part.** libraries** machine.linear** machine.rotary[].** fixtures**"),
+    ("it describes the input", "", "part.** libraries** machine.linear** machine.rotary[].** fixtures**"),
     ("it is about the program and its files", "",
      "legend** legend_words** format_version versions** notes** note_codes** split** files** not_written** run**"),
 )  # fmt: skip
