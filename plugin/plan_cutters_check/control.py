@@ -1,4 +1,4 @@
-"""What an entry with fixed angles says: axis, frame, and words of the control, whose turns are made one by one."""
+"""Make what an entry with fixed angles must say: axis, frame, and words of the control, whose turns are made one by one."""
 
 import math
 import re
@@ -23,7 +23,7 @@ _ONE = 0.01
 
 
 def orientation(question: Question, each: Mapping[str, Any], within: float) -> dict[str, Any]:
-    """What an entry with fixed angles must say: its words as they are written where these are right, else what they must do.
+    """Give what an entry with fixed angles must say: its words as they are written where these are right, else what they must do.
 
     `within`: by how much parts of unit axes may be off.
     """

@@ -176,7 +176,7 @@ def _process(reckoned: Reckoned) -> dict[str, Any]:
     return {
         "setups": [{"number": k, "up": list(each.z)} for k, each in enumerate(question.setups, 1)],
         "steps": _steps(reckoned, plan), "plan": plan.entry["name"], "finished_mm2": finished, "asked_mm2": whole,
-        "left": _left(written["left"], whole, whole - finished, missing),
+        "left": _remaining(written["left"], whole, whole - finished, missing),
         "finished_share": 1.0 if not missing else share if done.any() else 0.0,
         "seconds": None if None in parts else sum(parts),
         "exempt": {"cause": "sharp_edge", **edges.of(exempt, "area_mm2", "share", "samples")} if len(exempt) else None,
@@ -184,7 +184,7 @@ def _process(reckoned: Reckoned) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _left(written: Sequence[Mapping[str, Any]], whole: float, rest: float, missing: bool) -> Any:
+def _remaining(written: Sequence[Mapping[str, Any]], whole: float, rest: float, missing: bool) -> Any:
     """What no step finishes: areas that together are the rest; why each is left is not looked at."""
     areas = [each["area_mm2"] for each in written]
     if missing != bool(areas) or not math.isclose(math.fsum(areas), rest, rel_tol=_SUM, abs_tol=_SUM * whole):
@@ -309,8 +309,8 @@ def _hole(reckoned: Reckoned, written: Mapping[str, Any]) -> dict[str, Any]:
 def _face(reckoned: Reckoned, verdict: NDArray[Any], reason: NDArray[Any], mine: NDArray[np.bool_]) -> dict[str, Any]:
     """The verdicts on a face whose samples are these (n,)."""
     area, inside = reckoned.sampled[mine], reckoned.question.samples["inside_bodies"]
-    aside = {"inside_share": inside, "exempt_share": reckoned.exempt, "drilled_share": reckoned.drilled}
-    shares = {name: float(area[each[mine]].sum() / area.sum()) for name, each in aside.items()}
+    excluded = {"inside_share": inside, "exempt_share": reckoned.exempt, "drilled_share": reckoned.drilled}
+    shares = {name: float(area[each[mine]].sum() / area.sum()) for name, each in excluded.items()}
     if not shares["drilled_share"]:
         del shares["drilled_share"]
     return {**_counts(reckoned, verdict, mine), "area_share": _shares(reckoned, verdict, reason, mine), **shares}
@@ -322,8 +322,8 @@ def _shares(
     """Shares of the area that samples (n,) stand for, by verdicts and by reasons; `missing`: that of faces without any, mm2."""
     area, words = reckoned.required.area, reckoned.question.document["reasons"]
     whole = max(float(area[mine].sum()) + missing, 1e-300)
-    aside = reckoned.question.samples["inside_bodies"] | reckoned.exempt | reckoned.drilled
-    missed = mine & ~aside & np.isin(verdict, NOT_REACHED)
+    excluded = reckoned.question.samples["inside_bodies"] | reckoned.exempt | reckoned.drilled
+    missed = mine & ~excluded & np.isin(verdict, NOT_REACHED)
     shares = {word: float(area[mine & (verdict == code)].sum()) / whole for word, code in WORDS.items()}
     shares["unjudged"] += missing / whole
     codes = [code for code in np.unique(reason[missed]).tolist() if code < len(words)]
