@@ -254,7 +254,6 @@ def _cutter(reckoned: Reckoned, name: str) -> dict[str, Any]:
             {"part": s.part, "low_mm": s.low, "length_mm": s.length, "radius_mm": s.radius, "upper_radius_mm": s.upper_radius}
             for s in sizes.sections
         ],
-        **(dict(zip(("name", "holder"), question.names[name], strict=True)) if question.names else {}),
     }  # fmt: skip
     if len(question.setups) > 1:
         entry["lost_in_all"] = int((reckoned.finished & np.isin(reckoned.verdict[name], NOT_REACHED)).sum())

@@ -12,7 +12,7 @@ from plan_cutters import Options, plan
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.words.text import with_text
-from plan_cutters_check.asking import question_of, stated_by
+from plan_cutters_check.asking import question_of
 from plan_cutters_check.bench import Bench, Contacts
 from plan_cutters_check.check import check
 from plan_cutters_check.findings import leaves, pattern
@@ -318,7 +318,7 @@ class TestTheToleranceThatIsWanted:
         document["effective"].update(chord_error_mm=0.1, tolerance_requested_mm=0.01)
         document["faces"][0]["chord_error_mm"] = 0.1
         wanted = replace(lip.options, tolerance=0.01)
-        question = stated_by(replace(question_of(lip.part, wanted, told_anew(document), arrays), asked=0.01), wanted)
+        question = question_of(lip.part, wanted, told_anew(document), arrays)
         answer = check(question, seconds=1e6)
         assert answer.beyond > 20
         assert answer.first.startswith("not decided: ")
