@@ -293,7 +293,8 @@ def _solutions(machine: MachineAxes, setup: Setup, axis: Floats) -> Iterator[tup
 
 def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
     """Which angles, rad, lie within limits, or do after whole turns."""
-    low, high = float(limits[0]) - 2e-8, float(limits[1]) + 2e-8
+    # An angle whose cosine is nearly 1 has half as many digits.
+    low, high = float(limits[0]) - 1e-7, float(limits[1]) + 1e-7
     if not math.isfinite(low) or not math.isfinite(high):
         return np.ones(len(angle), bool)
     return np.asarray(angle + 2.0 * math.pi * np.ceil((low - angle) / (2.0 * math.pi)) <= high)

@@ -37,7 +37,8 @@ def placed(
             missed += int(bench.misses(tool, there, axis, at).sum())
             clearance = each["clearance_mm"] or 0.0
             put = bench.put_down(each["setup"], tool, there, axis, at, clock, clearance)
-            put[0][~held(question.machine, question.setups[each["setup"]], axis)] = MET
+            if each["mode"] != "fixed":
+                put[0][~held(question.machine, question.setups[each["setup"]], axis)] = MET
             tally.open_ += len(rows) - len(there)
             tally.add(*put, each["id"])
             if clearance and len(tool.solids) > 1 and len(there) == len(rows) and (put[0] == FREE).all():
