@@ -7,7 +7,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -135,6 +135,10 @@ def content(at: str, path: str) -> bytes:
 
 #: Rules by which the command fails, each one stricter than the one before it.
 RULES = ("none", "lost", "unreachable", "not-comparable")
+#: Words of `--annotations`: where none is given, the environment decides.
+KINDS = ("github", "none")
+#: GitHub shows so many of a step; and findings of a part, in one.
+_MOST, _FINDINGS = 10, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,6 +263,39 @@ def hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Sequen
                 file.write(what)
 
 
+def requested(kind: str | None) -> bool:
+    """Whether annotations are written: as requested, else where this is a job of GitHub.
+
+    >>> requested("github"), requested("none")
+    (True, False)
+    """
+    return kind == "github" or (kind is None and os.environ.get("GITHUB_ACTIONS") == "true")
+
+
+def annotations(parts: Iterable[tuple[str, Sequence["Case"]]]) -> Iterator[str]:
+    """Lines, one at the file of each part that fails; of more parts than GitHub shows the last line says how many there are."""
+    failing = [(part, [case for case in cases if case.outcome in ("failure", "error")]) for part, cases in parts]
+    failing = [(part, cases) for part, cases in failing if cases]
+    for part, cases in failing[: _MOST if len(failing) <= _MOST else _MOST - 1]:
+        lines = [f"{case.name}: {case.message}" for case in cases[:_FINDINGS]]
+        lines += [f"and {len(cases) - _FINDINGS} more"] * (len(cases) > _FINDINGS)
+        text = "\n".join(lines)
+        # The ends of a property are marked by commas and colons.
+        file = _data(part).replace(":", "%3A").replace(",", "%2C")
+        yield f"::error file={file},title=plan-cutters::{_data(text)}"
+    if len(failing) > _MOST:
+        yield f"::error title=plan-cutters::{len(failing) - _MOST + 1} more parts fail: the summary has all"
+
+
+def _data(text: str) -> str:
+    r"""A text that ends no line and begins no command.
+
+    >>> _data("50 %\n::stop")
+    '50 %25%0A::stop'
+    """
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
 if TYPE_CHECKING:
     from plan_cutters_batch.job import Content, Settings
 
@@ -305,6 +342,7 @@ class ChangedRequest(Reported):
     staged: bool
     fail_on: str
     out: str
+    annotations: str | None
     cache: str | None
     debug: bool
 
@@ -337,6 +375,10 @@ class ChangedRequest(Reported):
 @_output("-o", "--out", type=Folder("DIR"), default="plan-cutters-changed",
          help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]")  # fmt: skip
 @_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output(
+    "--annotations", type=click.Choice(KINDS),
+    help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
+)  # fmt: skip
 @options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."},
          sarif={})  # fmt: skip
 @takes(ChangedRequest)
@@ -365,8 +407,11 @@ def command(request: ChangedRequest) -> int:
     failing = [row for row in rows if row.breaks(request.fail_on)]
     text, job = (summary(rows, request.fail_on, failing, began, at) for at in ("", artifacts()))
     hand_on(rows, out, text, job, failing)
+    cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
     if files is not None:
-        files.write(_SELF, [case for row in rows for case in row_cases(row, request.fail_on)])
+        files.write(_SELF, [case for _, each in cases for case in each])
+    for line in annotations(cases) if requested(request.annotations) else ():
+        error(line)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
             error(f"{_SELF}: {line}")

@@ -48,6 +48,10 @@ class FaceDifference(Frozen):
     kind: str
     area_mm2: float | None = Field(description="null where it is not known")
     centre_mm: Vector | None
+    radius_mm: tuple[float, float] | None = Field(
+        default=None,
+        description="of its cylinder, sphere or tube, old and new, where a face of another radius took the place of one",
+    )
     was: FaceState | None = None
     now: FaceState | None = None
     lost: bool = Field(description="less of it is reached, or it is new and not reached")

@@ -23,6 +23,9 @@ from plan_cutters_ci.model import (
     Reach,
 )
 
+#: The old radius of a face and the new one, mm; its old id and the new one, None where a plan has it not.
+Radii = tuple[float, float]
+Ids = tuple[str | None, str | None]
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
 #: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
@@ -63,7 +66,8 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         )
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
-    all_faces = (_face(old, a, new, b, how, slack) for a, b, how in with_others(old.faces, new.faces, pairs))
+    radii = _other_radii(old, new, pairs)
+    all_faces = (_face(old, a, new, b, how, slack, radii) for a, b, how in with_others(old.faces, new.faces, pairs))
     all_cutters = (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in with_others(old.cutters, new.cutters, tools))
     faces, cutters = sorted(filter(None, all_faces), key=_worst_face), sorted(filter(None, all_cutters), key=_worst_cutter)
     rows: list[FaceDifference | CutterDifference] = [*faces, *cutters]
@@ -137,7 +141,9 @@ def _text(value: Any) -> str:
     return text if len(text) <= 120 else f"{text[:57]} ... {text[-57:]}"
 
 
-def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: Any, slack: float) -> FaceDifference | None:
+def _face(
+    old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: Any, slack: float, radii: Mapping[Ids, Radii]
+) -> FaceDifference | None:
     """A face as the last plan has it that has it; None where both have it and its answer is the same.
 
     Of those that one plan has a new target that is not reached whole is lost, and one that is gone is not won.
@@ -150,13 +156,35 @@ def _face(old: Plan, a: FaceEntry | None, new: Plan, b: FaceEntry | None, how: A
             return None
     else:
         loses, wins = now is not None and now.reach not in _CLOSED, False
-    face = b or a
+    face, ids = b or a, (a.id if a else None, b.id if b else None)
     assert face is not None
     return FaceDifference(
-        old=a.id if a else None, new=b.id if b else None, matched_by=how, name=face.name, kind=face.kind or face.shape,
+        old=ids[0], new=ids[1], matched_by=how, name=face.name, kind=face.kind or face.shape,
         area_mm2=face.area_mm2 if math.isfinite(face.area_mm2) else None, centre_mm=face.centre_mm, was=was, now=now, lost=loses,
-        won=wins,
+        won=wins, radius_mm=radii.get(ids),
     )  # fmt: skip
+
+
+def _other_radii(old: Plan, new: Plan, pairs: Matched) -> dict[Ids, Radii]:
+    """Radii, by their ids, of faces of one shape of which each plan has one alone, among mostly the same faces."""
+    again = {a.id: b.id for a, b, _ in pairs}
+    theirs = {*again.values()}
+    came = [(face, radius) for face in new.faces if face.id not in theirs and (radius := _radius(face))]
+    radii: dict[Ids, Radii] = {}
+    for face in old.faces:
+        if face.id in again or not (radius := _radius(face)):
+            continue
+        neighbours = {again[name] for name in face.neighbours or () if name in again}
+        for other, its in came:
+            same = neighbours & {*(other.neighbours or ())}
+            if other.shape == face.shape and 2 * len(same) > len(neighbours) > 1 and not math.isclose(radius, its, rel_tol=1e-4):
+                radii |= {(face.id, None): (radius, its), (None, other.id): (radius, its)}
+    return radii
+
+
+def _radius(face: FaceEntry) -> float | None:
+    """Of a cylinder or sphere, or of the tube of a torus, mm."""
+    return None if face.carrier is None else face.carrier.minor_radius_mm or face.carrier.radius_mm
 
 
 def _cutter(

@@ -101,7 +101,7 @@ def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
     for f in difference.faces:
         name = f" {f.name}" if f.name else ""
         size = "not known" if f.area_mm2 is None else area(f.area_mm2)
-        yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was), _reach(f.now)
+        yield mark(f), f"{called(f.old, f.new)}{name}", _formed(f), size, _reach(f.was), _reach(f.now)
 
 
 def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
@@ -129,6 +129,18 @@ def fall(each: FaceDifference | CutterDifference) -> str:
         return "lost"
     whole = each.was.reach == "reached" if isinstance(each.was, FaceState) else each.was.finishes
     return "lost" if whole else "less"
+
+
+def _formed(face: FaceDifference) -> str:
+    """The kind of a face, and its radius where that is another one now.
+
+    >>> face = FaceDifference(name="", kind="blend", area_mm2=None, centre_mm=None, lost=True, won=False, radius_mm=(5.0, 2.0))
+    >>> _formed(face)
+    'blend, R5 to R2'
+    """
+    if face.radius_mm is None:
+        return face.kind
+    return f"{face.kind}, {' to '.join(f'R{each:.4g}' for each in face.radius_mm)}"
 
 
 def called(old: str | None, new: str | None) -> str:

@@ -54,6 +54,9 @@ def test_after_a_smaller_radius_the_rounds_are_new_and_all_else_is_known(before)
     assert {f.old for f in found.faces if f.new is None} == mine
     assert {f.new for f in found.faces if f.old is None} == theirs
     assert all(f.lost == (f.now.reach != "reached") for f in found.faces if f.old is None)
+    # Rows of both sides say what was changed.
+    assert all(f.radius_mm == pytest.approx((5.0, 2.0)) for f in found.faces if None in (f.old, f.new))
+    assert all("R5 to R2" in row[2] for row in face_rows(found) if row[0] in ("gone", "new", "lost"))
     # The larger cutter rounded the pocket no more than the smaller one does now.
     assert not [f for f in found.faces if f.won]
 

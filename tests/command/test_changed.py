@@ -11,8 +11,9 @@ import cadquery as cq
 import pytest
 import yaml
 
+from plan_cutters.cases.files import Case
 from plan_cutters.errors import PlanError
-from plan_cutters_ci.changed import RULES, Changed, PartRequest, Row, changed, content
+from plan_cutters_ci.changed import RULES, Changed, PartRequest, Row, annotations, changed, content, requested
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT, real_file
@@ -305,6 +306,40 @@ def test_each_rule_is_stricter_than_the_one_before():
         [False, True, True, True], [False, False, True, True], [False, False, False, True],
     ]  # fmt: skip
     assert set(RULES) == set(ACTION["inputs"]["fail-on"]["description"].partition(" (")[0].replace(" or ", ", ").split(", "))
+
+
+def test_a_job_without_a_request_has_annotations_and_nobody_else(monkeypatch):
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    assert [requested(kind) for kind in (None, "github", "none")] == [True, True, False]
+    monkeypatch.delenv("GITHUB_ACTIONS")
+    assert [requested(kind) for kind in (None, "github", "none")] == [False, True, False]
+
+
+def test_names_can_neither_end_an_annotation_nor_begin_a_command():
+    """As the runner reads a line: properties up to `::`, parted by commas, then the text; each with its escapes undone."""
+    name, text = "a,b:c\n::stop%0A.step", "100 %\r\n::add-mask::x"
+    (line,) = annotations([(name, [Case(name, "F1", "failure", "k", text), Case(name, "F2"), Case(name, "F3", "skipped")])])
+    assert len(line.splitlines()) == 1
+    head, _, data = line.removeprefix("::error ").partition("::")
+
+    def undone(value):
+        for escape, char in (("%3A", ":"), ("%2C", ","), ("%0A", "\n"), ("%0D", "\r"), ("%25", "%")):
+            value = value.replace(escape, char)
+        return value
+
+    properties = dict(each.split("=") for each in head.split(","))
+    assert {key: undone(value) for key, value in properties.items()} == {"file": name, "title": "plan-cutters"}
+    assert undone(data) == f"F1: {text}"
+
+
+def test_no_more_annotations_are_written_than_github_shows():
+    def lines(parts, findings=1):
+        rows = [(f"{i}.step", [Case("p", f"F{k}", "error", "k", "m") for k in range(findings)]) for i in range(parts)]
+        return [*annotations(rows)]
+
+    assert [len(lines(n)) for n in (0, 1, 10, 11, 40)] == [0, 1, 10, 10, 10]
+    assert lines(40)[-1].endswith("::31 more parts fail: the summary has all")
+    assert lines(1, 7)[0].endswith("%0AF4: m%0Aand 2 more")
 
 
 def test_what_pip_downloads_is_cached_before_it_is_installed():

@@ -27,7 +27,7 @@ COMMANDS = {
             ["--cutters", "a.toml", "--holder", "er32", "--setup", "-y", "--fixture", "table", "--ignore", "F3", "--unit", "mm",
              "-o", "a.png", "-o", "a.svg", "--json", "-"]),
     "diff": (DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
-    "changed": (ChangedRequest, [], ["--junit", "j.xml", "--base", "main", "--staged",
+    "changed": (ChangedRequest, [], ["--junit", "j.xml", "--annotations", "none", "--base", "main", "--staged",
                  "--cache", "c", "--", "--grid", "5"]),
     "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",
               "--to-toml", "b.toml", "--draw", "out", "--json"]),
