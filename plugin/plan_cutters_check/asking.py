@@ -48,43 +48,48 @@ _BORE = 1e-3
 def question_of(
     part: Part, options: Options, document: Mapping[str, Any], arrays: Mapping[str, Mapping[str, NDArray[Any]]]
 ) -> Question:
-    """The form that the checker takes; an OptionError for a plan of another part, of other options, or without operations."""
+    """The form that the checker takes, with what plan.json must say by the command, and by the program's words for its numbers.
+
+    Raises OptionError: a plan of another part, of other options, or without operations.
+    """
     require_operations(document)
     cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
     ignored = ignored_faces(part, ignored_words(part, options.ignore))
-    return Question(
-        part, machine_axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
-        ignored | repeated_faces(part, ignored).keys(), orient(part, options.setup, options.flip).sign, tolerance, document,
-        arrays["operations.npz"], arrays["samples.npz"], grips=grips, drills=_drills(options),
-    )  # fmt: skip
-
-
-def stated_by(question: Question, options: Options) -> Question:
-    """The question with what plan.json must say by the user's own command, and by the program's words for the plan's numbers.
-
-    Raises OptionError: the command says otherwise.
-    """
-    names = {each.id: (each.name, each.holder.name if each.holder else "") for each in options.judged}
-    stated: dict[str, Any] = {
+    obstacles = ignored | repeated_faces(part, ignored).keys()
+    stated = {
         "format": "plan-cutters-plan",
         "units": {"length": "mm", "angle": "deg"},
         "reasons": list(REASONS),
         "reason_words": {code: WORDS[code].name for code in REASONS},
         "machine": {"name": options.machine.name, "notes": list(options.machine.notes)},
-        "effective": _effective(question, options),
+        "cutters": [
+            {"name": cutter.name, "holder": cutter.holder.name if cutter.holder else ""}
+            for cutter in (cutters[each["id"]] for each in document["cutters"])
+        ],
+        "effective": _effective(part, options, document["effective"], obstacles),
     }
     try:
-        made = with_text(plan_of(json.dumps(question.document), "plan.json")).model_dump(mode="json")
+        stated |= _worded(document)
+        odd = ""
     except (PlanError, LookupError, ArithmeticError, ValueError, StopIteration) as error:
         # Not every error has words.
         odd = getattr(error, "cause", None) or f"its words cannot be made ({type(error).__name__}: {error})"
-        return replace(question, names=names, stated=stated, odd=odd)
-    stated["text"], process = made["text"], made["process"]
+    return Question(
+        part, machine_axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups, obstacles,
+        orient(part, options.setup, options.flip).sign, tolerance, document, arrays["operations.npz"], arrays["samples.npz"],
+        asked=options.tolerance, grips=grips, stated=stated, odd=odd, drills=_drills(options),
+    )  # fmt: skip
+
+
+def _worded(document: Mapping[str, Any]) -> dict[str, Any]:
+    """The words of a plan, made anew of its numbers."""
+    made = with_text(plan_of(json.dumps(document), "plan.json")).model_dump(mode="json")
+    process = made["process"]
     own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]
-    left = [{"needs": each["needs"]} for each in process["left"]]
-    stated["process"] = {"next": process["next"], "doubts": process["doubts"], "left": left, "steps": own}
-    return replace(question, names=names, stated=stated)
+    needs = [{"needs": each["needs"]} for each in process["left"]]
+    words = {"next": process["next"], "doubts": process["doubts"], "left": needs, "steps": own}
+    return {"text": made["text"], "process": words}
 
 
 #: Options that are compared in another way, or that follow from the part; those that a command may leave out all the same.
@@ -96,7 +101,7 @@ _SAFETY = ("tolerance_requested_mm", "axis_accuracy_deg")
 _UNFIT = "the plan of operations does not fit:"
 
 
-def _effective(question: Question, options: Options) -> dict[str, Any]:
+def _effective(part: Part, options: Options, written: Mapping[str, Any], obstacles: frozenset[int]) -> dict[str, Any]:
     """The options in force as far as the command says them: one that it leaves out, and the plan does not, is not checked."""
 
     def every(those: Options) -> dict[str, Any]:
@@ -110,7 +115,7 @@ def _effective(question: Question, options: Options) -> dict[str, Any]:
         names = [name for name in Effective.model_fields if name not in _OTHER]
         return json.loads(json.dumps({n: made[n] if n in made else as_requested(those, n) for n in names}, default=str))
 
-    written, usual, stated = question.document["effective"], every(Options()), dict[str, Any]()
+    usual, stated = every(Options()), dict[str, Any]()
     for name, value in every(options).items():
         if same(value, written.get(name)):
             stated[name] = written.get(name)
@@ -118,8 +123,8 @@ def _effective(question: Question, options: Options) -> dict[str, Any]:
             continue
         elif name in _SAFETY or not same(value, usual[name]):
             raise OptionError(f"{_UNFIT} {name}: {short(written.get(name))} in the plan, {short(value)} here")
-    ignore = ignored_words(question.part, options.ignore)
-    targets = choose(question.part, written["faces"], question.ignored, ignore).targets
+    ignore = ignored_words(part, options.ignore)
+    targets = choose(part, written["faces"], obstacles, ignore).targets
     # These were compared already, for the plan fits.
     fits = ("cutters", "setup", "other_setups", "tilt_deg", "rotation_deg", "tolerance_mm")
     stated |= {name: written[name] for name in fits}

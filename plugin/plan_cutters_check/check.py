@@ -8,33 +8,28 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
-from plan_cutters_check import drilling, fixtures
+from plan_cutters_check import drilling, fixtures, paper, trials
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.findings import Answer, Compared, Finding
-from plan_cutters_check.paper import Paper, faults, ill_formed, unsound
 from plan_cutters_check.question import Question, require_operations
 from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.records import document_of
 from plan_cutters_check.surface import Clock
-from plan_cutters_check.trials import Trials
 
-#: Seconds that a check takes at most unless another time is set, and the share of them by which each of its parts must be done.
-SECONDS = 60.0
-_PARTS = {"placed": 0.35, "weights": 0.6, "covered": 0.75, "alone": 0.85, "verdicts": 0.9, "clearance": 1.0}
+#: Seconds that a check takes at most unless another time is set, and the shares of them by which operations, drills and postures
+#: of verdicts must be put down.
+SECONDS, _UNTIL = 60.0, (0.6, 0.8, 1.0)
 
 
 def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str], None] = lambda doing: None) -> Answer:
     """Check the operations of a plan; `tell` is called with what is being done.
 
-    What is not done after so many seconds is listed as not checked, with how much was; all samples of the labels are looked at in
-    the order of a random draw with seed 0.
+    What is not done after so many seconds is listed as not checked, with how much was.
 
     Raises OptionError: the plan has no operations.
     """
     require_operations(question.document)
-    wrong = [Finding(False, each) for each in faults(question)]
+    wrong = [Finding(False, each) for each in paper.faults(question)]
     if wrong:
         return Answer(tuple(wrong), Compared())
     try:
@@ -45,26 +40,30 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
-    start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    findings = [*Paper(reckoned, rng).findings(), *ill_formed(reckoned)]
-    findings += (Finding(False, f"{each}.") for each in fixtures.faults(question))
-    findings += unsound(reckoned)
+    start, reckoned = time.monotonic(), Reckoned(question)
+    findings = [*paper.findings(reckoned), *(Finding(False, f"{each}.") for each in fixtures.faults(question))]
+    findings += paper.unsound(reckoned)
     expected = document_of(reckoned)
     first = _compared(question, findings, Compared().compare(expected, question.document))
     if not first.holds:
-        last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
-        return replace(first, findings=(*first.findings, last))
+        none = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
+        return replace(first, findings=(*first.findings, none))
     bench = Bench(fixtures.resting(question), tell)
-    clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
-    findings += drilling.findings(question, bench, clock["clearance"])
-    findings += Trials(reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
+    operations, drills, verdicts = (Clock(start + seconds * share) for share in _UNTIL)
+    if bench.unread:
+        findings.append(Finding(None, f"Nothing is known of what {', '.join(bench.unread)} are in the way of."))
+    if bench.hollow:
+        findings.append(Finding(None, f"Whether a tool stands wholly within {', '.join(bench.hollow)} is not looked at."))
+    findings += trials.placed(reckoned, bench, operations, tell, expected["operations"])
+    findings += drilling.findings(question, bench, drills)
+    findings += trials.postures(reckoned, bench, verdicts)
     return _compared(question, findings, Compared().compare(expected, question.document))
 
 
 def on_paper(question: Question) -> Answer:
     """The part of a check that is about what plan.json says: no array is looked at by itself, and no tool is put down."""
     reckoned = Reckoned(question)
-    return _compared(question, [*unsound(reckoned)], Compared().compare(document_of(reckoned), question.document))
+    return _compared(question, [*paper.unsound(reckoned)], Compared().compare(document_of(reckoned), question.document))
 
 
 def _compared(question: Question, findings: list[Finding], entries: Compared) -> Answer:

@@ -67,7 +67,7 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
     """
     from cad_io import read_part
     from plan_cutters.errors import OptionError
-    from plan_cutters_check.asking import question_of, stated_by
+    from plan_cutters_check.asking import question_of
     from plan_cutters_check.check import check
 
     document, arrays, checksums = _read(file)
@@ -76,9 +76,7 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
     progress("check", 0, 1)
     try:
         read = read_part(part, unit=options.unit, timeout=read_timeout)
-        question = question_of(read, options, document, arrays)
-        question = replace(question, checksums=checksums, asked=options.tolerance)
-        question = stated_by(question, options)
+        question = replace(question_of(read, options, document, arrays), checksums=checksums)
         answer = check(question, tell=progress.detail)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None

@@ -1,4 +1,4 @@
-"""Do the words of a control that a plan has set the tool as it says? They are read anew, and their turns made one by one."""
+"""Make what an entry with fixed angles must say: axis, frame, and words of the control, whose turns are made one by one."""
 
 import math
 import re
@@ -8,30 +8,44 @@ from typing import Any
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters_check.question import FREE, MachineAxes
+from plan_cutters_check.findings import Exactly, about
+from plan_cutters_check.question import FREE, MachineAxes, Question, degrees_of, other_angles, tool_frame
 
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _PLANE = re.compile(rf"G68\.2 P0 Q313 X0 Y0 Z0 I{_NUMBER} J{_NUMBER} K{_NUMBER}")
 _TURN = re.compile(r"G53\.1 P([012])")
 #: Parts of unit vectors that are one, for a plane's angles have six digits; digits of an angle that a control shows, deg.
 _SAME, _SHOWN = 1e-6, 0.00051
+#: By how much angles may be off that are rounded for a control, deg.
+_ROUNDED = 0.0015
 #: Angles of the second axis that are one: then the first one may have any, deg.
 _ONE = 0.01
 
 
-def words_of(machine: MachineAxes, each: Mapping[str, Any], plane: Floats, other: Mapping[str, Any] | None) -> dict[str, Any]:
-    """Give the words that an operation must have: as it is written where that is right, else what it must do.
+def orientation(question: Question, each: Mapping[str, Any], within: float) -> dict[str, Any]:
+    """Give what an entry with fixed angles must say: its words as they are written where these are right, else what they must do.
 
-    `plane` (3, 3): X, Y and Z of the tilted plane in the machine's frame, as rows; nan where X is not known. `other`: the other
-    angles as they are written.
+    `within`: by how much parts of unit axes may be off.
     """
-    still, other_names = not machine.names, machine.names == FREE or not {*machine.names} <= {"A", "B", "C"}
+    setup, machine, degrees = question.setups[each["setup"]], question.machine, degrees_of(question, each)
+    axis, x, plane = tool_frame(question, each["setup"], degrees)
+    # Of other angles that are as large any may be written.
+    stated, others = each.get("other_angles_deg") or {}, other_angles(question, each["setup"], degrees[0])
+    near = min(others, key=lambda one: math.dist(one, [float(stated.get(name, 0.0)) for name in machine.names]), default=None)
+    other = None if near is None else dict(zip(machine.names, near, strict=True))
+    free = machine.names == FREE or not {*machine.names} <= {"A", "B", "C"}
     words = {
-        "g68_2": (still, _turned(str(each.get("g68_2")), plane), "words that turn the plane to the tool axis"),
-        "g53_1": (still, _taken(machine, each, other), "words that take these angles"),
-        "rotary_words": (other_names, _positions(machine, each), "words with these angles"),
+        "g68_2": (not machine.names, _turned(str(each.get("g68_2")), plane), "words that turn the plane to the tool axis"),
+        "g53_1": (not machine.names, _taken(machine, each, stated or other), "words that take these angles"),
+        "rotary_words": (free, _positions(machine, each), "words with these angles"),
     }
-    return {name: None if none else each.get(name) if good else text for name, (none, good, text) in words.items()}
+    across = {"x": about(x.tolist(), within)} if np.isfinite(x).all() else {}
+    return {
+        "axis": about(axis.tolist(), within), "angles_deg": Exactly(zip(machine.names, degrees[0].tolist(), strict=True)),
+        "other_angles_deg": None if other is None else Exactly({name: about(a, _ROUNDED) for name, a in other.items()}),
+        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": about(axis.tolist(), within), **across},
+        **{name: None if none else each.get(name) if good else text for name, (none, good, text) in words.items()},
+    }  # fmt: skip
 
 
 def _turned(words: str, plane: Floats) -> bool:

@@ -13,9 +13,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, SizeNote
 from plan_cutters_check.bench import Bench
-from plan_cutters_check.control import words_of
-from plan_cutters_check.findings import Between, Exactly, Finding, Loose
-from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held, other_angles, tool_frame
+from plan_cutters_check.control import orientation
+from plan_cutters_check.findings import Between, Finding, about
+from plan_cutters_check.question import FREE, DrillSizes, Question, allowed, degrees_of, held
 from plan_cutters_check.surface import FREE as STANDS_FREE
 from plan_cutters_check.surface import MET, OPEN, Clock, met
 from plan_cutters_check.tool import Tool, tool_of
@@ -40,35 +40,29 @@ def entries(question: Question) -> list[Any]:
     """Reckon `process.drilling`, as far as it follows from the libraries, the holes and the command."""
     document = question.document
     written: Sequence[Mapping[str, Any]] = document["process"].get("drilling", [])
-    timed = any(plan.get("seconds") is not None for plan in document["operations"]["plans"])
-    seen, steps = set[tuple[Any, ...]](), list[Any]()
+    steps = list[Any]()
     for step in written:
         drill = question.drills.get(step["tool"])
         if drill is None:
             steps.append("a step with a tool of the libraries")
             continue
-        number, deep, feed = len(step["holes"]), float(step["depth_mm"]), drill.feed
-        feed = document["effective"]["feed_mm_min"] if feed is None else feed
-        turn = step["setup"], step["tool"], tuple(np.round(step["axis"], 5).tolist())
-        first, rates = turn not in seen, question.machine.rates
-        seen.add(turn)
-        constant = document["operations"]["assumed"]["index_s"]
-        index = 0.0 if not first or not timed else Loose(0.0, math.inf) if rates or not question.machine.names else constant
+        deep = float(step["depth_mm"])
+        feed = document["effective"]["feed_mm_min"] if drill.feed is None else drill.feed
         first_way = np.array(step["holes"][0]["mouth_mm"], float) - np.array(step["holes"][0]["tip_mm"], float)
         tip = (np.array([each["mouth_mm"] for each in step["holes"]]) - (deep + drill.beyond) * np.array(step["axis"])).tolist()
         steps.append({
             "kind": drill.kind, "tool": drill.sizes.id, "name": drill.name, "setup": step["setup"],
             "holes": [
-                {"hole": each["hole"], "mouth_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in _on_axis(document, each)],
-                 "tip_mm": [Between(x - _ROUNDED, x + _ROUNDED) for x in point]}
+                {"hole": each["hole"], "mouth_mm": about(_on_axis(document, each), _ROUNDED),
+                 "tip_mm": about(point, _ROUNDED)}
                 for each, point in zip(step["holes"], tip, strict=True)
             ],
             **_turned(question, step), "diameter_mm": _diameter(drill, step["diameter_mm"]),
-            "depth_mm": Between(*(float(np.linalg.norm(first_way)) - drill.beyond + x for x in (-_ROUNDED, _ROUNDED))),
-            "seconds": None if feed is None else number * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
+            "depth_mm": about(float(np.linalg.norm(first_way)) - drill.beyond, _ROUNDED),
             **({} if drill.pitch is None else {"pitch_mm": drill.pitch}), **_threaded(document, drill, step),
-            **({} if feed is None else {"feed_mm_min": feed}), "index_seconds": index,
-            "link_seconds": number * document["effective"]["link_time_s"],
+            **({} if feed is None else {"feed_mm_min": feed}),
+            "seconds": None if feed is None
+            else len(step["holes"]) * _WAY * deep / feed * 60.0 * (2.0 if drill.kind == "tap" else 1.0),
         })  # fmt: skip
     return steps
 
@@ -91,7 +85,7 @@ def _diameter(drill: DrillSizes, wide: float) -> Any:
     """The diameter that a tool leaves: its own, of a cone any that is no wider."""
     own = 2.0 * drill.sizes.radius
     off = max(_WIDE, _SHARE * wide)
-    return Between(0.0, own + off) if drill.kind in _CONES else Between(own - off, own + off)
+    return Between(0.0, own + off) if drill.kind in _CONES else about(own, off)
 
 
 def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
@@ -103,44 +97,10 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     degrees = degrees_of(question, step)
     if not allowed(machine, setup, degrees)[0]:
         return {"angles_deg": "angles within the limits"}
-    axis, x, plane = tool_frame(question, step["setup"], degrees)
-    others = other_angles(question, step["setup"], degrees[0])
-    other = dict(zip(machine.names, others[0], strict=True)) if others else None
-    words = words_of(machine, step, plane, other)
-    near = {"x": [Loose(-1.0, 1.0)] * 3, "z": [Between(a - _AXIS, a + _AXIS) for a in axis.tolist()]}
-    if np.isfinite(x).all():
-        near["x"] = [Between(a - _AXIS, a + _AXIS) for a in x.tolist()]
-    return {
-        "angles_deg": Exactly(step["angles_deg"]), "axis": near["z"],
-        "frame": {"origin": list(setup.origin or (0.0, 0.0, 0.0)), **near},
-        # What the machine has no word for is not written.
-        **{name: text for name, text in words.items() if text is not None or step.get(name) is not None},
-    }  # fmt: skip
-
-
-def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:
-    """The seconds of a process whose `steps` of mills have those of the entry, with those that drill."""
-    drilling, document = entries(question), question.document
-    known = [step for step in drilling if isinstance(step, dict)]
-    if not known or process["seconds"] is None:
-        return {"drilling": drilling} if drilling else {}
-    names = ("cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
-    if any(step["seconds"] is None for step in known):
-        return {"drilling": drilling, "seconds": None, **dict.fromkeys(names)}
-    assumed, written = document["operations"]["assumed"], document["process"]
-    turns = [step["index_seconds"] for step in known]
-    loose = any(isinstance(each, Loose) for each in turns)
-    tools = len({step["tool"] for step in known}) + len({step["cutter"] for step in steps if step["operation"]})
-    made = {
-        "cutting_seconds": process["cutting_seconds"] + sum(step["seconds"] for step in known),
-        "link_seconds": process["link_seconds"] + sum(step["link_seconds"] for step in known),
-        "index_seconds": process["index_seconds"] + (
-            sum(float(step["index_seconds"]) for step in written["drilling"]) if loose else sum(turns)
-        ),
-        "change_seconds": assumed["change_s"] * (tools - 1),
-        "setup_seconds": assumed["setup_s"] * (len({step["setup"] for step in (*known, *steps)}) - 1),
-    }  # fmt: skip
-    return {"drilling": drilling, "seconds": sum(made.values()), **made}
+    made = orientation(question, step, _AXIS)
+    del made["other_angles_deg"]
+    # What the machine has no word for is not written.
+    return {name: value for name, value in made.items() if value is not None or step.get(name) is not None}
 
 
 def hole(question: Question, number: int) -> dict[str, Any]:

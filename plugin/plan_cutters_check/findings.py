@@ -5,7 +5,7 @@ Every number and word of plan.json is met in one walk: it is compared with what 
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,8 +33,20 @@ class Between:
         return f"from {self.low:.6g} to {self.high:.6g}"
 
 
-class Loose(Between):
-    """A range in which an unchecked number must lie: that it lies there does not check it."""
+def about(value: Any, by: float) -> Any:
+    """A number, or numbers of a list, that may be off by so much."""
+    return [about(each, by) for each in value] if isinstance(value, list) else Between(value - by, value + by)
+
+
+@dataclass(frozen=True, slots=True)
+class Such:
+    """A value for which something holds; `words` say what that is."""
+
+    words: str
+    holds: Callable[[Any], bool]
+
+    def __str__(self) -> str:
+        return self.words
 
 
 class Exactly(dict[str, Any]):
@@ -43,7 +55,7 @@ class Exactly(dict[str, Any]):
 
 @dataclass(slots=True)
 class Compared:
-    """Leaves of plan.json that agree, that differ (a line each), and that are unchecked, by their paths."""
+    """Leaves of plan.json that agree, lines on what differs, and paths of which, and below which, nothing is expected."""
 
     agree: list[str] = field(default_factory=list)
     differ: list[str] = field(default_factory=list)
@@ -61,7 +73,7 @@ class Compared:
                 elif isinstance(expected, Exactly):
                     self.differ.append(f"{below} is an entry that no plan has")
                 else:
-                    self.unchecked += (leaf for leaf, _ in leaves(actual[name], below))
+                    self.unchecked.append(below)
         elif isinstance(expected, list) and isinstance(actual, list):
             if len(expected) != len(actual):
                 self.differ.append(f"{path} has {len(actual)} entries, not {len(expected)}")
@@ -72,7 +84,7 @@ class Compared:
         elif not same(expected, actual):
             self.differ.append(f"{path} is {short(actual)}, not {short(expected)}")
         else:
-            (self.unchecked if isinstance(expected, Loose) else self.agree).append(path)
+            self.agree += (leaf for leaf, _ in leaves(actual, path))
         return self
 
 
@@ -100,6 +112,8 @@ def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def same(expected: Any, actual: Any) -> bool:
     """Whether a value is what is expected, numbers but for rounding."""
+    if isinstance(expected, Such):
+        return expected.holds(actual)
     if isinstance(expected, Between):
         return _number(actual) and bool(expected.low - expected.near <= actual <= expected.high + expected.near)
     if _number(expected) and _number(actual):
@@ -200,12 +214,9 @@ class Answer:
         reasons = f" ({', '.join(why)})" if why else ""
         text = f"{open_:,} of {every:,} postures are not decided{reasons}." if every else "No posture was put down."
         head = "holds" if self.holds and not beyond else "not decided" if self.holds else "FAILS"
-        # Each by its shortest beginning that no checked path has.
-        known = {begin for path in {*map(pattern, self.entries.agree)} for begin in _beginnings(path)}
         under: dict[str, dict[str, None]] = {}
-        for path in dict.fromkeys(map(pattern, self.entries.unchecked)):
-            name = next((each for each in _beginnings(path) if each not in known), path).replace("[]", "")
-            begin, dot, rest = name.partition(".")
+        for path in map(pattern, self.entries.unchecked):
+            begin, dot, rest = path.replace("[]", "").partition(".")
             under.setdefault(begin, {}).update({rest: None} if dot else {})
         names = [f"{name} ({', '.join(some)})" if some else name for name, some in under.items()]
         if not names:
@@ -217,8 +228,3 @@ class Answer:
         """The answer in lines."""
         words = {True: "holds", False: "FAILS", None: "not checked"}
         return [self.first, *(f"{words[each.holds]}: {each.words}" for each in self.findings)]
-
-
-def _beginnings(path: str) -> Iterator[str]:
-    yield from (path[:k].removesuffix("[]") for k, letter in enumerate(path) if letter == ".")
-    yield path

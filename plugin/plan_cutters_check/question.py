@@ -142,10 +142,9 @@ class Question:
     `ignored`: numbers of faces that are no obstacles; `sign` (faces,): side of each face, as `cad_io.Orientation` has it;
     `tolerance`, `asked`: gouge tolerance that the plan keeps, and that the user wants, mm, 0: any; `document`, `operations`,
     `samples`: plan.json, and the arrays of operations.npz and samples.npz; `checksums`: by file, the SHA-256 that plan.json
-    states, and the file's own; `grips`: vises and chucks of which the plan alone says where they stand; `names`: by id, those of
-    a cutter and of its holder, empty: not known; `stated`: what plan.json must say by the user's own command, and by the
-    program's words for the plan's own numbers; `odd`: what of plan.json no plan of this version has, empty: nothing; `drills`: by
-    id, the tools for holes of the libraries.
+    states, and the file's own; `grips`: vises and chucks of which the plan alone says where they stand; `stated`: what plan.json
+    must say by the user's own command, and by the program's words for the plan's own numbers; `odd`: what of plan.json no plan of
+    this version has, empty: nothing; `drills`: by id, the tools for holes of the libraries.
     """
 
     part: Part
@@ -161,7 +160,6 @@ class Question:
     checksums: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     asked: float = 0.0
     grips: tuple[Grip, ...] = ()
-    names: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     stated: Mapping[str, Any] = field(default_factory=dict)
     odd: str = ""
     drills: Mapping[str, DrillSizes] = field(default_factory=dict)
@@ -295,7 +293,8 @@ def _solutions(machine: MachineAxes, setup: Setup, axis: Floats) -> Iterator[tup
 
 def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
     """Which angles, rad, lie within limits, or do after whole turns."""
-    low, high = float(limits[0]) - 2e-8, float(limits[1]) + 2e-8
+    # An angle whose cosine is nearly 1 has half as many digits.
+    low, high = float(limits[0]) - 1e-7, float(limits[1]) + 1e-7
     if not math.isfinite(low) or not math.isfinite(high):
         return np.ones(len(angle), bool)
     return np.asarray(angle + 2.0 * math.pi * np.ceil((low - angle) / (2.0 * math.pi)) <= high)

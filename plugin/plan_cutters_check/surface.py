@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cad_io import Part
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives, values
-from plan_cutters_check.tool import Solid, Tool, bounds
+from plan_cutters_check.tool import Tool, bounds
 
 Rows = NDArray[np.int64]
 #: Verdicts of a placement.
@@ -302,7 +302,11 @@ def met(
         while stack and not clock.over:
             who, cell = stack.pop()
             open_ = (hits.verdict[who] != MET) & (cells.state[cell] != OUTSIDE)
-            who, cell = _at_most(who[open_], cell[open_], stack)
+            who, cell = who[open_], cell[open_]
+            while len(who) > _MOST:
+                half = len(who) // 2
+                stack.append((who[half:], cell[half:]))
+                who, cell = who[:half], cell[:half]
             near = np.zeros(len(who), bool)
             for k, solid in enumerate(tool.solids if len(who) else ()):
                 deep, most = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
@@ -311,55 +315,13 @@ def met(
                 hits.verdict[who[hit]], hits.cell[who[hit]] = MET, cell[hit]
                 hits.depth[who[hit]], hits.solid[who[hit]] = deep[hit], k
             near &= (hits.verdict[who] != MET) & (cells.size[cell] > grain)
-            _cut(cells, who[near], cell[near], stack)
+            if near.any():
+                pieces, owner = cells.children(cell[near])
+                stack.append((who[near][owner], pieces))
         if stack:
             break
         hits.verdict[some[hits.verdict[some] == OPEN]] = FREE
     return hits
-
-
-_Stack = list[tuple[Rows, Rows]]
-
-
-def _at_most(who: Rows, cell: Rows, stack: _Stack) -> tuple[Rows, Rows]:
-    """As many pairs of a tool and a cell as are looked at at once; the others go back on the stack."""
-    while len(who) > _MOST:
-        half = len(who) // 2
-        stack.append((who[half:], cell[half:]))
-        who, cell = who[:half], cell[:half]
-    return who, cell
-
-
-def _cut(cells: Cells, who: Rows, cell: Rows, stack: _Stack) -> None:
-    """Put the pieces of cells on the stack."""
-    if len(cell):
-        pieces, owner = cells.children(cell)
-        stack.append((who[owner], pieces))
-
-
-def nearest(
-    cells: Cells, root: int, solids: Sequence[Solid], tip: Floats, axis: Floats, beyond: float, grain: float, clock: Clock
-) -> tuple[float, str] | None:
-    """The least distance, mm, of any point of the surface from solids at tips and axes (n, 3), and the part of the tool there.
-
-    Negative where a point lies within; to within `grain`; `beyond` where all is farther away; None where the time was over.
-    """
-    best, part = -beyond, ""
-    stack = [(np.arange(len(tip)), np.full(len(tip), root, np.int64))]
-    while stack:
-        if clock.over:
-            return None
-        who, cell = _at_most(*stack.pop(), stack)
-        most = np.full(len(who), -np.inf)
-        for solid in solids:
-            deep, bound = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
-            most = np.maximum(most, bound + cells.slack[cell])
-            deep = np.where(cells.proper[cell], deep, -np.inf)
-            if deep.max(initial=-np.inf) > best:
-                best, part = float(deep.max()), solid.part
-        near = (most > best + grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
-        _cut(cells, who[near], cell[near], stack)
-    return -best, part
 
 
 def lowest(cells: Cells, root: int, direction: Floats, grain: float) -> float:

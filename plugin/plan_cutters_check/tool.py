@@ -38,7 +38,7 @@ class Arc:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A convex body about the tool axis, a `part` of the tool: `flutes`, `neck`, `shank` or `holder`; heights and radius in mm.
+    """A convex body about the tool axis, a `part` of the tool: `flutes`, `neck`, `shank` or `holder`; height of its top in mm.
 
     `lines` (k, 3): unit normal (q, h) and offset of each, within n (q, h) <= offset; `border` (s, 4): straight pieces of its
     outline, from (q, h) to (q, h).
@@ -48,9 +48,7 @@ class Solid:
     lines: Floats
     arcs: tuple[Arc, ...]
     border: Floats
-    low: float
     high: float
-    wide: float
 
     def depth(self, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
         """How deep points (n,) lie in it, mm, negative outside, and a gradient of that in q and in h."""
@@ -99,25 +97,16 @@ def _nearest(arc: Arc, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
 class Tool:
     """A cutter with all that is above it: `solids`, the flutes first; lengths in mm.
 
-    `contacts`: the arcs, and corners as arcs of radius 0, with which it touches, from the tip up; `radius` of the flutes, `high`
-    and `wide` of all; `straight`: whether above its last contact its side is straight.
+    `contacts`: the arcs, and corners as arcs of radius 0, with which it touches, from the tip up; `high`: of all of it;
+    `straight`: whether above its last contact its side is straight.
     """
 
-    id: str
     solids: tuple[Solid, ...]
     contacts: tuple[Arc, ...]
     allowance: float
     clearance: float
-    radius: float
     high: float
-    wide: float
     straight: bool
-
-    def idle(self) -> tuple[Solid, ...]:
-        """Give what does not cut: neck, shank and holder; of a bare cutter its flutes, cut off their diameter above the tip."""
-        idle = [each for each in self.solids if each.part != "flutes"]
-        height = 2.0 * self.radius
-        return tuple(idle or [_cut(each, height) for each in self.solids if each.high > height])
 
     @property
     def flat(self) -> float:
@@ -169,39 +158,10 @@ class Tool:
             open_rows &= ~mine
         return tips
 
-    def touches(self, tilt: Floats) -> NDArray[np.bool_]:
-        """Whether it touches at tilts (n,), rad, with a corner or an arc of what cuts."""
-        turned = np.asarray(tilt) + _DOWN
-        return np.logical_or.reduce([(turned >= arc.first - _HAIR) & (turned <= arc.last + _HAIR) for arc in self.contacts])
-
     def stands_along(self, normal: Floats, axis: Floats, tilt_direction: Floats, accuracy: float) -> NDArray[np.bool_]:
         """Where a tilt direction says that the flank stands along a wall, and the wall holds the axis within an accuracy."""
         twice = np.linalg.norm(tilt_direction - 2.0 * axis, axis=1) <= _SAME
         return np.asarray(twice & (np.abs((normal * axis).sum(axis=1)) <= math.sin(accuracy) + _SAME))
-
-
-def _cut(solid: Solid, height: float) -> Solid:
-    """What is above a height of a body."""
-    lines = np.vstack([solid.lines, [0.0, -1.0, -height]])
-    border = []
-    for a, b, c, d in solid.border.tolist():
-        if b == d:
-            if b >= height:
-                border.append((a, b, c, d))
-            continue
-        (a, b), (c, d) = sorted([(a, b), (c, d)], key=lambda point: point[1])
-        if d > height:
-            border.append((a + (c - a) * max(0.0, height - b) / (d - b), max(b, height), c, d))
-    arcs = tuple(
-        Arc(arc.q, arc.h, arc.radius, max(arc.first, math.asin(max(-1.0, (height - arc.h) / arc.radius))), arc.last)
-        for arc in solid.arcs
-        if arc.h + arc.radius * math.sin(arc.last) > height
-    )
-    # What ends at that height is its edge there: of an arc, where it is cut off.
-    ends = [(q, h) for a, b, c, d in border for q, h in ((a, b), (c, d))]
-    ends += [(arc.q + arc.radius * math.cos(arc.first), arc.h + arc.radius * math.sin(arc.first)) for arc in arcs]
-    edge = max((q for q, h in ends if abs(h - height) <= _HAIR), default=0.0)
-    return Solid(solid.part, lines, arcs, np.array([*border, (0.0, height, edge, height)]), height, solid.high, solid.wide)
 
 
 def _line(a: Point, b: Point) -> tuple[float, float, float]:
@@ -215,10 +175,8 @@ def _solid(part: str, points: list[Point], arcs: tuple[Arc, ...] = (), bent: fro
     """A body from the points of its outline, from the axis below up to where it goes back to it; `bent`: sides that are arcs."""
     points = [*points, (0.0, points[-1][1])]
     sides = [(a, b) for k, (a, b) in enumerate(pairwise(points)) if k not in bent and math.dist(a, b) > 1e-12]
-    heights, ends = [h for _, h in points], np.array([(*a, *b) for a, b in sides])
-    wide = [arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs]
-    return Solid(part, np.array([_line(a, b) for a, b in sides]), tuple(arc for arc in arcs if arc.radius > 0.0),
-                 ends, min(heights), max(heights), max(*(q for q, _ in points), *wide))  # fmt: skip
+    lines, ends = np.array([_line(a, b) for a, b in sides]), np.array([(*a, *b) for a, b in sides])
+    return Solid(part, lines, tuple(arc for arc in arcs if arc.radius > 0.0), ends, max(h for _, h in points))
 
 
 def tool_of(sizes: ToolSizes) -> Tool:
@@ -232,9 +190,8 @@ def tool_of(sizes: ToolSizes) -> Tool:
     for each in sizes.sections:
         ends = [(0.0, each.low), (each.radius, each.low), (each.upper_radius, each.low + each.length)]
         solids.append(_solid(each.part, ends))
-    high, wide = max(each.high for each in solids), max(each.wide for each in solids)
-    straight = sizes.shape in ("end", "lens")
-    return Tool(sizes.id, tuple(solids), contacts, sizes.allowance, sizes.clearance, sizes.radius, high, wide, straight)
+    high, straight = max(each.high for each in solids), sizes.shape in ("end", "lens")
+    return Tool(tuple(solids), contacts, sizes.allowance, sizes.clearance, high, straight)
 
 
 def _outline(sizes: ToolSizes) -> tuple[list[Point], tuple[Arc, ...], set[int]]:

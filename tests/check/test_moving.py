@@ -12,8 +12,9 @@ from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, held
 from plan_cutters_check.reckoned import Reckoned
+from plan_cutters_check.records import document_of
 from plan_cutters_check.surface import Clock
-from plan_cutters_check.trials import Trials
+from plan_cutters_check.trials import placed
 from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
 
@@ -32,8 +33,12 @@ def answered(blade, arrays=None, document=None, seconds=1e6):
     return check(blade.question(document, arrays), seconds=seconds)
 
 
-def trials(question):
-    return Trials(Reckoned(question), Bench(question, str), np.random.default_rng(0), lambda _: Clock(math.inf), str)
+def placed_of(written, arrays=None):
+    """The finding about operations that were put down at all their samples."""
+    question = written.question(None, arrays)
+    reckoned = Reckoned(question)
+    (line,) = placed(reckoned, Bench(question, str), Clock(math.inf), str, document_of(reckoned)["operations"])
+    return line
 
 
 def told(answer, *words):
@@ -44,9 +49,7 @@ def told(answer, *words):
 def test_what_is_written_holds(blade):
     answer = answered(blade)
     assert answer.holds, "\n".join(answer.lines)
-    (line,) = told(answer, "put down with the axes for simultaneous motion")
     piece = blade.arrays["operations.npz"]["moving_piece"]
-    assert f"at {(piece >= 0).sum()} samples; at 0 " in line.words
     assert (piece >= 0).sum() > 5
 
 
@@ -72,18 +75,12 @@ def test_what_is_forged_is_found(blade, how):
         next(each for each in document["operations"]["plans"][0]["operations"] if each["turning"])["turning"]["pieces_mm2"] = []
     answer = answered(blade, arrays, document, seconds=0.0)
     assert not answer.holds
-    assert [each for each in told(answer, "axes for simultaneous motion") if each.holds is False], answer.lines
+    words = "cannot stand" if how == "turned over" else "axes for simultaneous motion"
+    assert [each for each in told(answer, words) if each.holds is False], answer.lines
 
 
-def down(blade, arrays=None):
-    """The finding about tools put down with the axes for simultaneous motion, and no other one."""
-    question = blade.question(None, arrays)
-    (line,) = trials(question).moving()
-    return line
-
-
-def test_an_axis_at_which_the_tool_gouges_is_found_by_putting_it_down(blade):
-    fair = down(blade)
+def test_an_axis_at_which_the_tool_gouges_is_found_by_putting_it_placed_of(blade):
+    fair = placed_of(blade)
     assert fair.holds
     assert "; at 0 the tool is too deep" in fair.words
     _, arrays = blade.copies()
@@ -94,14 +91,9 @@ def test_an_axis_at_which_the_tool_gouges_is_found_by_putting_it_down(blade):
     able = held(blade.question().machine, blade.question().setups[0], axis)
     assert able.any()
     forged["moving_axis"][proved[able]] = axis[able]
-    line = down(blade, arrays)
+    line = placed_of(blade, arrays)
     assert line.holds is False
     assert f"at {able.sum()} the tool is too deep" in line.words
-
-
-def test_a_check_without_time_says_that_no_axis_was_put_down(blade):
-    (line,) = told(answered(blade, seconds=0.0), "put down with the axes for simultaneous motion")
-    assert line.holds is None
 
 
 @given(seed=st.integers(0, 2**32 - 1))
@@ -133,13 +125,6 @@ def leaning(tmp_path_factory):
     return Written(out, PART, words)
 
 
-def placed(written, arrays=None):
-    """The finding about operations that were put down at all their samples."""
-    question = written.question(None, arrays)
-    (line,) = trials(question).placed()
-    return line
-
-
 def test_every_axis_of_wide_passes_stands_free_by_another_program(leaning):
     arrays = leaning.arrays["operations.npz"]
     label, axis = arrays["operation"], arrays["moving_axis"]
@@ -149,7 +134,7 @@ def test_every_axis_of_wide_passes_stands_free_by_another_program(leaning):
     # These are others than those of the verdicts.
     found = leaning.arrays["samples.npz"][f"axis_{leaning.document['cutters'][0]['id']}"]
     assert (np.abs(axis - found).max(axis=1)[moved] > 1e-3).mean() > 0.5
-    line = placed(leaning)
+    line = placed_of(leaning)
     assert line.holds, line.words
     assert f"put down at {(label >= 0).sum()} samples; at 0 " in line.words
 
@@ -160,6 +145,6 @@ def test_an_axis_that_is_not_free_is_found_though_nothing_is_proved_about_it(lea
     axis = -normal
     able = np.flatnonzero(held(leaning.question().machine, leaning.question().setups[0], axis) & (forged["operation"] >= 0))[:20]
     forged["moving_axis"][able] = axis[able]
-    line = placed(leaning, arrays)
+    line = placed_of(leaning, arrays)
     assert line.holds is False
     assert f"at {len(able)} the tool is too deep" in line.words

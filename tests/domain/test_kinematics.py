@@ -303,9 +303,25 @@ def test_small_caps_inside_the_limits_of_a_trunnion_are_held():
     assert of("trunnion-ac").allows_about(axis, np.radians(np.full(7, 2.0))).tolist() == [True] * 5 + [False] * 2
 
 
-def test_a_machine_of_fewer_axes_holds_a_cap_of_one_axis_alone():
-    four = Kinematics(np.array([[1.0, 0, 0]]), np.array([[-0.5, 2.0]]), UP)
-    for machine, axis in ((of("3-axis"), UP), (four, four.axis(np.array([[1.0]]))[0])):
+@given(
+    seed=st.integers(0, 10_000), low=st.floats(-6.5, -0.1), high=st.floats(0.1, 6.5), swing=st.floats(0.0, 0.5),
+    angle=st.floats(-7.0, 7.0),
+)  # fmt: skip
+def test_a_machine_of_one_axis_holds_what_is_said_in_the_plane_in_which_it_turns_the_tool(seed, low, high, swing, angle):
+    direction, aside = directions(np.random.default_rng(seed), 2)
+    tool = np.cross(direction, aside) / np.linalg.norm(np.cross(direction, aside))
+    four = Kinematics(direction[None], np.array([[low, high]]), tool)
+    (axis,) = four.axis(np.array([[angle]]))
+    held = bool(four.allows_about(axis[None], np.array([swing]))[0])
+    near = four.allows(four.axis(np.linspace(angle - swing, angle + swing, 41)[:, None]))
+    # A whole turn may hold each by another turn; the motion goes on from one to the next.
+    assert not held or near.all()
+    assert held or not near.all() or high - low > 2.0 * math.pi - swing - 1e-6
+
+
+def test_a_machine_that_turns_no_tool_or_turns_it_in_a_cone_holds_one_axis_alone():
+    cone = Kinematics(np.array([[1.0, 0, 0]]), np.array([[-0.5, 2.0]]), np.array([0.6, 0.0, 0.8]))
+    for machine, axis in ((of("3-axis"), UP), (cone, cone.axis(np.array([[1.0]]))[0])):
         assert machine.allows_about(np.array([axis, axis, -axis]), np.array([0.0, 1e-3, 0.0])).tolist() == [True, False, False]
 
 

@@ -12,6 +12,7 @@ from plan_cutters import Axis, Cutter, Machine, plan
 from plan_cutters.domain.cutter import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.errors import OptionError
+from plan_cutters.operations.labels import flowing_faces
 from plan_cutters.operations.orientations import Indexing, Orientations, candidates
 from plan_cutters.report.process_file import process_toml
 from plan_cutters_check.check import check
@@ -205,3 +206,53 @@ def test_what_is_reached_and_no_step_is_worth_is_left_by_name():
     assert missed > 0
     assert entry.rest.short == missed
     assert "short_step" in [each.cause for each in result.plan.process.left]
+
+
+def stepped(along=(1, 0, 0)):
+    """A turned part: 40 wide, then a cone, then 24 wide with a boss on its end that no axis goes through, 90 long."""
+    import cadquery as cq
+
+    profile = [(0, 0), (0, 20), (40, 20), (55, 12), (80, 12), (80, 0)]
+    turned = cq.Workplane("XY").polyline(profile).close().revolve(360, (0, 0, 0), (1, 0, 0))
+    part = turned.faces(">X").workplane().center(5, 0).circle(4).extrude(10)
+    return part.val() if along == (1, 0, 0) else part.rotate((0, 0, 0), (0, 1, 0), -90).val()
+
+
+@pytest.mark.parametrize(("machine", "along"), [("4-axis-a", X), ("4-axis-a", Z), ("3-axis", X), ("trunnion-ac", X)])
+def test_faces_that_go_round_the_one_axis_that_turns_the_tool_may_be_cut_while_it_turns(machine, along):
+    part = stepped(along)
+    ready = plan(part, cutters=[FLAT], machine=machine, faces="all", grid=9, area_budget=0).ready
+    shapes = {ready.scene.part.faces[k - 1].shape for k in flowing_faces(ready).tolist()}
+    sizes = sorted(ready.scene.part.faces[k - 1].area for k in flowing_faces(ready).tolist())
+    if (machine, along) != ("4-axis-a", X):
+        assert not shapes
+        return
+    assert shapes == {"cylinder", "cone"}
+    slant = math.hypot(15.0, 8.0)
+    every = [math.pi * 40.0 * 40.0, math.pi * 32.0 * slant, math.pi * 24.0 * 25.0, math.pi * 8.0 * 10.0]
+    assert sizes == pytest.approx(sorted(every), rel=1e-6), "each is of revolution about a line along the axis"
+
+
+def test_a_turned_part_is_cut_round_in_one_step_on_a_fourth_axis(tmp_path):
+    """As a shop does, in less time than by orientations: the checker puts each posture down."""
+    words = {
+        "machine": "4-axis-a",
+        "cutters": [FLAT],
+        "spacing": 6.0,
+        "faces": "all",
+        "operations": "fastest",
+        "feed": 1000.0,
+        "area_budget": 0,
+    }
+    part = stepped()
+    result = plan(part, **words)
+    made, _ = of_each(result, "fastest")
+    area = np.nan_to_num(result.samples.area)
+    round_ = np.isin(result.samples.face, flowing_faces(result.ready)) & (made.label >= 0)
+    (moving,) = [k for k, each in enumerate(made.operations) if each.axis is None]
+    assert area[round_ & (made.label == moving)].sum() > 0.95 * area[round_].sum()
+    still = plan(part, **words, most_operations=99)
+    assert made.total < 0.8 * of_each(still, "fastest")[0].total
+    result.write(tmp_path, ["json", "npz"])
+    answer = check(Written(tmp_path, part, words).asked(), seconds=5.0)
+    assert answer.holds, "\n".join(answer.lines)

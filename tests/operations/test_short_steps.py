@@ -62,6 +62,7 @@ def test_a_sliver_is_left_where_something_is_left_anyway(short, tmp_path):
     for name in ("operations.npz", "samples.npz"):
         with np.load(tmp_path / name) as archive:
             arrays[name] = {each: archive[each] for each in archive.files}
-    options = Options.of({word: value for word, value in asked.items() if word not in ("operations", "feed", "link_time")})
+    options = {word: value for word, value in asked.items() if word not in ("operations", "feed", "link_time")}
+    options = Options.of({**options, "faces": document["effective"]["faces"]})
     checked = check(question_of(part, options, document, arrays), seconds=10)
     assert checked.holds, checked.lines

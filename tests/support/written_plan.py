@@ -3,14 +3,13 @@
 import copy
 import json
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from cad_io import read_part
 from plan_cutters import Options, plan
-from plan_cutters_check.asking import question_of, stated_by
+from plan_cutters_check.asking import question_of
 from plan_cutters_check.check import on_paper
 from plan_cutters_check.findings import Answer
 from plan_cutters_check.question import Question
@@ -64,8 +63,7 @@ class Written:
             The plan is of other options.
         """
         said = (self.document if document is None else document), (self.arrays if arrays is None else arrays)
-        question = question_of(self.part, self.options, *said)
-        return stated_by(replace(question, asked=self.options.tolerance), self.options)
+        return question_of(self.part, self.options, *said)
 
     def read(self, document: dict | None = None, arrays: dict | None = None) -> Answer:
         """What is found of it without putting a tool down, but for its operations."""

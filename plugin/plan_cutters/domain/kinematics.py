@@ -158,12 +158,11 @@ class Kinematics(Record):
     def allows_about(self, axis: Floats, swing: Floats) -> NDArray[np.bool_]:
         """Where the machine can hold every tool axis within an angle (n,), rad, of axes (n, 3), all by one of its solutions.
 
-        False as well where that is not known.
+        Of a machine that turns a tool in one plane: every one in that plane. False as well where that is not known.
         """
         machine, _ = self.turning()
         if len(machine.direction) < 2:
-            # A machine that turns a tool in one plane cannot turn it in all directions.
-            return np.asarray(self.allows(axis) & (swing <= 0.0))
+            return machine._allows_in_plane(axis, swing)
         (first, second), (start, most, base) = machine.direction, machine.swing
         away = _between(axis, first)
         shares = [(np.cos(np.clip(away + sign * swing, 0.0, math.pi)) - base) / most for sign in (-1.0, 1.0)]
@@ -184,6 +183,15 @@ class Kinematics(Record):
                 across = turned(first, np.array(end), second)
                 one &= np.abs(_between(axis, across) - math.acos(min(1.0, max(-1.0, float(second @ machine.tool))))) > swing
         return np.asarray(known & one)
+
+    def _allows_in_plane(self, axis: Floats, swing: Floats) -> NDArray[np.bool_]:
+        """`allows_about` of a machine with one axis, or none, that turns the tool."""
+        held = self.allows(axis)
+        if not len(self.direction) or abs(float(self.tool @ self.direction[0])) > PARALLEL:
+            return np.asarray(held & (swing <= 0.0))
+        low, high = self.limit[0]
+        placed = within(self.angles(axis)[:, 0, 0], float(low), float(high))
+        return np.asarray(held & (placed - swing >= low - ON_LIMIT) & (placed + swing <= high + ON_LIMIT))
 
     def circles(self) -> Floats:
         """Circles (m, 4) on the sphere of directions, a unit direction and a cosine each: across them what is allowed changes."""

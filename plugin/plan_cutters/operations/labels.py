@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, SurfaceSamples, cross
 from cad_io.graphs import connected
+from plan_cutters.domain.kinematics import angle_about
 from plan_cutters.domain.preference import is_bent
 from plan_cutters.scene.preparation import Prepared
 
@@ -68,6 +69,44 @@ def sampled_faces(ready: Prepared, shaped: Callable[[str], bool]) -> Rows:
     """Numbers of the faces of a part with samples that have some shape, ascending."""
     faces = ready.scene.part.faces
     return np.array([face for face in np.unique(ready.samples.face).tolist() if shaped(faces[face - 1].shape)], np.int64)
+
+
+#: A face goes round a rotary axis where its normals turn about it by more than this, rad: one orientation cuts no more of it.
+_ROUND = math.radians(120.0)
+#: How far a face of revolution is off its axis, as a share of its size.
+_OFF_AXIS = 1e-6
+
+
+def flowing_faces(ready: Prepared) -> Rows:
+    """Numbers of the faces that a machine cuts while its axes turn, ascending.
+
+    They are those of free form, and, of a machine with one axis that turns the tool, those of revolution that go round a line
+    along it, as on a lathe.
+    """
+    free_form = sampled_faces(ready, "sculptured".__eq__)
+    machines = [each.kinematics.turning()[0] for each in ready.setups if each.kinematics is not None]
+    directions = [each.direction[0] for each in machines if len(each.direction) == 1]
+    others = np.setdiff1d(np.unique(ready.samples.face), free_form) if directions else free_form[:0]
+    round_ = [face for face in others.tolist() if any(_goes_round(ready.samples, face, each) for each in directions)]
+    return np.union1d(free_form, np.array(round_, np.int64))
+
+
+def _goes_round(samples: SurfaceSamples, face: int, direction: Floats) -> bool:
+    """Whether a face is one of revolution about a line along a direction, and goes round it."""
+    mine = samples.face == face
+    point, normal = samples.point[mine], samples.normal[mine]
+    across = cross(np.broadcast_to(direction, normal.shape), normal)
+    known = np.isfinite(across).all(axis=1) & (np.linalg.norm(across, axis=1) > _OFF_AXIS)
+    point, normal, across = point[known], normal[known], across[known]
+    if len(point) < 3:
+        return False
+    # All normals meet the line: their planes with it hold a point of it.
+    middle = point.mean(axis=0)
+    away = ((point - middle) * across).sum(axis=1)
+    off = across @ np.linalg.lstsq(across, away, rcond=1e-9)[0] - away
+    turn = np.sort(angle_about(direction, across[0], across))
+    gap = float(np.diff(np.append(turn, turn[0] + 2.0 * math.pi)).max())
+    return bool(np.abs(off).max() <= _OFF_AXIS * float(np.ptp(point, axis=0).max()) and 2.0 * math.pi - gap > _ROUND)
 
 
 #: The largest whole number of a capacity of a cut; sums of some of them must not pass 2^31.

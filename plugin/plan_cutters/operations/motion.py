@@ -15,7 +15,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.choices import Choice
 from plan_cutters.operations.fastest import cheap
-from plan_cutters.operations.labels import sampled_faces
+from plan_cutters.operations.labels import flowing_faces
 from plan_cutters.operations.plans import costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan
@@ -158,11 +158,11 @@ def chosen_for_others(task: Task, choice: Choice) -> Columns:
 
 
 def _faces_tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
-    """Faces that motion may take together: all that are sculptured, and those that it cuts for less than a plan.
+    """Faces that motion may take together: all of free form or round a rotary axis, and those that it cuts for less than a plan.
 
-    Rounds and spheres are none: nobody turns while cutting for a fillet.
+    Other rounds and spheres are none: nobody turns while cutting for a fillet.
     """
-    samples, faces = task.ready.samples, sampled_faces(task.ready, "sculptured".__eq__)
+    samples, faces = task.ready.samples, flowing_faces(task.ready)
     rows = task.rows[np.isin(samples.face[task.rows], faces)]
     if not len(rows):
         return

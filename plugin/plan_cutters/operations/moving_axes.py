@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, Floats, SurfaceSamples, cross
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.kinematics import SINGULAR, Kinematics
+from plan_cutters.domain.kinematics import SINGULAR, Kinematics, angle_about
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, Verdicts
 from plan_cutters.judging.axes import AxisField, angle_between, margin
 from plan_cutters.judging.cells import tensors
@@ -170,13 +170,22 @@ def _widest(test: _Test, rows: Rows, known: Floats, along: Floats) -> Floats:
     tilt = np.unique(np.clip(_TILTS, max(low, _TILTS[0]), high))
     if not test.context.conditions.postures.full_turn or not len(rows):
         return known
-    turn = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
+    kinematics = test.context.conditions.kinematics
+    machine = None if kinematics is None else kinematics.turning()[0]
     normal = test.samples.normal[rows]
-    first = tilt_directions(along, normal, test.samples.direction_max[rows])
-    other = np.cross(normal, first)
-    side = np.cos(turn)[:, None] * first[:, None] + np.sin(turn)[:, None] * other[:, None]
-    axis = np.cos(tilt)[:, None, None] * normal[:, None, None] + np.sin(tilt)[:, None, None] * side[:, None]
-    axis = np.concatenate([known[:, None], axis.reshape(len(rows), -1, 3)], axis=1)
+    if machine is not None and len(machine.direction) == 1:
+        # One axis leaves one way to lean: about it, from where the tool is nearest to the normal.
+        lean = np.concatenate([np.zeros(1), tilt, -tilt])
+        turn = angle_about(machine.direction[0], machine.tool, normal)[:, None] + lean
+        axis, away = machine.axis(turn.reshape(-1, 1)).reshape(len(rows), -1, 3), np.zeros(len(lean))
+    else:
+        turn = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
+        first = tilt_directions(along, normal, test.samples.direction_max[rows])
+        other = np.cross(normal, first)
+        side = np.cos(turn)[:, None] * first[:, None] + np.sin(turn)[:, None] * other[:, None]
+        axis = np.cos(tilt)[:, None, None] * normal[:, None, None] + np.sin(tilt)[:, None, None] * side[:, None]
+        axis, away = axis.reshape(len(rows), -1, 3), np.tile(1.0 - np.cos(turn), len(tilt))
+    axis = np.concatenate([known[:, None], axis], axis=1)
     every, flat = np.repeat(rows, axis.shape[1]), axis.reshape(-1, 3)
     pace, remainder = (each(every, flat).reshape(axis.shape[:2]) for each in (test.pace, test.margin))
     # What is known is free, whatever the room: the flat of a tip on a plane has none.
@@ -184,8 +193,7 @@ def _widest(test: _Test, rows: Rows, known: Floats, along: Floats) -> Floats:
     good = np.isfinite(pace) & (remainder > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         step = np.floor(np.log(pace / np.where(good, pace, 0.0).max(axis=1)[:, None]) / math.log(_AS_WIDE) + 1e-9)
-    away = np.append(-1.0, np.tile(1.0 - np.cos(turn), len(tilt)))
-    rank = np.where(good, 4.0 * step + away + np.where(remainder < _MARGIN, 1e6, 0.0), np.inf)
+    rank = np.where(good, 4.0 * step + np.append(-1.0, away) + np.where(remainder < _MARGIN, 1e6, 0.0), np.inf)
     # The known posture is free: what comes behind it is not looked at.
     order = np.argsort(rank, axis=1, kind="stable")
     chosen, open_ = known.copy(), np.arange(len(rows))

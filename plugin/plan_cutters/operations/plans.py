@@ -19,11 +19,11 @@ from plan_cutters.operations.labels import (
     MINOR_SECONDS,
     MINOR_SHARE,
     Steps,
+    flowing_faces,
     in_one_step,
     joined,
     labelled,
     regions_of,
-    sampled_faces,
     without_minor_steps,
 )
 from plan_cutters.operations.moving_axes import turning_times
@@ -310,11 +310,11 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     """
     samples, options, number = task.ready.samples, task.ready.options, made.number
     area, operations = np.nan_to_num(samples.area), list(made.operations)
-    # The faces of free form that several operations cut, the largest first.
+    # The faces that axes may turn over and that several operations cut, the largest first.
     size, pairs = np.bincount(samples.face, area), np.unique(np.column_stack([samples.face, number])[number >= 0], axis=0)
     face, count = np.unique(pairs[:, 0], return_counts=True)
-    sculptured = np.intersect1d(face[count > 1], sampled_faces(task.ready, "sculptured".__eq__)).tolist()
-    free_form = sorted(sculptured, key=lambda each: -size[each])
+    flowing = np.intersect1d(face[count > 1], flowing_faces(task.ready)).tolist()
+    free_form = sorted(flowing, key=lambda each: -size[each])
     if len(free_form) and options.index_step is None and own is None and task.moves:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}
         operations += [

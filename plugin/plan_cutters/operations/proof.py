@@ -44,12 +44,12 @@ def proved_moving(
     cell: so any path inside a piece is safe with the axes of the field (`docs/between_samples.md`, lemma B16).
 
     `verdicts`: of its cutter in its setup. `budget`, `most`: contacts and work, as of `between`. It is unchanged where the
-    rotations are limited, or the machine cannot turn a tool in all directions.
+    rotations are limited, or no axis of the machine turns the tool.
     """
     samples, context = ready.samples, Context.of(operation.cutter, ready.setups[operation.setup])
     first, last = context.conditions.postures.rotation
     kinematics = context.conditions.kinematics
-    if last - first < 2.0 * math.pi - 1e-9 or (kinematics is not None and len(kinematics.turning()[1]) < 2):
+    if last - first < 2.0 * math.pi - 1e-9 or (kinematics is not None and not kinematics.turning()[1]):
         return operation
     if operation.moving is None:
         return operation

@@ -319,7 +319,8 @@ def _raw(plan: Plan) -> Iterator[str]:
 
 
 def _across(plan: Plan) -> Iterator[str]:
-    """Chucks that stand along the spindle, where the rotary axis next to the part turns them about another direction."""
+    """Chucks that stand along the spindle, where the rotary axis next to the part turns them about another direction, and what
+    stands behind those that lie along that axis."""
     process, rotary = plan.process, plan.machine.rotary
     if not rotary or rotary[0].carries != "part" or not process.setups:
         return
@@ -333,6 +334,12 @@ def _across(plan: Plan) -> Iterator[str]:
         yield (
             f"In setup{'s' if len(numbers) > 1 else ''} {listed(numbers)} the chuck stands along the spindle, on a plate that "
             f"{rotary[0].name} turns: `--setup auto` lays a bar along {rotary[0].name}."
+        )
+    if lying := [str(each.number) for each, _ in chucks if each not in upright]:
+        where = f"setup{'s' if len(lying) > 1 else ''} {listed(lying)}"
+        yield (
+            f"What carries the chuck on {rotary[0].name} in {where}, and a tailstock, are no obstacles unless you give them: "
+            "`--fixture FILE`."
         )
 
 
