@@ -2,7 +2,6 @@
 
 import json
 import os
-import posixpath
 import re
 import shutil
 import subprocess
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cad_io.read import step_text
 from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanRequest, Reported, takes
@@ -99,29 +97,7 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         pair = Changed(None if status[0] in "AC" else old, None if status[0] == "D" else new)
         if Path(pair.name).suffix.lower() in PARTS:
             paths.append(pair)
-    files = {path for part in paths for path in (part.old, part.new) if path is not None}
-    paths += [Changed(path, path) for path in _referring(until, files) - files]
     return began, until, sorted(paths, key=lambda part: part.name)
-
-
-def _referring(at: str, files: Collection[str]) -> set[str]:
-    """STEP files of a commit that refer to some files, or to others that do: assemblies."""
-    if not files:
-        return set()
-    words = [part for word in step_text.WORDS for part in ("-e", word.decode())]
-    output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
-    paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
-    refers = {
-        path: {
-            posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
-            for name in step_text.names(git("cat-file", "--filters", f"{at}:{path}"))
-        }
-        for path in paths
-    }
-    reached = set(files)
-    while new := {path for path, names in refers.items() if path not in reached and names & reached}:
-        reached |= new
-    return {path for path in reached if path in refers}
 
 
 def content(at: str, path: str) -> bytes:
