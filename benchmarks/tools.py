@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from cad_io.part.bodies import orient
 from cad_io.sample import sample
-from plan_cutters import Cutter, Holder, Stage, plan
+from plan_cutters import Cutter, Holder, Segment, plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
@@ -125,7 +125,7 @@ def main() -> None:
 
 def kinds(scale: float) -> list[Cutter]:
     """A tool of each kind."""
-    holder = Holder((Stage(8 * scale, 6 * scale, 10 * scale), Stage(12 * scale, 40 * scale)))
+    holder = Holder((Segment(8 * scale, 6 * scale, 10 * scale), Segment(12 * scale, 40 * scale)))
     more = {"shank_radius": 3 * scale, "holder": holder}
     return [
         Cutter.flat(radius=3 * scale, length=40 * scale, flutes=15 * scale, **more),

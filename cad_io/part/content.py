@@ -37,8 +37,6 @@ class PartContent:
     picked: tuple[int, ...] = ()
     #: Faces written in the file that are not here, or not as written; the part adds those without a finite size.
     lost: list[LostFace] = field(default_factory=list)
-    #: Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
-    references: tuple[tuple[str, str | None], ...] = ()
     #: What is doubtful of what the file says about its unit.
     unit_readings: tuple[UnitReading, ...] = ()
     #: What the encoding of its names is called, where the file has an older one.

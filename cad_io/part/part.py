@@ -33,7 +33,6 @@ from cad_io.part.sew import Sewn, SewnForm, edge_uses, neighbours, sew
 from cad_io.surface import Surface
 from cad_io.units import unit_doubt
 from plan_cutters_base.forks import SideProcess
-from plan_cutters_base.user_files import fingerprint
 from plan_cutters_base.values import digest
 
 #: Reasons that others look at.
@@ -197,7 +196,7 @@ class Part:
         self._content = known = PartContent(shape, **content)
         self.shape, self.file, self.sha256, self.unit = shape, known.file, known.sha256, known.unit
         self.layers, self.picked, self.sizes = known.layers, known.picked, known.sizes
-        self.references, self.unit_readings, self.encoding = known.references, known.unit_readings, known.encoding
+        self.unit_readings, self.encoding = known.unit_readings, known.encoding
         self.aside: Mapping[int, str] = {}
         file = self.file
         with translated("looking for faces", error=ReadError, file=file):
@@ -213,9 +212,8 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
         self.meshed: dict[int, tuple[Any, str]] = {}
-        #: What lies where others lie, and areas that faces come back with from STEP, mm2; kept by `repeats` and `write.back`.
+        #: What lies where others lie; kept by `repeats`.
         self.repeats: tuple[Any, ...] | None = None
-        self.changed_by_step: Mapping[int, float] | None = None
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])
@@ -256,11 +254,6 @@ class Part:
         return f"Part({self.file or 'shape'}, {len(self._faces)} faces, {size} mm)"
 
     @property
-    def fingerprint(self) -> str:
-        """Checksum of its file with all that this refers to; empty where it is of no file."""
-        return "" if self.sha256 is None else fingerprint(self.sha256, self.references)
-
-    @property
     def faces(self) -> tuple[FaceInfo, ...]:
         return self.measured()
 
@@ -269,7 +262,7 @@ class Part:
         """Return all that makes this part what it is, beside the program that read it; of no file, by its shape's own bytes."""
         if self.sha256 is None:
             return self._shape_sum, dict(self.aside)
-        return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, tuple(self._content.warnings)
+        return self.sha256, self.unit, self.picked, dict(self.aside), self.lost, tuple(self._content.warnings)
 
     @cached_property
     def _shape_sum(self) -> bytes:

@@ -299,8 +299,6 @@ class Loaded:
     What it takes, has and raises is as of `step.Loaded`; there is nothing for `careful` to leave out.
     """
 
-    alone = True
-
     def __init__(self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False) -> None:
         self.file, self.names = file, names
         self.sections: dict[bytes, list[bytes]] = defaultdict(list)

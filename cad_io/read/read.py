@@ -1,13 +1,12 @@
 """Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects.
 
-A copy of the process may read, so that a crash or a hang of the kernel becomes an error like any other. Files that a STEP file
-refers to are looked at each by itself: the kernel leaves out in silence what it cannot read of them.
+A copy of the process may read, so that a crash or a hang of the kernel becomes an error like any other.
 """
 
 import math
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from numbers import Real
 from typing import Any
@@ -26,12 +25,11 @@ from cad_io.part import Part
 from cad_io.part.content import PartContent, comes_back, packed, unpacked
 from cad_io.read import iges, step
 from cad_io.read.objects import from_object
-from cad_io.read.sniff import load, sniff
-from cad_io.read.step_text import DOCUMENTS, followed, in_folder_of, names
+from cad_io.read.sniff import load
 from cad_io.units import in_mm
 from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
-from plan_cutters_base.user_files import OutsideError, checksum, checksums
+from plan_cutters_base.user_files import checksum
 
 
 class Crashed(ReadError):
@@ -56,93 +54,6 @@ def in_copy(find: Callable[[], PartContent], timeout: float, file: str | None) -
         raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
     with translated("taking over what it made of the file", error=ReadError, file=file):
         return unpacked(answer)
-
-
-@dataclass
-class Referred:
-    """A record of this kind says what the files hold that a STEP file refers to, and those that these refer to."""
-
-    #: Path -> how many faces the file itself has.
-    faces: dict[str, int] = field(default_factory=dict)
-    #: What is missing of them: whole files, and faces.
-    lost: list[LostFace] = field(default_factory=list)
-    #: The kernel crashes or hangs at one of them, or may do so.
-    risky: bool = False
-
-    @property
-    def foreign(self) -> int:
-        """Faces of all of them."""
-        return sum(self.faces.values())
-
-    def add(self, other: "Referred") -> None:
-        """Take over what another one has."""
-        self.faces |= other.faces
-        self.lost += [each for each in other.lost if each not in self.lost]
-        self.risky |= other.risky
-
-
-def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()) -> Referred:
-    """Look at what a STEP file, of which the content is given, refers to; reading one of the files may take so many seconds.
-
-    above: files that refer to this one, without links. Raises ReadError where a file refers to itself, or to one that may not be
-    read.
-    """
-    result = Referred()
-    above = (*above, os.path.realpath(file))
-    for name in names(data):
-        path = os.path.join(os.path.dirname(file), name)
-        if os.path.realpath(path) in above:
-            raise ReadError(f"refers to {name}, which refers to it again: save the assembly as one file", file=file)
-        try:
-            content = in_folder_of(file)(name)
-        except OutsideError as error:
-            raise ReadError(f"refers to {name}: {error.strerror}", file=file) from None
-        except ReadError as error:
-            raise ReadError(error.cause, file=file) from None
-        if path in result.faces:
-            continue
-        if content is None:
-            _miss(result, name, "the file refers to it, and it cannot be read: put it into the folder of the file")
-            continue
-        try:
-            kind = sniff(content, name)
-        except ReadError:
-            kind = ""
-        if kind != "step":
-            _miss(result, name, "the file refers to it, and it is no STEP file: only these are followed")
-            continue
-        below = referred(path, content, timeout, above)
-        try:
-            alone = _alone(path, name, content, below.foreign, timeout)
-        except ReadError as error:
-            _miss(result, name, f"the file refers to it, and it {error.cause}")
-            continue
-        result.add(below)
-        result.add(alone)
-    return result
-
-
-def _miss(referred: Referred, name: str, why: str) -> None:
-    if not name.lower().endswith(DOCUMENTS):
-        referred.lost.append(LostFace("", name, why))
-
-
-def _alone(file: str, name: str, data: bytes, foreign: int, timeout: float) -> Referred:
-    """What a file itself has, of which the name is written, without what it refers to; in a copy of the process."""
-
-    def look() -> Referred:
-        with translated("reading the file", error=ReadError, file=file):
-            loaded = step.Loaded(file, data, names=False, adopt=False, foreign=foreign)
-            read = loaded.transfer()
-            lost = [LostFace("", " ".join(filter(None, (name, each.entity, each.name))), each.why) for each in read.lost]
-            return Referred({file: step.distinct_faces(read.shape) - foreign}, lost, loaded.risky)
-
-    try:
-        return limited(look, timeout, passing=(ReadError,))
-    except TimeLimit:
-        raise ReadError(f"is not read within {timeout:g} s", file=file) from None
-    except ChildDied as died:
-        raise ReadError(f"cannot be read by the CAD kernel ({died})", file=file) from None
 
 
 Loaded = step.Loaded | iges.Loaded
@@ -174,8 +85,8 @@ def read_part(
         Seconds that a guarded reading may take. A file with faults that may harm the kernel is made into shapes in a
         copy of the process in any case.
     cache : StageCache, optional
-        Keeps what was read of a file without faults that refers to no other one: the kernel reads its own form of a shape some
-        thirty times as fast as STEP.
+        Keeps what was read of a file without faults: the kernel reads its own form of a shape some thirty times as fast as
+        STEP.
 
     Returns
     -------
@@ -240,13 +151,7 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
             whole = _read_brep(file, kind)
             bound_naturally(whole)
             return replace(_content(PartContent(_scaled(whole, unit))), **known)
-    loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
-    if kind == "step" and names(data):
-        if unit is not None:
-            raise ReadError("refers to other files, which state units of their own: leave out the unit", file=file)
-        others = referred(file, data, timeout)
-        loader = partial(loader, foreign=others.foreign)
-        known["references"] = checksums(followed(data, in_folder_of(file)))
+    loader = partial(_LOADERS[kind], file, data, unit)
     loaded: Any = None
     content: PartContent | None = None
 
@@ -255,13 +160,13 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
         nonlocal loaded, content
         with translated("reading the file", error=ReadError, file=file):
             loaded = loader()
-            content = None if loaded.risky or others.risky else _transferred(lambda: loaded, others)
+            content = None if loaded.risky else _transferred(lambda: loaded)
         return content and packed(content)
 
-    stored = (NO_CACHE if "references" in known else cache).cached(
+    stored = cache.cached(
         "read", (kind, known["sha256"], unit), transferred,
         # The kernel opens the file itself: what was written there meanwhile is not of this checksum.
-        lambda made: made is not None and loaded.alone and comes_back(made) and checksum(load(file)[1]) == known["sha256"],
+        lambda made: made is not None and comes_back(made) and checksum(load(file)[1]) == known["sha256"],
     )  # fmt: skip
     if stored is not None:
         return replace(content or unpacked(stored), **known)
@@ -269,23 +174,19 @@ def _read_file(file: str, unit: str | None, timeout: float, cache: Cache) -> Par
     again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):
         try:
-            return replace(in_copy(partial(_transferred, reload, others), timeout, file), **known)
+            return replace(in_copy(partial(_transferred, reload), timeout, file), **known)
         except Crashed as error:
             crash = error
     raise crash
 
 
-def _transferred(load_again: Callable[[], Loaded], others: Referred) -> PartContent:
+def _transferred(load_again: Callable[[], Loaded]) -> PartContent:
     loaded = load_again()
     with translated("reading the file", error=ReadError, file=loaded.file):
-        try:
-            return _content(loaded.transfer(), others)
-        except step.NothingError as error:
-            raise ReadError(f"{error.cause}; {others.lost[0]}", file=error.file) if others.lost else error from None
+        return _content(loaded.transfer())
 
 
-def _content(read: PartContent, others: Referred | None = None) -> PartContent:
-    read.lost += [] if others is None else others.lost
+def _content(read: PartContent) -> PartContent:
     reported = {each.face for each in read.lost}
     for n, face in enumerate(faces(read.shape), 1):
         if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:

@@ -38,8 +38,8 @@ from cad_io.part.content import PartContent
 from cad_io.read import size_notes
 from cad_io.read.document import DroppedNames, add_attributes, each, roots
 from cad_io.read.faults import Model, UnreadFaces, is_face, is_whole, name_of, open_border, repair, type_of
+from cad_io.read.sniff import reported
 from cad_io.read.step_text import adopted, readable
-from cad_io.read.step_text import names as referred_names
 from cad_io.units import UNITS, UnitReading, in_mm
 from plan_cutters_base import user_files as files
 
@@ -58,6 +58,9 @@ _SHAPES = (StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransfor
 _ASCII = re.compile("[!-~]")
 _NO_LENGTH = re.compile("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived")
 _SUBSHAPES = "read.stepcaf.subshapes.name"
+#: Documents beside the shape, which the kernel cannot read and which cost no geometry.
+_DOCUMENTS = (".pdf", ".txt", ".doc", ".docx", ".xls", ".xlsx", ".csv", ".htm", ".html", ".jpg", ".jpeg", ".png", ".tif", ".tiff",
+              ".svg")  # fmt: skip
 #: Entities named in one warning.
 _MOST_NAMED = 3
 
@@ -71,21 +74,15 @@ class Loaded:
 
     data: the content of the file, to count faces in. unit: length unit to take instead of the file's, one of `units.UNITS`.
     names: ask the kernel for names, colours and layers, on which it crashes in some faulty files. careful: leave out every face
-    that uses something faulty. adopt: read solids to which no product leads, as where the file is read for itself. foreign: faces
-    that come from files which this one refers to, none of its own. `risky`: the transfer may crash or hang, to be run in a copy
-    of the process. `alone`: what it becomes follows from its own bytes, and not from what stands beside it.
+    that uses something faulty. `risky`: the transfer may crash or hang, to be run in a copy of the process.
 
-    Raises ReadError where it is cut off, not STEP, or known to hang the transfer.
+    Raises ReadError where it is cut off, not STEP, known to hang the transfer, or refers to other files.
     """
 
-    def __init__(
-        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False, adopt: bool = True,
-        foreign: int = 0,
-    ) -> None:  # fmt: skip
-        self.file, self.unit, self.names, self.careful = file, unit, names, careful
-        self.foreign, self._written, self.alone = foreign, data, True
+    def __init__(self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False) -> None:
+        self.file, self.unit, self.names, self.careful, self._written = file, unit, names, careful, data
         self.data, self.encoding = readable(data)
-        self._adopted = adopted(self.data) if adopt and not foreign else None
+        self._adopted = adopted(self.data)
         if self._adopted:
             self.data = self._adopted.data
         STEPCAFControl_Controller.Init_s()
@@ -97,10 +94,8 @@ class Loaded:
         before = Interface_Static.IVal_s(_SUBSHAPES)
         Interface_Static.SetIVal_s(_SUBSHAPES, int(names))
         try:
-            # Files that it refers to are looked for in its folder only where its path is whole, else where the process works.
-            path = os.path.abspath(file)
             same = self.data is data
-            status = self.reader.ReadFile(path) if same else self.reader.ReadStream(path, io.BytesIO(self.data))
+            status = self.reader.ReadFile(file) if same else self.reader.ReadStream(file, io.BytesIO(self.data))
         finally:
             Interface_Static.SetIVal_s(_SUBSHAPES, before)
         if status != IFSelect_RetDone:
@@ -118,7 +113,7 @@ class Loaded:
         huge = (data[at.start() - 1 : at.start()] for pattern in _HUGE for at in pattern.finditer(data))
         self.risky = bool(self.faults) or any(before in _BEFORE for before in huge)
         self._refuse()
-        self._refuse_unnoticed()
+        self._refuse_references()
 
     def transfer(self, *, traced: bool = False) -> PartContent:
         """Make the shape; `traced`: find out which face was which entity, too; a file with faults is traced in any case.
@@ -137,7 +132,7 @@ class Loaded:
                 raise
             # One bad vertex can cost a whole solid: without the faces at it, the others may come.
             return self._again(names=self.names, careful=True).transfer()
-        made, written = (distinct_faces(result.shape) - self.foreign, sum(len(kind.findall(self.data)) for kind in _FACES))
+        made, written = _distinct_faces(result.shape), sum(len(kind.findall(self.data)) for kind in _FACES)
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
             if made >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
@@ -164,8 +159,7 @@ class Loaded:
         return result
 
     def _again(self, **how: bool) -> "Loaded":
-        adopt = self._adopted is not None
-        return Loaded(self.file, self._written, self.unit, adopt=adopt, foreign=self.foreign, **how)
+        return Loaded(self.file, self._written, self.unit, **how)
 
     def _refuse(self) -> None:
         """Points and directions that are no numbers, used by a shape: the transfer would take for ever, or a guess."""
@@ -186,25 +180,17 @@ class Loaded:
                     f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)", file=self.file
                 )
 
-    def _refuse_unnoticed(self) -> None:
-        """Files that the kernel would open, and `references.names` does not see: in no key, and behind no wall."""
+    def _refuse_references(self) -> None:
+        """Files that the kernel would open beside this one: it leaves out in silence what it cannot read of them."""
         references = STEPConstruct_ExternRefs(self.reader.ChangeReader().WS())
         references.LoadExternRefs()
-        seen = set(map(os.path.normpath, referred_names(self.data)))
         for number in range(1, references.NbExternRefs() + 1):
             name = (references.FileName(number) or "").replace("\\", "/")
-            if not name.strip() or os.path.normpath(name) in seen:
-                continue
-            self.alone = False
-            path = os.path.join(os.path.dirname(self.file), name)
-            try:
-                there = files.is_there(files.permitted(path))
-            except files.OutsideError:
-                there = True
-            if there:
-                raise ReadError(
-                    f"refers to {name} in a form that is not known here: save the assembly as one file", file=self.file
-                )
+            if name.lower().endswith(_DOCUMENTS):
+                with reported(self.file):
+                    files.permitted(os.path.join(os.path.dirname(self.file), name))
+            elif name.strip():
+                raise ReadError(f"refers to {name}, and other files are not followed: save it as one file", file=self.file)
 
     def _shape(self) -> PartContent:
         nothing = "holds no shape that can be read"
@@ -231,7 +217,7 @@ class Loaded:
 
     def _unit_readings(self) -> Iterator[UnitReading]:
         """What is doubtful of what the file says about its unit."""
-        if self.unit is not None or self.foreign:
+        if self.unit is not None:
             return
         stated = self._adopted.unit if self._adopted else ""
         if not stated and not all(word in self.data for word in (b"LENGTH_UNIT", b"GLOBAL_UNIT_ASSIGNED_CONTEXT")):
@@ -346,7 +332,7 @@ def _length_unit(reader: STEPCAFControl_Reader) -> float:
     return 1.0
 
 
-def distinct_faces(shape: TopoDS_Shape) -> int:
+def _distinct_faces(shape: TopoDS_Shape) -> int:
     """Faces counted once however often the assembly shows them."""
     placed_once = TopTools_IndexedMapOfShape()
     for face in explore(shape, TopAbs_FACE):

@@ -59,8 +59,6 @@ class Split:
     #: Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the border
     #: that their boundary runs outside.
     dropped: dict[int, int]
-    #: Face number -> the labels of a face left whole.
-    labels: dict[int, FaceLabels] = field(default_factory=dict)
     #: Face number -> how many slivers joined a worse label around them.
     joined: dict[int, int] = field(default_factory=dict)
 
@@ -100,8 +98,7 @@ def _split(job: Job, labels: Sequence[FaceLabels], seconds: float) -> Split:
         else:
             label = MIXED if number in mixed else max(shares[number], key=lambda k: shares[number][k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares[number]) for piece in shapes]
-    failed = {number: fields[number] for number in sorted(cut.failed)}
-    return Split(shape, tuple(pieces), cut.failed, cut.missed, failed, cut.joined)
+    return Split(shape, tuple(pieces), cut.failed, cut.missed, cut.joined)
 
 
 def _shares(label: Ints) -> dict[int, float]:
@@ -130,7 +127,7 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels]) -> Split:
     roomy = {number: with_margin(each) for number, each in fields.items()}
     start = split(part, [])
     shape, pieces = start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces]
-    whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
+    whole, joined = dict[int, str](), Counter[int]()
     while any(len(group) > 1 for _, group in pieces):
         # Labels that part each piece of several labels into two halves of them; the pieces are faces by their places, from 1.
         taken, requests, owner = _taken(pieces, roomy), [], [0, *(piece.face for piece, _ in pieces)]
@@ -147,13 +144,12 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels]) -> Split:
         faces = {i: piece.shape for i, (piece, _) in enumerate(pieces, 1)}
         done = _split(Job(shape, faces, {}, surface_of, -1), requests, SECONDS)
         shape, pieces = done.shape, [_halved(each, *pieces[each.face - 1]) for each in done.pieces]
-        for i, why in done.whole.items():
-            whole[owner[i]], remaining[owner[i]] = why, fields[owner[i]]
+        whole |= {owner[i]: why for i, why in done.whole.items()}
         for i, n in done.joined.items():
             joined[owner[i]] += n
     last = tuple(each for each, _ in pieces)
     strays = {number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()}
-    return Split(shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
+    return Split(shape, last, whole, {k: n for k, n in strays.items() if n}, dict(joined))
 
 
 def with_margin(labels: FaceLabels) -> FaceLabels:

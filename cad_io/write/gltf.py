@@ -16,14 +16,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.TopAbs import TopAbs_REVERSED
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.split.pieces import MIXED, Piece, Split
+from cad_io.split.pieces import Piece, Split
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import meshed
-from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
+from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, with_normals
 from plan_cutters_base.whole import whole
 
 _METRE = 1e-3
@@ -59,8 +60,7 @@ def write_gltf(
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles; triangles of a face left whole are split along the grid of its labels and stand in a node a
-    label.
+    """Write all pieces as triangles.
 
     path: appears whole or not at all. style: name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks
     for, and looks the same. Pieces of one kind and colour share a material, which has the name of the kind. extras, piece_extras:
@@ -103,21 +103,14 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
 
 
 def meshes_of(split: Split) -> Iterator[tuple[Piece, Mesh | None]]:
-    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
-
-    Of a face that could not be split, the triangles of each label are a piece.
-    """
+    """The pieces of a split part with triangles to draw them; None where the kernel made none."""
     surfaces: dict[int, Surface] = {}
     shapes = [piece.shape for piece in split.pieces]
-    for piece, render_mesh in zip(split.pieces, meshed(shapes, FINE * diagonal(split.shape), ANGLE), strict=True):
-        labels = split.labels.get(piece.face) if piece.label == MIXED else None
+    for piece, triangles in zip(split.pieces, meshed(shapes, FINE * diagonal(split.shape), ANGLE), strict=True):
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
-        meshes = face_mesh(piece.shape, surface, render_mesh, labels)
-        for label, mesh in (meshes or {}).items():
-            yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
-        if not meshes:
-            yield piece, None
+        turned = piece.shape.Orientation() == TopAbs_REVERSED
+        yield piece, with_normals(surface, *triangles, turned=turned) if triangles else None
 
 
 def _draw(mesh: Mesh, vertex_rgb: tuple[float, float, float] | None = None) -> _Mesh:

@@ -2,7 +2,7 @@
 
 They are cut where they lie farthest from the surface, until they are near enough or enough. Both triangles at an edge are cut
 where it is, so that no cracks open within a face. What is drawn proves nothing: distances are looked at in the middles of edges
-and of triangles. Where a face could not be split, its triangles are cut along the grid of its labels.
+and of triangles.
 """
 
 from collections.abc import Collection, Sequence
@@ -14,114 +14,14 @@ from numpy.typing import NDArray
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
-from OCP.TopAbs import TopAbs_REVERSED
 
-from cad_io.arrays import FaceLabels, Floats, Ints
+from cad_io.arrays import Floats
 from cad_io.errors import WriteError
 from cad_io.kernel import periods, translated
 from cad_io.part import Part
-from cad_io.split.contour import fill
 from cad_io.surface import Surface
-from cad_io.tessellate.mesh import BorderCurve, Meshed, UVMesh
+from cad_io.tessellate.mesh import BorderCurve, UVMesh
 from cad_io.tessellate.start import expected, starts
-
-
-class LabelledMesh(NamedTuple):
-    """Parameters (n, 2) and points (n, 3) mm of corners; triangles (m, 3); a label (m,) each."""
-
-    uv: Floats
-    point: Floats
-    triangle: NDArray[np.int64]
-    label: Ints
-
-
-def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64], labels: FaceLabels) -> LabelledMesh:
-    """The same surface in as many triangles or more, with the labels of a grid of which at least one node is known.
-
-    uv (n, 2), point (n, 3): surface parameters, and mm, of corners; triangle (m, 3).
-    """
-    period_u, period_v = periods(BRep_Tool.Surface_s(face))
-    cell_u, turns_u, shut_u = _cells(uv[:, 0], labels.u, period_u)
-    cell_v, turns_v, shut_v = _cells(uv[:, 1], labels.v, period_v)
-    known = labels.label[:-1] if shut_u else labels.label
-    known = np.tile(known[:, :-1] if shut_v else known, (turns_u, turns_v))
-    filled = fill(known)
-    mixed = _Mixed(filled)
-    corner: Floats = np.column_stack([cell_u, cell_v, uv, point])[triangle]
-    done = []
-    while len(corner):
-        low, high = corner[:, :, :2].min(axis=1), corner[:, :, :2].max(axis=1)
-        # Borders are at whole numbers and a half: the first and the last one strictly inside the box.
-        first, last = np.floor(low + 0.5) + 0.5, np.ceil(high - 0.5) - 0.5
-        across = (first <= last) & mixed(low, high)[:, None]
-        done.append(corner[~across.any(axis=1)])
-        axis = np.where(across, last - first, -1.0).argmax(axis=1)
-        rows = np.flatnonzero(across.any(axis=1))
-        at = np.floor(0.5 * (first + last))[rows, axis[rows]] + 0.5
-        corner = _cut(corner[rows], axis[rows], at)
-    joined = np.concatenate(done)
-    node = np.clip(np.rint(joined[:, :, :2].mean(axis=1)), 0, np.array(filled.shape) - 1).astype(int)
-    each, index = np.unique(joined.reshape(-1, joined.shape[2]), axis=0, return_inverse=True)
-    return LabelledMesh(each[:, 2:4], each[:, 4:], index.reshape(-1, 3), filled[node[:, 0], node[:, 1]])
-
-
-class _Mixed:
-    """Whether nodes of different label have a part in boxes of cells, low and high (n, 2)."""
-
-    def __init__(self, label: Ints) -> None:
-        self.last = np.array(label.shape) - 1
-        steps = np.zeros((2, *label.shape), np.int64)
-        steps[0, 1:] = label[1:] != label[:-1]
-        steps[1, :, 1:] = label[:, 1:] != label[:, :-1]
-        self.count = np.pad(steps.cumsum(1).cumsum(2), ((0, 0), (1, 0), (1, 0)))
-
-    def __call__(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
-        i, j = np.clip(np.rint(low), 0, self.last).astype(int).T
-        m, n = np.clip(np.rint(high), 0, self.last).astype(int).T + 1
-        mixed = np.zeros(len(low), bool)
-        # A step leads to its node from the one before: the first ones lead into the box, not through it.
-        for count, a, b in ((self.count[0], i + 1, j), (self.count[1], i, j + 1)):
-            a, b = np.minimum(a, m), np.minimum(b, n)
-            mixed |= count[m, n] - count[a, n] - count[m, b] + count[a, b] > 0
-        return mixed
-
-
-def _cut(corner: Floats, axis: NDArray[np.intp], at: Floats) -> Floats:
-    """Triangles (3 n, 3, k) after cutting each of (n, 3, k) along the line on which its column `axis` is `at`.
-
-    Both sides of the line hold a corner.
-    """
-    each = np.arange(len(corner))
-    above = corner[each, :, axis] > at[:, None]
-    # The corner that is alone on its side becomes the first.
-    lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), (~above).argmax(axis=1))
-    p, q, r = corner[each[:, None], (lone[:, None] + np.arange(3)) % 3].transpose(1, 0, 2)
-
-    def crossing(other: Floats) -> Floats:
-        far, near = other[each, axis] - at, p[each, axis] - at
-        share = (near / (near - far))[:, None]
-        out = p + share * (other - p)
-        out[each, axis] = at
-        return out
-
-    pq, pr = crossing(q), crossing(r)
-    return np.concatenate([np.stack(t, axis=1) for t in ((p, pq, pr), (pq, q, r), (pq, r, pr))])
-
-
-def _cells(at: Floats, line: Floats, period: float) -> tuple[Floats, int, bool]:
-    """Parameters counted in cells of a grid line; over how many turns; whether the line's ends are one place."""
-    if not period:
-        return np.interp(at, line, np.arange(len(line))), 1, False
-    if line[-1] - line[0] < period * (1 - 1e-6):
-        # The corners may lie whole periods off the grid.
-        off = np.round((at.mean() - 0.5 * (line[0] + line[-1])) / period) * period
-        return np.interp(at - off, line, np.arange(len(line))), 1, False
-    excess = at - line[0]
-    turn = np.floor(excess / period + 1e-9)
-    turn -= turn.min()
-    inner = np.interp(excess - np.floor(excess / period + 1e-9) * period, line - line[0], np.arange(len(line)))
-    return inner + turn * (len(line) - 1), int(turn.max()) + 2, True
-
 
 Indices = NDArray[np.int64]
 
@@ -305,10 +205,9 @@ def render_mesh(
         off = cut(list(nets.values()), wanted, ANGLE, most)
         meshes, turns = {}, {}
         for number, net in nets.items():
-            whole = np.zeros(len(net.corner), np.int32)
-            mesh = _finished(net.surface, net.uv, net.point, net.corner, whole, turned=not sides[number - 1] > 0)
+            mesh = with_normals(net.surface, net.uv, net.point, net.corner, turned=not sides[number - 1] > 0)
             if mesh:
-                meshes[number] = mesh[0]
+                meshes[number] = mesh
                 turns[number] = periods(BRep_Tool.Surface_s(part.face(number)))
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
@@ -331,24 +230,8 @@ def diagonal(shape: Any) -> float:
     return float(np.sqrt(box.SquareExtent()))
 
 
-def face_mesh(face: Any, surface: Surface, meshed: Meshed | None, labels: FaceLabels | None) -> dict[int, Mesh] | None:
-    """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none.
-
-    `meshed` are its triangles, of the kernel; `surface` is what it lies on.
-    """
-    if meshed is None:
-        return None
-    uv, point, triangle = meshed
-    label = np.zeros(len(triangle), np.int32)
-    if labels is not None:
-        uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
-    return _finished(surface, uv, point, triangle, label, turned=face.Orientation() == TopAbs_REVERSED)
-
-
-def _finished(
-    surface: Surface, uv: Floats, point: Floats, triangle: NDArray[np.int64], label: Ints, *, turned: bool
-) -> dict[int, Mesh]:
-    """Meshes by label, with exact normals; `turned`: `dS/du x dS/dv` points into the material."""
+def with_normals(surface: Surface, uv: Floats, point: Floats, triangle: NDArray[np.int64], *, turned: bool) -> Mesh | None:
+    """A mesh with exact normals, None without a triangle; `turned`: `dS/du x dS/dv` points into the material."""
     s = surface.first(uv[:, 0], uv[:, 1])
     normal = np.cross(s[:, 1], s[:, 2])
     if turned:
@@ -357,7 +240,9 @@ def _finished(
     corner = (point * _METRE).astype(np.float32)[triangle]
     facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
     valid = (facet**2).sum(1) > 0
-    triangle, facet, label = triangle[valid], facet[valid], label[valid]
+    triangle, facet = triangle[valid], facet[valid]
+    if not len(triangle):
+        return None
     tangents = s[:, 1:]
     length = np.linalg.norm(normal, axis=1)
     # At a pole the tangents give no normal: there the facets around it do.
@@ -365,9 +250,6 @@ def _finished(
     normals = np.zeros_like(point)
     np.add.at(normals, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
     normal = np.where(pole[:, None], normals, normal / np.where(pole, 1.0, length)[:, None])
-    meshes = {}
-    for value in np.unique(label).tolist():
-        used, mine = np.unique(triangle[label == value], return_inverse=True)
-        unit = normal[used] / np.linalg.norm(normal[used], axis=1)[:, None]
-        meshes[value] = Mesh(point[used], unit, mine.reshape(-1, 3).astype(np.uint32), uv[used])
-    return meshes
+    used, mine = np.unique(triangle, return_inverse=True)
+    unit = normal[used] / np.linalg.norm(normal[used], axis=1)[:, None]
+    return Mesh(point[used], unit, mine.reshape(-1, 3).astype(np.uint32), uv[used])

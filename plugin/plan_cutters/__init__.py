@@ -10,7 +10,7 @@ _NAMES = {
     ".calls": "plan posture_map",
     ".domain.cutter": "Cutter",
     ".domain.fixture": "Fixture",
-    ".domain.holder": "Holder Segment Stage",  # the last one is its former name
+    ".domain.holder": "Holder Segment",
     ".domain.machine": "Axis Machine",
     ".domain.placement": "Placement",
     ".domain.posture": "PostureRange",

@@ -3,7 +3,7 @@
 from plan_cutters.calls import plan, posture_map
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.holder import Holder, Segment, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.machine import Axis, Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
@@ -37,7 +37,6 @@ __all__ = [
     "Result",
     "Scene",
     "Segment",
-    "Stage",
     "__version__",
     "plan",
     "plan_many",

@@ -225,7 +225,7 @@ def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callabl
         if ready.conditions.machine.limited:
             verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
-            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
+            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.sha256 or "", progress=tell,
             inside=ready.inside_bodies, shut=(ready.shut >= 0) | ready.for_drills,
             missing=tuple(ready.conditions.surroundings.doubts), most=ready.options.map_budget,
         )  # fmt: skip

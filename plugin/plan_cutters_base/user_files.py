@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 import stat
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from io import BufferedReader
@@ -108,17 +108,6 @@ def noted() -> Iterator[dict[str, str | None]]:
 def checksum(data: bytes) -> str:
     """SHA-256 of the content of a file."""
     return hashlib.sha256(data).hexdigest()
-
-
-def checksums(files: Iterable[tuple[str, bytes | None]]) -> tuple[tuple[str, str | None], ...]:
-    """SHA-256 of files by their paths; None: not there."""
-    return tuple((name, None if data is None else checksum(data)) for name, data in files)
-
-
-def fingerprint(sha256: str, references: Sequence[tuple[str, str | None]]) -> str:
-    """Checksum of a CAD file with all that it refers to, from theirs: its own SHA-256 where it refers to nothing."""
-    stated = sorted(f"{len(name)} {name} {result}" for name, result in references)
-    return hashlib.sha256("\n".join([sha256, *stated]).encode(errors="surrogateescape")).hexdigest() if stated else sha256
 
 
 def _refuse(status: os.stat_result) -> None:

@@ -3,75 +3,26 @@
 import contextlib
 import copy
 import functools
-import os
 import pickle
 import platform
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path, PurePath, PureWindowsPath
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import plan_cutters
-from cad_io.read.step_text import followed
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
-from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.files import folder as folders
+from plan_cutters.errors import OptionError
+from plan_cutters.files.folder import read
 from plan_cutters.options import Options
 from plan_cutters_base import user_files
 from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
-from plan_cutters_base.user_files import checksum, checksums, fingerprint
+from plan_cutters_base.user_files import checksum
 from plan_cutters_base.values import digest, sources
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanningRequest
-
-
-@dataclass(frozen=True)
-class Content:
-    """The bytes of a CAD file, and of the files that it refers to, are one content."""
-
-    data: bytes
-    #: Bytes of each of the others, by its path from the file's folder; None: it is not there.
-    references: tuple[tuple[str, bytes | None], ...] = ()
-
-    @property
-    def key(self) -> str:
-        """Checksum of all of it."""
-        return fingerprint(checksum(self.data), checksums(self.references))
-
-    def within(self) -> Iterator[tuple[str, bytes]]:
-        """The files in or below its folder that it refers to, and that are there: what lies elsewhere does not travel."""
-        return ((name, data) for name, data in self.references if data is not None and _is_within(name))
-
-    def outside(self) -> tuple[tuple[str, str | None], ...]:
-        """Checksums of the other files that it refers to, by their paths; None: not there."""
-        return checksums((name, data) for name, data in self.references if not _is_within(name))
-
-
-def _is_within(name: str) -> bool:
-    return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
-
-
-def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> None:
-    """Write files below a folder, by their paths from there."""
-    for name, data in files:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(data)
-
-
-def content(file: str, read: Callable[[str], bytes] = folders.read) -> Content:
-    """Read a file (path or URL), and all that it refers to, which may be missing; a PlanError where the file cannot be read."""
-    folder, slash, _ = file.rpartition("/")
-
-    def other(name: str) -> bytes | None:
-        try:
-            return folders.read(name) if os.path.isabs(name) else read(f"{folder}{slash}{name}")
-        except PlanError:
-            return None
-
-    data = read(file)
-    return Content(data, tuple(followed(data, other)))
 
 
 class Handed(NamedTuple):
@@ -81,8 +32,6 @@ class Handed(NamedTuple):
     options: bytes
     #: Of fixtures, by the names that these have there.
     files: tuple[tuple[str, bytes], ...]
-    #: Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
-    outside: tuple[tuple[str, str | None], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -117,21 +66,15 @@ class Settings:
         """
         files: dict[str, bytes] = {}
         names: dict[str, str] = {}
-        outside: list[tuple[str, str | None]] = []
 
         def moved(fixture: Fixture) -> Fixture:
             if fixture.kind or not isinstance(fixture.source, str):
                 return fixture
             if fixture.source not in names:
-                copied = content(fixture.source, _read)
                 name = PurePath(PureWindowsPath(fixture.source).name).name
-                # What it refers to is called as it is called there: it gets a folder of its own.
-                name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
                 while name in files:
                     name = f"_{name}"
-                files[name] = copied.data
-                files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
-                outside.extend(copied.outside())
+                files[name] = _read(fixture.source)
                 names[fixture.source] = name
             # A copy past the checks: they looked at the same words.
             return _with(fixture, source=names[fixture.source])
@@ -152,7 +95,7 @@ class Settings:
                 f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
                 "give numbers, words or files"
             ) from None
-        return Handed(packed, tuple(sorted(files.items())), tuple(outside))
+        return Handed(packed, tuple(sorted(files.items())))
 
     @functools.cached_property
     def key(self) -> str:
@@ -164,7 +107,7 @@ class Settings:
         options = {each.name: getattr(self.options, each.name) for each in fields(self.options)}
         del options["jobs"]
         parts = [options, sorted(self.formats), sorted(self.read), self.step_schema, program()]
-        return digest([parts, self.handed.outside, *self.handed.files]).hex()
+        return digest([parts, *self.handed.files]).hex()
 
     def faced(self, part: Any) -> "Settings":
         """The same with faces by their numbers, for a part that is an object: its faces cannot be named in another process."""
@@ -220,9 +163,9 @@ class Job:
     #: The pickled `cad_io.Part`, where it is no file.
     part: bytes | None = None
 
-    def content(self) -> Content:
+    def content(self) -> bytes:
         """What is planned; a PlanError where it cannot be read."""
-        return Content(self.part) if self.part else content(self.file)
+        return self.part or read(self.file)
 
 
 @functools.cache
@@ -244,6 +187,6 @@ def versions() -> dict[str, str]:
     }
 
 
-def key_of(content: str, settings: str) -> str:
-    """The key of a part, from the checksum of its file and that of its settings: two runs that have one give the same files."""
-    return checksum(f"{content} {settings}".encode())
+def key_of(content: bytes, settings: str) -> str:
+    """The key of a part, from its file and the key of its settings: two runs that have one give the same files."""
+    return checksum(f"{checksum(content)} {settings}".encode())

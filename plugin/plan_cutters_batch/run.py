@@ -343,7 +343,7 @@ def foreseen(parts: Iterable[Job | PartRow], out: Store, terms: Terms) -> Iterat
             yield part
             continue
         try:
-            key = key_of(part.content().key, part.settings.key)
+            key = key_of(part.content(), part.settings.key)
             row = None if terms.force else cached(out, f"{part.name}-plan", key, part.name, part.file)
             yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)
         except PlanError as error:

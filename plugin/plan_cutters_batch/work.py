@@ -14,10 +14,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from plan_cutters.errors import PlanError
+from plan_cutters.files.folder import read
 from plan_cutters_base.whole import system_lock
 from plan_cutters_base.workers.child import INTERRUPTED, TIMED_OUT, Assignment, Child, JobInput, can_supervise, compiler
 from plan_cutters_base.workers.supervise import WRITING
-from plan_cutters_batch.job import Content, Handed, content, key_of, versions, write_files
+from plan_cutters_batch.job import Handed, key_of, versions
 from plan_cutters_batch.row import UNREADABLE, USAGE, PartRow, failed, row_of
 from plan_cutters_batch.store import Store
 
@@ -92,10 +93,10 @@ def work(task: Task) -> Outcome:
             return replace(fault(why, USAGE), unfit="" if worker is None else str(worker.address))
         source = task.source or task.file
         try:
-            whole = Content(task.part) if task.part else content(source)
+            whole = task.part or read(source)
         except PlanError as error:
             return fault(str(error).replace(source, task.file), UNREADABLE)
-        key = key_of(whole.key, task.settings)
+        key = key_of(whole, task.settings)
         if output is not None and not task.force and (row := cached(output, task.folder, key, task.name, task.file)):
             return Outcome(row)
         # The worker's folder, which dask clears when the worker was killed.
@@ -198,14 +199,15 @@ def _wanted() -> Callable[[], bool]:
     return wanted
 
 
-def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
+def planned(task: Task, content: bytes, folder: Path) -> tuple[int, str]:
     """Run the command in a folder; its exit code, and the last line that it said."""
     name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
     if task.part is None:
-        write_files(folder, [(name, content.data), *content.within()])
+        (folder / name).write_bytes(content)
     if any((folder / file).exists() for file, _ in task.handed.files):
         return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
-    write_files(folder, task.handed.files)
+    for file, data in task.handed.files:
+        (folder / file).write_bytes(data)
     (folder / ".handed").write_bytes(pickle.dumps(JobInput(task.handed.options, task.part), protocol=5))
     words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     limit = float("inf")

@@ -236,13 +236,11 @@ def _fits(part: Part, options: Options, document: Mapping[str, Any], cutters: li
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
     if tolerance > wanted and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
-    files = [(each["file"], each["sha256"]) for each in document["part"].get("references", [])]
     axes = (effective["setup"], *effective["other_setups"])
     places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
     named = [[each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))]
     pairs: list[tuple[str, Any, Any]] = [
         ("part", document["part"].get("sha256"), part.sha256),
-        ("files that the part refers to", files, list(part.references)),
         ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
         ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
         ("machine (--machine)", effective["machine"], options.machine.name),

@@ -2,20 +2,17 @@
 
 import json
 import os
-import posixpath
 import re
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from cad_io.read import step_text
 from plan_cutters.command.codes import ENDED
 from plan_cutters.command.option_groups import Command, heading, options
 from plan_cutters.command.request import PlanRequest, Reported, takes
@@ -100,29 +97,7 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         pair = Changed(None if status[0] in "AC" else old, None if status[0] == "D" else new)
         if Path(pair.name).suffix.lower() in PARTS:
             paths.append(pair)
-    files = {path for part in paths for path in (part.old, part.new) if path is not None}
-    paths += [Changed(path, path) for path in _referring(until, files) - files]
     return began, until, sorted(paths, key=lambda part: part.name)
-
-
-def _referring(at: str, files: Collection[str]) -> set[str]:
-    """STEP files of a commit that refer to some files, or to others that do: assemblies."""
-    if not files:
-        return set()
-    words = [part for word in step_text.WORDS for part in ("-e", word.decode())]
-    output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
-    paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
-    refers = {
-        path: {
-            posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
-            for name in step_text.names(git("cat-file", "--filters", f"{at}:{path}"))
-        }
-        for path in paths
-    }
-    reached = set(files)
-    while new := {path for path, names in refers.items() if path not in reached and names & reached}:
-        reached |= new
-    return {path for path in reached if path in refers}
 
 
 def content(at: str, path: str) -> bytes:
@@ -297,7 +272,7 @@ def _data(text: str) -> str:
 
 
 if TYPE_CHECKING:
-    from plan_cutters_batch.job import Content, Settings
+    from plan_cutters_batch.job import Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -423,20 +398,19 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     if part.new is None or request is None:
         return Row(part)
     from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters_batch.job import content as all_of
     from plan_cutters_batch.store import MARKER
     from plan_cutters_ci.plans import compare, reached, unreachable
     from plan_cutters_ci.review import PAGE, write_page
 
     pages: dict[str, Path] = {}
     why: dict[str, str] = {}
-    known: dict[Content, Path] = {}
+    known: dict[bytes, Path] = {}
     for side, at, path in (("after", head, part.new), ("before", began, part.old)):
         if path is None:
             continue
         say(f"{path}: {'as it was' if side == 'before' else 'as it is'}")
         try:
-            data = all_of(path, partial(content, at))
+            data = content(at, path)
             # A part that was only renamed is planned once.
             known[data] = plan = known.get(data) or _planned(data, path, request, cache)
             pages[side] = out / side / part.name
@@ -459,7 +433,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     )  # fmt: skip
 
 
-def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
+def _planned(content: bytes, path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there; a PlanError where it cannot be planned."""
     from plan_cutters.plan_file.load import load_plan
     from plan_cutters_base.user_files import checksum
@@ -469,9 +443,9 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     from plan_cutters_batch.store import Store
 
     name = Path(path).name
-    key = key_of(content.key, request.settings.key)
+    key = key_of(content, request.settings.key)
     # The part's name stands in its plan.
-    folder = key_of(key, checksum(name.encode("utf-8", "surrogateescape")))
+    folder = checksum(f"{key} {name}".encode("utf-8", "surrogateescape"))
     store = Store(str(cache))
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder

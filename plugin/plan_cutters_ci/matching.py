@@ -91,7 +91,7 @@ def match_faces(old: Plan, new: Plan) -> Matched:
     In turn: both plans are of the same bytes in the same unit, so that numbers agree; form, area and place agree; carriers
     agree; a name stands once on each side and the form agrees; of free-form faces place and area agree nearly.
     """
-    bytes_of = [(plan.part.sha256, plan.part.references, plan.effective.unit) for plan in (old, new)]
+    bytes_of = [(plan.part.sha256, plan.effective.unit) for plan in (old, new)]
     if old.part.sha256 and bytes_of[0] == bytes_of[1]:
         there = {face.id: face for face in new.faces}
         return [(face, there[face.id], "same file") for face in old.faces if face.id in there]

@@ -7,10 +7,8 @@ from typing import Any
 
 from plan_cutters.domain.figures import count
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, reached_share
 from plan_cutters.plan_file.words.names import called
-from plan_cutters_base.user_files import fingerprint
 from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces, with_others
 from plan_cutters_ci.model import (
     REQUESTED,
@@ -102,7 +100,7 @@ def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]
             proposed = what == "setup" and old.setup_proposal is not None and new.setup_proposal is not None
             yield Change(what=what, old=_text(mine), new=_text(theirs), hinders=what not in despite and not proposed)
     others: dict[str, Callable[[Plan], Any]] = {
-        "part": lambda plan: _bytes(plan.part), "tools": lambda plan: sorted(c.id for c in plan.cutters),
+        "part": lambda plan: (plan.part.sha256 or "")[:12], "tools": lambda plan: sorted(c.id for c in plan.cutters),
         "version": lambda plan: plan.versions.get("plan_cutters"), "missing": lambda plan: len(plan.missing),
     }  # fmt: skip
     for what, value in others.items():
@@ -123,13 +121,8 @@ def _requested(plan: Plan) -> dict[str, Any]:
         "machine": (plan.machine.name, plan.machine.tilt_limit_deg,
                     *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ())),
         "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
-        "fixtures": [(f.name, _bytes(f), f.unit, f.placement, f.clamping, tuple(f.setups)) for f in plan.fixtures],
+        "fixtures": [(f.name, (f.sha256 or "")[:12], f.unit, f.placement, f.clamping, tuple(f.setups)) for f in plan.fixtures],
     }  # fmt: skip
-
-
-def _bytes(entry: PartInfo | FixtureEntry) -> str:
-    """A short checksum of a file with all that it refers to; empty where there is no file."""
-    return fingerprint(entry.sha256 or "", [(each.file, each.sha256) for each in entry.references])[:12]
 
 
 def _text(value: Any) -> str:

@@ -14,8 +14,8 @@ from plan_cutters.files.arrays import Archive
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
 from plan_cutters.setups.files import read_setup
-from plan_cutters_base.user_files import WITHIN, IrregularError, OutsideError, content, fingerprint, is_there, note, noted
-from tests.support.places import ROOT, SAMPLES, real_file
+from plan_cutters_base.user_files import WITHIN, IrregularError, OutsideError, content, is_there, note, noted
+from tests.support.places import SAMPLES, real_file
 
 BIT = {"shape": "endmill.fcstd", "name": "b", "parameter": {"Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm",
                                                             "ShankDiameter": "4 mm"}}  # fmt: skip
@@ -132,20 +132,3 @@ def test_a_pipe_is_not_waited_for(tmp_path):
     for read in (load, read_mesh):
         with pytest.raises(ReadError, match="a pipe or a device"):
             read(str(tmp_path / "a.stl"))
-
-
-def test_a_fingerprint_counts_names_contents_and_what_is_missing():
-    assert fingerprint("a", []) == "a"
-    found = [[], [("b", "c")], [("b", None)], [("b", "c"), ("d", None)], [("bc", "")], [("c", "b")]]
-    assert len({fingerprint("a", each) for each in found}) == len(found)
-    assert fingerprint("a", [("b", "c"), ("d", "e")]) == fingerprint("a", [("d", "e"), ("b", "c")])
-
-
-def test_no_other_reader_of_arrays():
-    """Every `.npz` goes through the one door, and `samples.npz` in FreeCAD through a narrower one of its own."""
-    for root in ("plugin", "cad_io", "freecad"):
-        for path in (ROOT / root).rglob("*"):
-            if path.suffix in (".py", ".FCMacro"):
-                text = path.read_text(encoding="utf-8")
-                for word in ("np.load(", "numpy.load(", "allow_pickle=True"):
-                    assert word not in text, path

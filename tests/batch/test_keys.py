@@ -1,7 +1,6 @@
 """Keys: what changes a result changes the key, and nothing else does."""
 
 import os
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,9 +9,9 @@ import pytest
 
 from plan_cutters import Options
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters_batch.job import Settings, content, key_of, write_files
+from plan_cutters.files.folder import read
+from plan_cutters_batch.job import Settings, key_of
 from tests.support.places import ROOT
-from tests.support.step_references import BALL, BOX, write_assembly
 
 
 def key(formats=("json",), schema="ap242", timeout=120.0, **options):
@@ -83,7 +82,7 @@ def test_every_process_makes_the_same_key():
 
 
 def test_a_part_has_the_key_of_its_content():
-    assert len({key_of("a", PLAIN), key_of("b", PLAIN), key_of("a", "other")}) == 3
+    assert len({key_of(b"a", PLAIN), key_of(b"b", PLAIN), key_of(b"a", "other")}) == 3
 
 
 def test_settings_are_frozen():
@@ -91,51 +90,9 @@ def test_settings_are_frozen():
     assert replace(settings, formats=("json", "png")) != settings
 
 
-def test_files_that_a_part_or_a_fixture_refers_to_count_and_travel(tmp_path):
-    whole = write_assembly(tmp_path / "part")
-    part, fixture = content(str(whole)), key(fixtures=str(whole))
-    there = Settings(Options(fixtures=[str(whole), f"{whole}@0,0,50", "box:1,2,3"])).handed
-    assert {name for name, _ in there.files} == {f"fixture-1/{each}" for each in (whole.name, BOX, BALL)}
-    write_files(tmp_path, part.within())
-    assert (tmp_path / BALL).read_bytes() == whole.with_name(BALL).read_bytes()
-    whole.with_name(BALL).write_bytes(whole.with_name(BALL).read_bytes() + b" ")
-    assert content(str(whole)).key != part.key
-    assert key(fixtures=str(whole)) != fixture
-    # What lies elsewhere, or is not there, is not put anywhere: the reader says that it is missing.
-    whole.write_text(whole.read_text().replace(BALL, f"../{BALL}"))
-    up = content(str(whole))
-    assert [name for name, _ in up.within()] == [BOX]
-    assert dict(up.references)[f"../{BALL}"] is not None
-    (tmp_path / BALL).unlink()
-    assert content(str(whole)).key != up.key
-
-
-@pytest.mark.parametrize("name", [f"../{BALL}", f"{{}}/{BALL}"])
-def test_files_that_do_not_travel_count(tmp_path, name):
-    """One whose whole path is given is read where it lies, and whoever plans a commit finds it there, too."""
-    whole, there = write_assembly(tmp_path / "part"), tmp_path / BALL
-    shutil.move(whole.with_name(BALL), there)
-    whole.write_text(whole.read_text().replace(BALL, name.format(tmp_path)))
-    committed = {str(whole): whole.read_bytes(), str(whole.with_name(BOX)): b""}
-
-    def states():
-        yield key(fixtures=str(whole))
-        yield content(str(whole)).key
-        if os.path.isabs(name.format(tmp_path)):
-            yield content(str(whole), lambda file: committed[file]).key
-
-    first = list(states())
-    assert list(states()) == first
-    there.write_bytes(there.read_bytes() + b" ")
-    second = list(states())
-    there.unlink()
-    for seen in zip(first, second, states(), strict=True):
-        assert len(set(seen)) == 3
-
-
 def test_a_pipe_is_no_part(tmp_path):
     os.mkfifo(tmp_path / "a.step")
     with pytest.raises(PlanError, match="a pipe or a device"):
-        content(str(tmp_path / "a.step"))
+        read(str(tmp_path / "a.step"))
     with pytest.raises(PlanError, match="is a folder, not a file"):
-        content(str(tmp_path))
+        read(str(tmp_path))

@@ -199,34 +199,6 @@ def test_what_is_staged_is_found_before_the_commit(tmp_path, monkeypatch):
         content(changed("HEAD", None)[1], "a.step")
 
 
-def test_an_assembly_changes_with_the_files_that_it_refers_to(tmp_path, monkeypatch):
-    """Its own file is the same. Names count from its folder, and through files that refer to others in turn."""
-    refers = "ISO-10303-21; #1=DOCUMENT_FILE('{}','','',#2,'',$); #3=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('{}',#4,(#1),#5);"
-    monkeypatch.chdir(tmp_path)
-    git("init", "-q")
-    texts = {
-        "parts/pin.stp": "one", "of pins.STP": refers.format("parts/pin.stp", "parts/pin.stp"),
-        "all/top.step": refers.format("../of pins.STP", "none.stp"), "all/pin.step": refers.format("pin.stp", "pin.stp"),
-        "all/text.txt": refers.format("../parts/pin.stp", ""), "loose.step": "no reference",
-    }  # fmt: skip
-    for name, text in texts.items():
-        Path(name).parent.mkdir(exist_ok=True)
-        Path(name).write_text(text)
-    git("add", ".")
-    git("commit", "-qm", "one")
-    Path("parts/pin.stp").write_text("two")
-    git("commit", "-qam", "two")
-    monkeypatch.chdir(tmp_path / "parts")
-    every = [Changed(name, name) for name in ("all/top.step", "of pins.STP", "parts/pin.stp")]
-    assert changed("HEAD~1", "HEAD")[2] == every
-    git("rm", "-q", "pin.stp")
-    assert changed("HEAD", None)[2] == [*every[:2], Changed("parts/pin.stp", None)]
-    git("reset", "-q", "--hard")
-    Path(tmp_path / "loose.step").write_text("another one")
-    git("commit", "-qam", "three")
-    assert changed("HEAD~1", "HEAD")[2] == [Changed("loose.step", "loose.step")]
-
-
 def shop(folder):
     """A library of FreeCAD, whose bit lies in another folder, and a machine of LinuxCNC, which includes a file."""
     for name in ("tools/Library", "tools/Bit", "machine"):

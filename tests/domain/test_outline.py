@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters import Cutter, Holder, OptionError, Stage
+from plan_cutters import Cutter, Holder, OptionError, Segment
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.outline import outline, points
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
@@ -109,7 +109,7 @@ def test_volumes_are_those_of_closed_forms():
     def of(cutter):
         return volume(points(outline(cutter), 1e-7))
 
-    ball = Cutter.ball(radius=3, length=20, flutes=8, neck=Stage(2, 4, 2.5), shank_radius=4, holder="R10:12L6+R15L30")
+    ball = Cutter.ball(radius=3, length=20, flutes=8, neck=Segment(2, 4, 2.5), shank_radius=4, holder="R10:12L6+R15L30")
     frustum = math.pi / 3 * (4 * (4 + 5 + 6.25) + 6 * (100 + 120 + 144))
     cylinders = math.pi * (9 * 5 + 16 * 8 + 225 * 30)
     assert of(ball) == pytest.approx(18 * math.pi + frustum + cylinders, rel=1e-6)
@@ -126,8 +126,8 @@ def test_volumes_are_those_of_closed_forms():
 
 
 def test_parts_and_which_of_two_a_step_belongs_to():
-    cutter = Cutter.bull(radius=6, corner_radius=1, length=80, flutes=20, neck=Stage(5, 40), shank_radius=7,
-                         holder=Holder((Stage(20, 10), Stage(15, 10))))  # fmt: skip
+    cutter = Cutter.bull(radius=6, corner_radius=1, length=80, flutes=20, neck=Segment(5, 40), shank_radius=7,
+                         holder=Holder((Segment(20, 10), Segment(15, 10))))  # fmt: skip
     found = outline(cutter)
     assert found.parts == ("flutes", "neck", "shank", "holder")
     steps = {s.start[1]: s.part for s in found.segments if s.start[1] == s.end[1]}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from plan_cutters import Cutter, CutterError, Holder, Options, Stage
+from plan_cutters import Cutter, CutterError, Holder, Options, Segment
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.preference import inside
 from plan_cutters.domain.shapes import MOST_PIECES, pieces_at_most
@@ -16,12 +16,12 @@ def test_a_spec_with_several_necks_is_the_id_of_its_cutter(spec):
 
 
 def test_one_neck_has_one_form():
-    one, same = (Cutter.flat(radius=3, length=40, flutes=10.0, neck=neck) for neck in (Stage(2, 5), [Stage(2, 5)]))
+    one, same = (Cutter.flat(radius=3, length=40, flutes=10.0, neck=neck) for neck in (Segment(2, 5), [Segment(2, 5)]))
     assert one == same
-    assert one.neck == Stage(2, 5)
+    assert one.neck == Segment(2, 5)
     assert Cutter.flat(radius=3, length=40, neck=()) == Cutter.flat(radius=3, length=40)
     with pytest.raises(CutterError, match="a Segment or several"):
-        Cutter.flat(radius=3, length=40, neck=(Stage(2, 5), 3))
+        Cutter.flat(radius=3, length=40, neck=(Segment(2, 5), 3))
 
 
 def test_a_neck_in_parts_is_nested_as_the_whole():
@@ -51,7 +51,7 @@ def test_no_assembly_has_more_pieces_than_are_counted():
 
 def test_more_sections_than_there_are_bits_are_refused():
     """Beyond them a piece would be forgotten, and what it hits called free."""
-    rings = Holder(tuple(Stage(10 + i % 2, 1.0) for i in range(30)))
+    rings = Holder(tuple(Segment(10 + i % 2, 1.0) for i in range(30)))
     with pytest.raises(CutterError, match="too many to judge"):
         Cutter.flat(radius=3, length=30, holder=rings)
     with pytest.raises(CutterError, match="too many to judge"):

@@ -14,7 +14,7 @@ from plan_cutters import plan, posture_map
 from plan_cutters.command.summary import _NAME, _distinct
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.holder import NOSES, TAPERS, Holder, Stage, words
+from plan_cutters.domain.holder import NOSES, TAPERS, Holder, Segment, words
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.errors import CutterError, OptionError
@@ -169,7 +169,7 @@ class TestStandardHolders:
     @pytest.mark.parametrize("bore", [0.0, -1.0, math.nan, math.inf, "6"])
     def test_a_bore_is_a_length(self, bore):
         with pytest.raises(OptionError):
-            Holder((Stage(15, 30),), bore=bore)
+            Holder((Segment(15, 30),), bore=bore)
 
     def test_the_command_lists_and_draws_them(self, tmp_path):
         tools = partial(run, command="plan-cutters-tools")

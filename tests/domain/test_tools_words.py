@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from plan_cutters import Cutter, CutterError, Holder, OptionError, Options, Stage, plan
+from plan_cutters import Cutter, CutterError, Holder, OptionError, Options, Segment, plan
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.standard_tools import builtin
@@ -27,7 +27,7 @@ def test_four_numbers_make_a_tool_and_its_holder():
 
 def test_a_holder_has_stages_from_its_nose_up():
     holder = Holder.parse("R12:15L20+R15L30")
-    assert holder == Holder((Stage(12, 20, 15), Stage(15, 30)))
+    assert holder == Holder((Segment(12, 20, 15), Segment(15, 30)))
     assert holder.id == "R12:15L20+R15L30"
     cutter = Cutter.ball(radius=5, length=40, flutes=15.0, shank_radius=5.0, holder=holder)
     assert [(part, low) for part, low, _ in cutter.stages] == [("shank", 15), ("holder", 40), ("holder", 60)]
@@ -55,7 +55,7 @@ def test_a_cutter_that_has_its_own_keeps_it():
         (lambda: Cutter.flat(radius=6, length=80, holder="R15L-3"), "positive"),
         (lambda: Holder(()), "at least one stage"),
         (lambda: Holder.parse(6), "no holder"),
-        (lambda: Stage(math.nan, 5), "number"),
+        (lambda: Segment(math.nan, 5), "number"),
         (lambda: Cutter.lollipop(radius=3, neck_radius=3, length=40), "thinner"),
         (lambda: Cutter.barrel(radius=6, flank_radius=85, length=60), "height"),
         (lambda: Cutter.barrel(radius=6, flank_radius=4, length=60, height=9), "at least its own"),

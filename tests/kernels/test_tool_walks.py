@@ -7,7 +7,7 @@ import pytest
 
 from plan_cutters import Cutter, CutterError
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.preference import inside
 from plan_cutters.kernels.area import cover as moved_cutter
 from plan_cutters.kernels.area import zone
@@ -197,7 +197,7 @@ def end_mill(rng, larger=None):
         length = larger.length + rng.choice([0.0, -taller, -2.0, 0.5])
     more = {}
     if rng.random() < 0.5:
-        more["neck"] = Stage(0.9 * r, 2.0)
+        more["neck"] = Segment(0.9 * r, 2.0)
     if rng.random() < 0.6:
         more["shank_radius"] = r * rng.choice([0.8, 1.0, 1.2])
     if rng.random() < 0.6:

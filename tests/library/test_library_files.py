@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import LibraryError, PlanError
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.read import FORMATS, listing
@@ -287,7 +287,7 @@ def test_sections_are_enclosed_by_a_work_that_grows_slowly(monkeypatch):
 
     calls, plain = [], milling._enclosing
     monkeypatch.setattr(milling, "_enclosing", lambda stages: calls.append(1) or plain(stages))
-    stages = [Stage(15.0 + (i * 7) % 5, 1.0 + 1e-3 * i, 15.5 + (i * 11) % 5) for i in range(200)]
+    stages = [Segment(15.0 + (i * 7) % 5, 1.0 + 1e-3 * i, 15.5 + (i * 11) % 5) for i in range(200)]
     found, _ = milling.fewer(stages, 12)
     assert len(found) <= 12
     assert len(calls) <= 3 * len(stages)

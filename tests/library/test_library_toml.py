@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters import Cutter, Holder, LibraryError, Stage
+from plan_cutters import Cutter, Holder, LibraryError, Segment
 from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.read import listing
@@ -37,7 +37,9 @@ def test_what_is_written_is_read_bit_for_bit(tmp_path_factory, kind, seed, name)
 
 def test_a_neck_of_several_sections_and_a_lollipop_on_a_shank(tmp_path):
     steps = Cutter.parse("R3L60F12N2.5x4N2.5:4x6S4")
-    ball = Cutter.lollipop(radius=3, neck_radius=1.5, length=40, neck=(Stage(1.5, 10), Stage(2, 40 - 10 - 3 - math.sqrt(6.75))))
+    ball = Cutter.lollipop(
+        radius=3, neck_radius=1.5, length=40, neck=(Segment(1.5, 10), Segment(2, 40 - 10 - 3 - math.sqrt(6.75)))
+    )
     made = [steps, ball, *builtin()]
     assert list(read(tmp_path, to_toml(made))) == made
 
@@ -96,7 +98,7 @@ def test_holders_in_every_form_are_the_same(tmp_path):
     library = read(tmp_path, text)
     assert [cutter.id for cutter in library] == ["R6L80F20S6HR12:15L20+R15L30"]
     assert len(library.entries) == 5
-    assert library.holders == (Holder((Stage(12, 20, 15), Stage(15, 30)), "shop"),)
+    assert library.holders == (Holder((Segment(12, 20, 15), Segment(15, 30)), "shop"),)
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters import Cutter, Holder, Stage
+from plan_cutters import Cutter, Holder, Segment
 from plan_cutters.domain.outline import outline
 from plan_cutters.domain.standard_tools import builtin
 from plan_cutters.report.drawing.posture_map import printable
-from plan_cutters.report.drawing.tool import draw, length, width_of, wrapped
+from plan_cutters.report.drawing.tool import draw, length
 from tests.support.places import DATA
 from tests.support.tool_reference import KINDS, Reference, random_cutter
 
@@ -24,10 +24,10 @@ SVG = "{http://www.w3.org/2000/svg}"
 SIX = "R19.05:25.019L3.7592+R25.019L21.2344+R19.939L4.4704+R19.939:22.225L2.286+R22.225L10.795+R22.225:23.495L1.27"
 TOOLS = {
     "bare": Cutter.parse("R6L80"),
-    "bull": Cutter.bull(radius=6, corner_radius=1, length=80, flutes=20, neck=Stage(5.5, 40), shank_radius=6, holder=SIX),
-    "small ball": Cutter.ball(radius=0.5, length=20, flutes=3, neck=Stage(0.45, 3, 1.5875), shank_radius=1.5875, holder="R8L20"),
+    "bull": Cutter.bull(radius=6, corner_radius=1, length=80, flutes=20, neck=Segment(5.5, 40), shank_radius=6, holder=SIX),
+    "small ball": Cutter.ball(radius=0.5, length=20, flutes=3, neck=Segment(0.45, 3, 1.6), shank_radius=1.6, holder="R8L20"),
     "taper ball": Cutter.ball(radius=1, length=60, taper=math.radians(5), flutes=25, shank_radius=4, holder="R12L40"),
-    "dovetail": Cutter.flat(radius=8, length=50, taper=math.radians(-15), flutes=8, neck=Stage(5, 6), shank_radius=6),
+    "dovetail": Cutter.flat(radius=8, length=50, taper=math.radians(-15), flutes=8, neck=Segment(5, 6), shank_radius=6),
     "lollipop": Cutter.lollipop(radius=5, neck_radius=2.5, length=60, holder="R12L40"),
     "oval": Cutter.barrel(radius=5, flank_radius=85, tip_radius=2, length=60, flutes=25, shank_radius=5, allowance=0.25),
     "barrel": Cutter.barrel(radius=5, flank_radius=85, height=12, length=60, flutes=25, clearance=0.75),
@@ -107,7 +107,6 @@ def test_what_is_drawn_is_to_scale_on_a4_and_legible(cutter):
     root = read(draw(cutter))
     check_a4(root)
     scale = stated(root)
-    assert scale == pytest.approx(1.0 / float(root.get("data-scale")))
     drawn, line = silhouettes(root), outline(cutter)
     assert tuple(drawn) == line.parts
     middle = 0.5 * (drawn["flutes"][:, 0].min() + drawn["flutes"][:, 0].max())
@@ -155,18 +154,6 @@ def test_all_dimensions_are_there(name):
         assert (f"{asked} {length(value)}" in all_words) if value else (asked not in all_words)
 
 
-def test_a_drawing_speaks_to_who_sees_none():
-    cutter = TOOLS["bull"]
-    root = read(draw(cutter, name="roughing"))
-    title, text = root.find(f"{SVG}title"), root.find(f"{SVG}desc")
-    assert title.text == "roughing"
-    assert root.get("role") == "img"
-    assert root.get("aria-labelledby").split() == [title.get("id"), text.get("id")]
-    for part in ("flutes Ø12 × 20, corner R1", "neck Ø11 × 40", "shank Ø12 × 20", "holder 1 Ø38.1 to Ø50.038 × 3.7592"):
-        assert part in text.text
-    assert cutter.id in text.text
-
-
 def test_parts_are_told_apart_without_colour_and_named():
     root = read(draw(TOOLS["bull"]))
     paints = [p.get("fill") for p in root.iter(f"{SVG}path") if "part" in (p.get("class") or "")]
@@ -188,34 +175,21 @@ HOSTILE = (
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_names_from_files_are_words_and_no_more(name):
-    cutter = Cutter.flat(radius=6, length=80, name=name, holder=Holder((Stage(20, 30),), name=name))
+    cutter = Cutter.flat(radius=6, length=80, name=name, holder=Holder((Segment(20, 30),), name=name))
     svg = draw(cutter)
     root = read(svg.encode("utf-8"))
     tags = {each.tag.removeprefix(SVG) for each in root.iter()}
-    assert tags <= {"svg", "title", "desc", "rect", "path", "g", "text", "circle"}
+    assert tags <= {"svg", "title", "rect", "path", "text"}
     assert not [key for each in root.iter() for key in each.attrib if key.startswith("on") or "href" in key]
     assert not re.search("[\x00-\x09\x0b-\x1f\u202a-\u202e\u2066-\u2069\ufffe]", svg)
     # A lone surrogate is none of a cutter's name any more.
-    assert root.find(f"{SVG}title").text == printable(cutter.name)
+    assert root.find(f"{SVG}title").text == printable(cutter.name, 50)
     check_words_apart(root)
 
 
 def test_a_name_that_can_be_read_is_kept():
     assert printable("Fräser Ø12 – 刀具") == "Fräser Ø12 – 刀具"
     assert printable("a\x00b\u202ec  d\n") == "a\ufffdb\ufffdc d"
-
-
-def test_lines_break_after_blanks_and_say_what_they_leave_out():
-    assert wrapped("one two three", width_of("one two "), 2.8, 5) == ["one two", "three"]
-    assert wrapped("R1L2+R3L4+R5L6", width_of("R1L2+R3L"), 2.8, 5) == ["R1L2+", "R3L4+", "R5L6"]
-    assert wrapped("x" * 30, width_of("x" * 10), 2.8, 2) == ["x" * 10, "x" * 8 + "…"]
-    assert wrapped("", 10.0, 2.8, 2) == []
-
-
-@pytest.mark.parametrize(("value", "text"), [(12, "12"), (3.175, "3.175"), (1 / 3, "0.3333"), (1e-6, "1e-06"),
-                                             (0.0, "0"), (2e8, "2e+08"), (100.0, "100")])  # fmt: skip
-def test_lengths_are_written_as_short_as_they_are(value, text):
-    assert length(value) == text
 
 
 def test_what_does_not_fit_is_reduced_to_the_next_standard_scale():
@@ -226,34 +200,27 @@ def test_what_does_not_fit_is_reduced_to_the_next_standard_scale():
     assert [scale(f"R{wide}L50") for wide in (20, 40, 100, 200)] == [1, 1, 2, 5]
 
 
-def test_two_drawings_in_one_page_share_no_id():
-    ids = [{e.get("id") for e in read(draw(c)).iter() if e.get("id")} for c in TOOLS.values()]
-    ids.append({e.get("id") for e in read(draw(TOOLS["bull"], name="other")).iter() if e.get("id")})
-    assert sum(map(len, ids)) == len(set().union(*ids))
-
-
 def test_as_many_stages_as_can_be_judged_are_told_apart():
-    many = Holder(tuple(Stage(15 + i % 3, 1.5 + 0.01 * i) for i in range(17)))
+    many = Holder(tuple(Segment(15 + i % 3, 1.5 + 0.01 * i) for i in range(17)))
     root = read(draw(Cutter.flat(radius=5, length=50, flutes=20, holder=many)))
     check_words_apart(root)
     assert sum(text.startswith("holder ") for text in words(root)) >= 17
-    assert "holder 17 Ø32 × 1.66" in root.find(f"{SVG}desc").text
+    assert "holder 17 Ø32 × 1.66" in words(root)
 
 
-def test_forms_of_many_points_are_told_in_full():
+def test_forms_of_many_points_have_a_count_of_the_rest():
     points = [(0, 0), *((3 + math.sin(i), 0.25 * i) for i in range(50))]
     root = read(draw(Cutter.form(points, length=80)))
     check_words_apart(root)
     assert "form of 51 points: Ø at height" in words(root)
     assert "… and 39 more" in words(root)
-    assert f"Ø{length(2 * points[-1][0])} at height 12.25" in root.find(f"{SVG}desc").text
 
 
 @pytest.mark.parametrize("path", [CAT40], ids=lambda path: path.name)
 def test_a_real_holder(path):
     tool = json.loads(path.read_text())["data"][0]
     segments = tool["holder"]["segments"]
-    holder = Holder(tuple(Stage(0.5 * s["lower-diameter"], s["height"], 0.5 * s["upper-diameter"]) for s in segments),
+    holder = Holder(tuple(Segment(0.5 * s["lower-diameter"], s["height"], 0.5 * s["upper-diameter"]) for s in segments),
                     tool["holder"]["description"])  # fmt: skip
     geometry = tool["geometry"]
     cutter = Cutter.flat(radius=geometry["DC"] / 2, length=geometry["LB"], flutes=geometry["LCF"], holder=holder)
@@ -282,7 +249,7 @@ def test_any_cutter_is_drawn(kind, seed):
 @given(st.floats(-6, 6), st.floats(-6, 6), st.floats(-6, 6), st.floats(0.0, 1.0))
 def test_any_size_is_drawn(radius, high, nose, corner):
     radius = 10.0**radius
-    cutter = Cutter(radius, 10.0**high, corner * min(radius, 10.0**high), holder=Holder((Stage(radius + 10.0**nose, 3.0),)))
+    cutter = Cutter(radius, 10.0**high, corner * min(radius, 10.0**high), holder=Holder((Segment(radius + 10.0**nose, 3.0),)))
     root = read(draw(cutter))
     check_a4(root)
     assert not re.search("nan|inf", draw(cutter))

@@ -219,14 +219,14 @@ def random_cutter(rng, kind, *, bare=False, loose=True):
     flutes = float(rng.uniform(1.2, 4) * r)
     length = flutes + float(rng.uniform(4, 20)) if not bare else flutes
     if not bare and kind not in ("lollipop", "form") and rng.random() < 0.4:
-        from plan_cutters.domain.holder import Stage
+        from plan_cutters.domain.holder import Segment
 
         thin = float(rng.uniform(0.4, 1.1) * r)
         upper = thin if rng.random() < 0.5 else float(rng.uniform(0.4, 1.1) * r)
         reach = float(rng.uniform(1, 4))
-        more["neck"] = Stage(thin, reach, upper)
+        more["neck"] = Segment(thin, reach, upper)
         if rng.random() < 0.3:
-            more["neck"] = Stage(thin, 0.4 * reach, upper), Stage(float(rng.uniform(0.4, 1.1) * r), 0.6 * reach)
+            more["neck"] = Segment(thin, 0.4 * reach, upper), Segment(float(rng.uniform(0.4, 1.1) * r), 0.6 * reach)
     cut = {} if bare else {"flutes": flutes}
     b = float(np.radians(rng.uniform(2, 15)))
     neck = float(rng.uniform(0.2, 0.8)) * r

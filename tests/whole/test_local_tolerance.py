@@ -13,7 +13,7 @@ from OCP.gp import gp_Cylinder
 from cad_io import read_part
 from plan_cutters import Cutter, PostureRange, plan, posture_map
 from plan_cutters.answers.largest_radius import largest_radius
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, REASONS, UNDECIDED
 from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
@@ -163,7 +163,7 @@ def test_a_coarser_tolerance_reaches_no_less(radius):
 
 CASES = [(0.49, BALL), (0.4935, BALL), (0.4999, Cutter.ball(radius=0.5, length=20, taper=0.05)),
          (0.985, Cutter.bull(radius=3, corner_radius=1, length=20)), (2.0, Cutter.flat(radius=1, length=20)),
-         (0.4999, Cutter.ball(radius=0.5, length=5, holder=Holder((Stage(4.0, 20),))))]  # fmt: skip
+         (0.4999, Cutter.ball(radius=0.5, length=5, holder=Holder((Segment(4.0, 20),))))]  # fmt: skip
 
 
 def deepest_of_found(radius, cutter, grid, count):
@@ -236,7 +236,7 @@ def test_largest_radius_a_fixed_axis_and_nesting_follow_the_same_rule():
 
 def test_the_reason_is_the_holder_where_the_fillet_itself_would_let_the_ball():
     """Curvature forbids every tilt by a hair, the holder does by much: a smaller ball would not help."""
-    cutter = Cutter.ball(radius=0.5, length=1.2, holder=Holder((Stage(30.0, 20),)))
+    cutter = Cutter.ball(radius=0.5, length=1.2, holder=Holder((Segment(30.0, 20),)))
     result, reach = asked(fillet(0.4999, half=50.0, size=50.0), cutter, faces="1", spacing=5.0, grid=None)
     within = np.abs(result.samples.point[:, 1]) < 20
     assert (reach.verdict[within] == INACCESSIBLE).all()

@@ -13,7 +13,7 @@ from rich.text import Text
 from plan_cutters.command.terminal import show, wrapped
 from plan_cutters.domain.figures import reporting, unit
 from plan_cutters.plan_file.model import leaves
-from plan_cutters.plan_file.words.cutters import FEASIBLE, details, scene, unjudged_share, worst_face_text
+from plan_cutters.plan_file.words.cutters import FEASIBLE, scene, unjudged_share, worst_face_text
 from plan_cutters.plan_file.words.names import typed
 from plan_cutters.plan_file.words.text import Story, process_lines, story_of
 from plan_cutters_base.terminal_text import clean
@@ -155,7 +155,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
         *_apart(list(_lines(story.setups))),
         *_apart([cell(line.text) for line in story.operations]),
         *_apart([cell(line.text + line.typed) for line in story.answers]),
-        *_apart([*doubts, *_lines(story.notes), *map(cell, details(plan))]),
+        *_apart([*doubts, *_lines(story.notes)]),
     )
 
 
@@ -185,7 +185,7 @@ def _not_split(plan: "Plan") -> Iterator[str]:
     for where, split in [("", plan.split), *((f" in the {each.name} plan", each.split) for each in plans)]:
         for face, entry in split.items():
             if entry.rung != "contour":
-                how = "it is one piece in the STEP, and the GLB shows it by its samples"
+                how = "it is one piece in the models"
                 yield f"{face} could not be split in its place{where} ({entry.why}): {how}."
 
 

@@ -49,17 +49,12 @@ def fixtures_in(ready: Prepared) -> list[tuple[PlacedFixture, list[int]]]:
     return fixtures
 
 
-def references(part: Part) -> list[schema.ReferenceEntry]:
-    """The files that a part's file refers to."""
-    return [schema.ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
-
-
 def fixture_entry(placed: PlacedFixture, setups: Sequence[int] = (0,)) -> schema.FixtureEntry:
     """A fixture where it stands, in some setups."""
     fixture, source, triangles, hold = placed.fixture, placed.source, placed.obstacles.triangles, placed.hold
     return filled(
         schema.FixtureEntry, placed, file=None if source is None or source.file is None else Path(source.file).name,
-        sha256=None if source is None else source.sha256, references=references(source) if isinstance(source, Part) else [],
+        sha256=None if source is None else source.sha256,
         unit=source.unit if isinstance(source, Mesh) else fixture.unit, placement=fixture.placement, triangles=len(triangles),
         chord_error_mm=triangles.chord_error, watertight=placed.body is not None, setups=list(setups),
         clamping=fixture.text if fixture.clamping is not None else None, unheld=[f"F{number}" for number in placed.unheld],
@@ -288,7 +283,7 @@ def part_info(scene: Scene, surroundings: Surroundings, void_faces: list[str]) -
     opened = [f.id for f in part.faces if f.number not in closed | excluded]
     of_solids = [name for n in orientation.guessed if n not in excluded and (name := f"F{n}") not in opened]
     return filled(
-        schema.PartInfo, part, file=Path(part.file).name if part.file else None, references=references(part),
+        schema.PartInfo, part, file=Path(part.file).name if part.file else None,
         faces=len(part.faces), orientation=filled(schema.OrientationInfo, orientation),
         sewing=filled(schema.SewingInfo, sewn) if sewn.faces else None, warnings=warnings,
         loose_faces=[name for name in opened if int(name[1:]) in sewn.faces] if part.solids else [],

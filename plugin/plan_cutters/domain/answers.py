@@ -105,11 +105,6 @@ class RadiusMap(Record):
     rotation: Ints  #: (n,) int32: index into the posture range's rotations, -1 where there is none.
 
     @property
-    def lean(self) -> Floats:
-        """The former name of `tilt_direction`."""
-        return self.tilt_direction
-
-    @property
     def judged(self) -> NDArray[np.bool_]:
         """Samples (n,) of which something is known."""
         return ~np.isnan(self.radius)

@@ -62,10 +62,6 @@ class Segment:
         return f"{how.by}{how.across(self.radius)}{upper}L{how.length(self.length)}"
 
 
-#: Its former name.
-Stage = Segment
-
-
 @dataclass(frozen=True, slots=True)
 class Holder:
     """A tool holder: stages from its nose up. It sits where the cutter's length ends.

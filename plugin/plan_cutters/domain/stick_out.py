@@ -45,11 +45,6 @@ class StickOut(Record):
     served: int = 0  #: Samples that were searched with it, and are reached.
     setup: int = 0  #: The setup of the sample that limits it, from 0.
 
-    @property
-    def lean(self) -> Floats | None:
-        """The former name of `tilt_direction`."""
-        return self.tilt_direction
-
 
 def held(cutter: Cutter, stick_out: float) -> Cutter:
     """The same cutter in its holder with another stick-out, mm: flutes and neck stay, the shank makes up the length.

@@ -78,11 +78,6 @@ class _Columns(Record):
     reason: Bytes
 
     @property
-    def lean(self) -> Floats:
-        """The former name of `tilt_direction`."""
-        return self.tilt_direction
-
-    @property
     def reached(self) -> NDArray[np.bool_]:
         """Samples (n,) at which a posture is known."""
         return self.interference_free | (self.verdict == ACCESSIBLE)
@@ -95,11 +90,6 @@ class _Columns(Record):
     def not_reached(self) -> NDArray[np.bool_]:
         """Samples (n,) that are inaccessible or undecided."""
         return not_reached(self.verdict)
-
-    @property
-    def lost(self) -> NDArray[np.bool_]:
-        """The former name of `not_reached`."""
-        return self.not_reached
 
     @property
     def interference_free(self) -> NDArray[np.bool_]:
@@ -142,10 +132,6 @@ class Verdicts(_Columns):
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """Take the verdicts of some samples."""
         return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
-
-
-#: The former name.
-Reach = Verdicts
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

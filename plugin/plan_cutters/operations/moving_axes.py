@@ -175,9 +175,9 @@ def _widest(test: _Test, rows: Rows, known: Floats, along: Floats) -> Floats:
     normal = test.samples.normal[rows]
     if machine is not None and len(machine.direction) == 1:
         # One axis leaves one way to lean: about it, from where the tool is nearest to the normal.
-        lean = np.concatenate([np.zeros(1), tilt, -tilt])
-        turn = angle_about(machine.direction[0], machine.tool, normal)[:, None] + lean
-        axis, away = machine.axis(turn.reshape(-1, 1)).reshape(len(rows), -1, 3), np.zeros(len(lean))
+        both = np.concatenate([np.zeros(1), tilt, -tilt])
+        turn = angle_about(machine.direction[0], machine.tool, normal)[:, None] + both
+        axis, away = machine.axis(turn.reshape(-1, 1)).reshape(len(rows), -1, 3), np.zeros(len(both))
     else:
         turn = np.arange(_DIRECTIONS) * (2.0 * math.pi / _DIRECTIONS)
         first = tilt_directions(along, normal, test.samples.direction_max[rows])

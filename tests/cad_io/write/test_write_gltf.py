@@ -148,16 +148,16 @@ def test_what_cannot_be_written(halves, tmp_path, monkeypatch):
     _, found = halves
     with pytest.raises(WriteError, match="cannot be written"):
         write(found, tmp_path / "missing" / "p.glb")
-    real = module.face_mesh
+    real = module.with_normals
     calls = []
-    monkeypatch.setattr(module, "face_mesh", lambda *a: calls.append(1) or (None if len(calls) == 1 else real(*a)))
+    monkeypatch.setattr(module, "with_normals", lambda *a, **k: calls.append(1) or (None if len(calls) == 1 else real(*a, **k)))
     assert write(found, tmp_path / "p.glb") == (found.pieces[0].face,)
     document, _ = read(tmp_path / "p.glb")
     assert len(document["meshes"]) == len(found.pieces) - 1
     # The material of what could not be drawn is left out: a validator tells of each that nothing uses.
     used = {mesh["primitives"][0]["material"] for mesh in document["meshes"]}
     assert used == set(range(len(document["materials"])))
-    monkeypatch.setattr(module, "face_mesh", lambda *a: None)
+    monkeypatch.setattr(module, "with_normals", lambda *a, **k: None)
     with pytest.raises(WriteError, match="no triangle"):
         write(found, tmp_path / "q.glb")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["p.glb"]

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -16,8 +16,8 @@ from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
 from plan_cutters.plan_file.words.notes import machine
 
-#: Faces that are named on which a cutter leaves something, and those of its story; stages that are named.
-_FACES, _WORST, _STAGES = 3, 5, 6
+#: Faces that are named on which a cutter leaves something, and those of its story.
+_FACES, _WORST = 3, 5
 FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
 
@@ -230,30 +230,6 @@ def others(plan: Plan) -> list[str]:
     """Say how much each cutter before the one to take does not reach, and why."""
     before = itertools.takewhile(lambda c: c.id != plan.selected, plan.cutters)
     return [capital(named(plan, remaining_text(plan, c))) for c in before if c.not_reached]
-
-
-def details(plan: Plan) -> Iterator[str]:
-    """Give what is shown only to users who ask for all of it."""
-    e = plan.effective
-    # The end of a range of rotations: here a whole turn is one.
-    turns = ["360°" if degrees == 360.0 else angle(degrees) for degrees in e.rotation_deg]
-    yield f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}."
-    yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
-    yield (
-        f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
-        f"{plan.samples.unjudged} not judged, in {count(plan.samples.regions, 'region')}."
-    )
-    yield (
-        f"Searched: tilts {angle(e.tilt_deg[0])} to {angle(e.tilt_deg[1])}, rotations {turns[0]} to "
-        f"{turns[1]} every {angle(e.rotation_step_deg)}; tolerance {mm(e.tolerance_mm)}, of which "
-        f"{mm(e.chord_error_mm)} for {e.obstacle_triangles:,} obstacle triangles."
-    )
-    for c in plan.cutters:
-        if c.area:
-            yield (f"Between samples of {c.id}: {c.area.contacts} contacts were looked at, {c.area.left} cells are not proved.")
-    yield f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}."
-    slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:_STAGES]
-    yield f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}."
 
 
 class InTheWay(NamedTuple):

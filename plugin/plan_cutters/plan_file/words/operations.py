@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import ROUNDING, area, bound, count, duration, joined, listed, percent, some
@@ -14,24 +14,23 @@ from plan_cutters.plan_file.words.names import Line, named
 _OPERATION = re.compile(r"\bop\d+\b")
 #: Fixed orientations by how many rotary axes index, and how many axes move at once otherwise.
 _INDEXED = {1: ("3+1", "four"), 2: ("3+2", "five")}
-#: Up to this share an orientation is hardly worth its turn.
-_LITTLE = 0.005
-#: Operations that are listed, and faces that are named of one.
-_LISTED, _OF_OPERATION = 12, 4
-#: Operations for little area that are named before the others; a gap that counts as none, as a share.
-_SMALL, _NO_GAP = 3, 1e-6
+#: Faces that are named of an operation; a gap that counts as none, as a share.
+_OF_OPERATION, _NO_GAP = 4, 1e-6
 #: How an operation cuts, where it does not cut in points alone.
 _CUTS_AS = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
 
 
 def operations(plan: Plan) -> list[Line]:
-    """Lines about the operations, the worst first, cutters called as everywhere; none where they were not requested."""
+    """Lines about the plans of operations, cutters called as everywhere; none where they were not requested.
+
+    What each operation does stands in the table of the process.
+    """
     operations = plan.operations
     if operations is None:
         return []
     lines = [*_rest(operations), *_fewest(operations)]
     if any(each.operations for each in operations.plans):
-        lines += [*(stepped(plan, each, line) for each in operations.plans for line in _plan(operations, each))]
+        lines += [_plan(operations, each) for each in operations.plans]
         lines += _fastest(operations)
         lines += _by_cutter(operations)
     return [Line(named(plan, text)) for text in (*lines, *operations.notes)]
@@ -152,11 +151,10 @@ def one_more(operations: OperationsEntry | None) -> str:
     return f"One more orientation, {what}, would save {saved} of {duration(plan.seconds)} [`--operations fastest`]."
 
 
-def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
+def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> str:
     first = operations.plans[0]
     if plan is not first and _choice(plan) == _choice(first):
-        yield f"The {plan.name} plan is the same."
-        return
+        return f"The {plan.name} plan is the same."
     work = f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
     if plan.cutting_seconds is not None:
         links = f", {duration(plan.link_seconds)} of links" if plan.link_seconds > 0.0 else ""
@@ -164,20 +162,7 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
         cutters, setups = ({getattr(each, word) for each in plan.operations} for word in ("cutter", "setup"))
         what = joined(["orientations", *["cutters"] * (len(cutters) > 1), *["setups"] * (len(setups) > 1)])
         work += f" and {duration(plan.other_seconds)} for {what}" if plan.other_seconds > 0.0 else ""
-    yield f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {work}."
-    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
-    for each in small[:_SMALL]:
-        took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
-        yield f"  {each.id} is there for {some(each.share)} of the area{took}: {_faces(each)}."
-    if len(small) > _SMALL:
-        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
-    for each in plan.operations[:_LISTED]:
-        yield f"  {_listed(each, _setups(operations))}"
-    if len(plan.operations) > _LISTED:
-        yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
-    yield from (line for each in plan.operations if (line := turning(each)))
-    if plan.proved_share is not None and plan.proved_share < 1.0:
-        yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
+    return f"The {plan.name} plan: {count(plan.orientations, 'fixed orientation')}, {work}."
 
 
 def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
@@ -248,27 +233,6 @@ def _listed(each: OperationEntry, setups: bool) -> str:
     return f"{each.id}: {what}: {share_text(each.share)} of the area{took}, {_faces(each)}."
 
 
-def turning(each: OperationEntry) -> str:
-    """Say over what share simultaneous motion is proved, and how the axes turn there; empty where nothing was looked at."""
-    turn = each.turning
-    if turn is None or each.proved_share is None:
-        return ""
-    if not turn.pieces_mm2:
-        return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
-    texts = [
-        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in "
-        f"{count(len(turn.pieces_mm2), 'piece')}, with axes that turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
-    ]
-    if turn.angles_deg is not None:
-        texts.append(", ".join(f"{name} {low:.0f} to {high:.0f} deg" for name, (low, high) in turn.angles_deg.items()))
-        if turn.held_share < 1.0 - ROUNDING:
-            back = "no solution of the rotary axes goes from end to end without turning back"
-            texts.append(f"in {some(1.0 - turn.held_share)} of that {back}")
-    if turn.singular_mm2 > 0.0:
-        texts.append(f"{area(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast")
-    return f"{'; '.join(texts)}."
-
-
 class OperationText(NamedTuple):
     """An operation as a row of a table, with angles in degrees and the setup where there are several, and as a sentence."""
 
@@ -288,12 +252,6 @@ def operation_text(plan: Plan, of: OperationPlanEntry, each: OperationEntry) -> 
     where = f"setup {each.setup + 1}" if setups else ""
     sentence = named(plan, stepped(plan, of, _listed(each, setups)))
     return OperationText(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), sentence)
-
-
-def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:
-    """Those lines that are about plans, not about one operation, and do not stand above: what is indented stands in a list."""
-    mentioned = set(above)
-    return [line for line in lines if not line.text.startswith(" ") and line.text not in mentioned]
 
 
 def _turned(each: OperationEntry) -> str:

@@ -26,7 +26,7 @@ from plan_cutters.plan_file.words.answers import step_text
 from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import as_fields, named, short_names
 from plan_cutters.plan_file.words.notes import repeated_warnings
-from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_names, operation_text, stepped
+from plan_cutters.plan_file.words.operations import OperationText, operation_names, operation_text, stepped
 from plan_cutters.plan_file.words.text import CHIPS, Story, before_approval, chip, story_of
 from plan_cutters.report.page.arrays import Arrays, Atlas, Spot, Stored, Surface, shares, turned_by
 from plan_cutters.report.page.steps import colour, middle, process_of, process_tables
@@ -92,7 +92,7 @@ def tables(plan: Plan, story: Story) -> dict[str, Any] | None:
          all(one.seconds is not None for one in each.operations))
         for each in plan.operations.plans
     ]  # fmt: skip
-    return {"lines": of_the_whole(story.operations, story.in_short), "plans": plans}
+    return {"lines": [line for line in story.operations if line.text not in story.in_short], "plans": plans}
 
 
 FORMAT = 1
