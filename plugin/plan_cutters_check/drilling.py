@@ -5,7 +5,7 @@ A tool for holes is put down as wide as the hole that it leaves, from above its 
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -118,6 +118,15 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def changes(uses: Iterable[tuple[int, str]]) -> int:
+    """Count the tools that are put in for uses, each a setup and a tool, after the first, setup by setup."""
+    count, there = 0, None
+    for _, tool in sorted(uses, key=lambda each: each[0]):
+        count += there not in (None, tool)
+        there = tool
+    return count
+
+
 def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) -> dict[str, Any]:
     """The seconds of a process whose `steps` of mills have those of the entry, with those that drill."""
     drilling, document = entries(question), question.document
@@ -130,14 +139,15 @@ def times(question: Question, process: Mapping[str, Any], steps: Sequence[Any]) 
     assumed, written = document["operations"]["assumed"], document["process"]
     turns = [step["index_seconds"] for step in known]
     loose = any(isinstance(each, Loose) for each in turns)
-    tools = len({step["tool"] for step in known}) + len({step["cutter"] for step in steps if step["operation"]})
+    uses = [(step["setup"], step["cutter"]) for step in steps if step["operation"]]
+    uses += [(step["setup"], step["tool"]) for step in known]
     made = {
         "cutting_seconds": process["cutting_seconds"] + sum(step["seconds"] for step in known),
         "link_seconds": process["link_seconds"] + sum(step["link_seconds"] for step in known),
         "index_seconds": process["index_seconds"] + (
             sum(float(step["index_seconds"]) for step in written["drilling"]) if loose else sum(turns)
         ),
-        "change_seconds": assumed["change_s"] * (tools - 1),
+        "change_seconds": assumed["change_s"] * changes(uses),
         "setup_seconds": assumed["setup_s"] * (len({step["setup"] for step in (*known, *steps)}) - 1),
     }  # fmt: skip
     return {"drilling": drilling, "seconds": sum(made.values()), **made}

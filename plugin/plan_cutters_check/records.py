@@ -158,14 +158,24 @@ def _uses(reckoned: Reckoned, written: Mapping[str, Any]) -> list[dict[str, Any]
     return entries
 
 
+def _sizes(document: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
+    """What cutters are sorted by within a setup."""
+    return {
+        each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
+        for k, each in enumerate(document["cutters"])
+    }
+
+
 def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
     document, label, written = reckoned.question.document, plan.label, plan.operations
     assumed, cutting = document["operations"]["assumed"], float(plan["seconds"][label >= 0].sum())
     made = [_operation(reckoned, plan, i, each) for i, each in enumerate(written)]
     fixed = [each for each in made if each["mode"] == "fixed"]
     other = sum(float((assumed if each["axis"] is None else each)["index_s"]) for each in written)
-    for name, seconds in (("cutter", "change_s"), ("setup", "setup_s")):
-        other += assumed[seconds] * max(0, len({each[name] for each in written}) - 1)
+    size = _sizes(document)
+    in_turn = sorted(written, key=lambda each: (each.get("step") is None, each.get("step") or 0, size[each["cutter"]]))
+    changes = drilling.changes((each["setup"], each["cutter"]) for each in in_turn)
+    other += assumed["change_s"] * changes + assumed["setup_s"] * max(0, len({each["setup"] for each in written}) - 1)
     # What no operation takes, and why by the first cutter.
     rest, words = np.flatnonzero(reckoned.finished & (label < 0)), document["reasons"]
     first = reckoned.question.samples[f"reason_{reckoned.considered[0]}"][rest]
@@ -173,8 +183,8 @@ def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
     links = sum(each["link_seconds"] for each in made)
     # What is proved of the plan, by what is of its operations.
     looked_at = [each for each in written if each["proved_share"] is not None]
-    size = sum(each["area_mm2"] for each in looked_at)
-    share = sum(each["area_mm2"] * each["proved_share"] for each in looked_at) / size if size > 0.0 else 0.0
+    proved = sum(each["area_mm2"] for each in looked_at)
+    share = sum(each["area_mm2"] * each["proved_share"] for each in looked_at) / proved if proved > 0.0 else 0.0
     approaches = sum(each["approaches_proved"] or 0 for each in looked_at)
     entry: dict[str, Any] = {
         "name": plan.entry["name"],
@@ -184,13 +194,13 @@ def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
         "link_seconds": links,
         "cutting_seconds": cutting if math.isfinite(cutting) else None,
         "other_seconds": other,
-        "changes": max(0, len({each["cutter"] for each in written}) - 1),
+        "changes": changes,
         "pieces": sum(len(each["regions"]) for each in made),
         "operations": made,
         "rest": reckoned.judged.of(rest, "samples", "area_mm2", "share")
         | {"short": int(reckoned.reached[rest].sum()) if reckoned.all_planned else Loose(0, len(rest))}
         | {"reason_counts": Exactly({words[c]: int((first == c).sum()) for c in known})},
-        "proved_share": Loose(share, share, 1e-6) if looked_at and size > 0.0 else None,
+        "proved_share": Loose(share, share, 1e-6) if looked_at and proved > 0.0 else None,
         "approaches_proved": Loose(approaches, approaches) if looked_at else None,
     }
     return entry
@@ -312,7 +322,7 @@ class _Process:
     def _times(self, clamping: float) -> dict[str, float | None]:
         """What its seconds are made of, from the plan of operations."""
         plan, assumed = self.plan.entry, self.question.document["operations"]["assumed"]
-        change = assumed["change_s"] * max(0, len({each["cutter"] for each in self.plan.operations}) - 1)
+        change = assumed["change_s"] * plan["changes"]
         times = {
             "cutting_seconds": plan["cutting_seconds"], "link_seconds": plan["link_seconds"], "change_seconds": change,
             "setup_seconds": clamping, "index_seconds": max(0.0, plan["other_seconds"] - change - clamping),
@@ -331,10 +341,7 @@ class _Process:
     def _steps(self) -> list[dict[str, Any]]:
         """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""
         operations, own = self.plan.operations, self.reckoned.own or []
-        size = {
-            each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
-            for k, each in enumerate(self.question.document["cutters"])
-        }
+        size = _sizes(self.question.document)
 
         def rank(each: Mapping[str, Any]) -> tuple[Any, ...]:
             kind = _ORDER.index(each["strategy"]) if each["mode"] == "fixed" else len(_ORDER)

@@ -370,7 +370,7 @@ def in_colours_of_steps(operations: schema.OperationsEntry, process: schema.Proc
 def _times(options: Options, plan: schema.OperationPlanEntry, setups: int) -> dict[str, Any]:
     """What the time of a plan is made of, by the fields of the process."""
     clamping = options.setup_time * max(0, setups - 1)
-    change = options.change_time * max(0, len({each.cutter for each in plan.operations}) - 1)
+    change = options.change_time * plan.changes
     return {
         "cutting_seconds": plan.cutting_seconds or 0.0, "link_seconds": plan.link_seconds, "setup_seconds": clamping,
         "change_seconds": change, "index_seconds": max(0.0, plan.other_seconds - change - clamping),

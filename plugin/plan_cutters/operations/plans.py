@@ -1,7 +1,7 @@
 """A plan made of chosen columns: what each sample goes with, region by region, and the tilted plane of each operation."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
-from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
-from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
+from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of, tool_changes
+from plan_cutters.domain.preference import NEARLY_ALL, by_radius, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.labels import (
     MINOR_SECONDS,
@@ -206,12 +206,19 @@ def _speed(task: Task, operations: Sequence[Operation], number: NDArray[np.int32
 
 
 def _other(task: Task, operations: Sequence[Operation]) -> float:
-    """Seconds of orientations, and of each cutter and each setup after the first, which are there anyway."""
+    """Seconds of orientations, of changes of cutters, and of each setup after the first, which is there anyway."""
     options = task.ready.options
     # How simultaneous motion begins is not known: it takes the time of an orientation that no rates tell.
     turns = sum(each.fields.get("index_s", task.indexing.constant) for each in operations)
-    cutters, setups = len({each.cutter for each in operations}), len({each.setup for each in operations})
-    return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
+    changes, setups = changes_of(task, operations), len({each.setup for each in operations})
+    return turns + options.change_time * changes + options.setup_time * max(0, setups - 1)
+
+
+def changes_of(task: Task, operations: Iterable[Operation]) -> int:
+    """Changes of cutters of some operations: a planner's own in their order, then by size."""
+    place = {cutter: k for k, cutter in enumerate(by_radius(task.cutters))}
+    in_turn = sorted(operations, key=lambda each: (not each.step, each.step, place[each.cutter]))
+    return tool_changes((each.setup, each.cutter) for each in in_turn)
 
 
 def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
