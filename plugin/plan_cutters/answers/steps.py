@@ -20,6 +20,7 @@ from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.errors import PlanError
+from plan_cutters.option_table import ONLY
 from plan_cutters.options import Options
 from plan_cutters.outcome import Advice, Step
 from plan_cutters.plan_file.answers import LostAreaEntry, MoveEntry, StepEntry
@@ -36,9 +37,9 @@ def option(
 ) -> str | None:  # fmt: skip
     """Write the command-line options that differ from now, so that a plan has these cutters, setups and so on.
 
-    The result is None where no option can say it. `--cutter` is added to the options of now; every other option replaces the same
-    option. Cutters that the options name now are not repeated. Those of the default tool set are written, because a plan leaves
-    them out as soon as other cutters are given.
+    The result is None where no option can say it. It is made to stand behind the options of now: cutters are added to them, and
+    setups that they name count once. Cutters that the options name now are not repeated. Those of the default tool set are
+    written, because a plan leaves them out as soon as other cutters are given.
     """
     options = ready.options
     words = [] if tuple(cutters) == (cutter,) else _more(ready, cutters)
@@ -53,7 +54,9 @@ def option(
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
             return None
-        words += [word for axis in setups for word in ("--setup", ",".join(f"{each:.6g}" for each in axis))]
+        only = "" if setups[0] == ready.scene.setup else ONLY
+        typed = [",".join(f"{each:.6g}" for each in axis) for axis in setups]
+        words += [word for each in (only + typed[0], *typed[1:]) for word in ("--setup", each)]
     if conditions is not None and conditions.machine != ready.conditions.machine:
         words += ["--machine", conditions.machine.name]
     if conditions is not None and conditions.postures.tilt != ready.conditions.postures.tilt:
