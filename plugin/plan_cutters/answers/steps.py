@@ -71,6 +71,18 @@ def option(
     return " ".join(words) or None
 
 
+def one_more_setup(ready: Prepared, axis: Axis) -> list[str] | None:
+    """The words that ask for a further setup behind the command of a plan; None where its setups have no words.
+
+    What is named again counts once; a setup that is named takes the place of one that is there by default.
+    """
+    if proposed(ready) and not _files(ready):
+        return None
+    files = [place.file if place else "" for place in places(ready.options)]
+    typed = [file or ",".join(f"{x:.6g}" for x in own) for file, (own, _) in zip(files, ready.axes, strict=True)]
+    return [word for each in (*typed, ",".join(f"{x:.6g}" for x in axis)) for word in ("--setup", each)]
+
+
 def proposed(ready: Prepared) -> bool:
     """Whether its setups were proposed."""
     place = ready.options.placement

@@ -444,6 +444,14 @@ class NextEntry(Frozen):
     left_share: float | None = Field(description="of what is requested, that stays; null where it was not judged")
 
 
+class HoleSetupEntry(Frozen):
+    """A further setup, in which tools of the libraries make holes that they make in none of the plan's."""
+
+    axis: Vector = Field(description="direction of the part along the spindle")
+    holes: int = Field(description="that are made there, where nothing but the part is in the way")
+    argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
+
+
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
@@ -456,6 +464,9 @@ class ProcessEntry(Frozen):
         exclude_if=lambda steps: not steps,
         description="steps that drill `holes` with tools of the libraries, by setup; their numbers follow those of `steps`, "
         "and their seconds are in those of the process; not written where there are none",
+    )
+    hole_setup: HoleSetupEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="the one for most holes; not written where there is none"
     )
     setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
     stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")
