@@ -33,8 +33,9 @@ from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.holes import WorkplaneEntry
+from plan_cutters.plan_file.operations import SlideEntry
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.distances import least_clearance
+from plan_cutters.scene.distances import least_clearance, slid_along
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, tilted_plane
 from plan_cutters.scene.preparation import Prepared, places
 
@@ -168,8 +169,9 @@ def plan_with(
             tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
             strategy[mine] = stands.strategy
             clearance, word = clearance_of(task, operation, stands), strategy_of(stands.strategy, area[mine])
+            slide = None if clearance is None else _slide(task, operation, stands, clearance)
             linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
-            operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
+            operations[k] = operation.with_fields(clearance_mm=clearance, slide=slide, strategy=word, link_seconds=linked)
         links = sum(each.fields["link_seconds"] for each in operations)
     operations = workplanes(operations, task.ready, task.indexing)
     seconds = length * slower / _speed(task, operations, number)
@@ -442,6 +444,12 @@ def clearance_of(task: Task, operation: Operation, stands: _Stands | None = None
     stands = stands or _stands(task, operation)
     clearance = least_clearance(stands.samples, operation.cutter, stands.held, task.ready.setups[operation.setup])
     return clearance if math.isfinite(clearance) else None
+
+
+def _slide(task: Task, operation: Operation, stands: _Stands, clearance: float) -> SlideEntry | None:
+    conditions = task.ready.setups[operation.setup]
+    faces, wider = slid_along(stands.samples, operation.cutter, stands.held, conditions, clearance)
+    return SlideEntry(faces=[f"F{number}" for number in faces], relieved_mm=wider) if faces else None
 
 
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:

@@ -79,6 +79,13 @@ class TurningEntry(Frozen):
     )
 
 
+class SlideEntry(Frozen):
+    """A shank slides along the walls that its flutes cut, for it is as wide as these."""
+
+    faces: list[str]
+    relieved_mm: float = Field(description="least clearance with a neck ground behind the flutes, 0.95 of them wide")
+
+
 class OperationEntry(Frozen):
     """One cutter in one setup, with one orientation of its axis or with simultaneous motion."""
 
@@ -120,6 +127,9 @@ class OperationEntry(Frozen):
         default=None,
         description="least at any of its samples, as in axes.csv: what does not cut keeps so far from its surroundings; 100: "
         "that or more; null: not known",
+    )
+    slide: SlideEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="why its clearance is hardly any; not written otherwise"
     )
     orbit: int | None = Field(
         default=None, description="the same for all orientations that are images of each other about an axis; null: not repeated"
@@ -397,6 +407,9 @@ class ProcessStep(Frozen):
         default=0.0, description="of its area, cut from below: the tool's axis points under the plane across the setup axis"
     )
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
+    slide: SlideEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="why its clearance is hardly any; not written otherwise"
+    )
     alone_mm2: float | None = Field(
         default=None,
         description="of its area, that no other step serves on the faces that it has: gone if it is left out and nothing is "

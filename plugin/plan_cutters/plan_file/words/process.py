@@ -141,20 +141,28 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
-    known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
-    clearance = ""
-    if known:
-        least, step = min(known)
-        wider = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN
-        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
-        much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
-        clearance = f"Least clearance of neck, shank and holder: {much}{advice}."
     return ProcessStory(
         rows=tuple(rows), stands=tuple(each.text for each in process.setups), roughing=roughing(process), more=more,
         besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
-        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=clearance,
+        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=_clearance(plan, steps),
     )  # fmt: skip
+
+
+def _clearance(plan: Plan, steps: Mapping[int, schema.ProcessStep]) -> str:
+    """The least clearance with its step, and how to have more; empty where none is known."""
+    known = [(step.clearance_mm, step.slide is not None, k) for k, step in steps.items() if step.clearance_mm is not None]
+    if not known:
+        return ""
+    least, _, k = min(known)
+    wider, slide = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN, steps[k].slide
+    much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {k}"
+    if slide is not None:
+        advice = f": the shank is as wide as the flutes and slides along {listed(slide.faces, _FACES)}; a relieved shank (neck) "
+        advice += f"clears it, with {mm(slide.relieved_mm)} there"
+    else:
+        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
+    return f"Least clearance of neck, shank and holder: {much}{advice}."
 
 
 def with_process_words(plan: Plan) -> Plan:
