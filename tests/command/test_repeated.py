@@ -106,6 +106,8 @@ def test_a_selection_of_faces_that_is_no_list_stands_alone(other):
         assert parsed("plan", "x", "--faces", pair[0], "--faces", pair[1])["faces"] == pair[1]
     assert parsed("plan", "x", "--ignore", "F1", "--ignore", other)["ignore"] == ("F1", other)
     assert Faces().added(["", "blends"]) == "blends"
+    assert parsed("plan", "x", "--faces", "F1,F2", "--faces", "only:F2")["faces"] == "F2"
+    assert parsed("plan", "x", "--faces", "only:F2", "--units", "mm")["faces"] == "F2"
 
 
 def test_a_shell_that_asks_for_words_is_answered_all_the_same():

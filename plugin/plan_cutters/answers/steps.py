@@ -67,7 +67,7 @@ def option(
         # Another cutter might make `auto` choose otherwise.
         words += _pinned(ready, ready.chosen.targets if faces is None else faces)
     elif faces is not None:
-        words += ["--faces", ",".join(f"F{number}" for number in faces)]
+        words += ["--faces", ONLY + ",".join(f"F{number}" for number in faces)]
     return " ".join(words) or None
 
 
@@ -105,7 +105,7 @@ def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
     selected = select_faces(
         part.faces, ready.chosen.asked, tree=part.tree, ignored=scene.ignored, blends=part.blends, repeated=scene.repeated
     )
-    return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
+    return words if tuple(selected) == tuple(faces) else [*words, "--faces", ONLY + ranges(faces)]
 
 
 def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:

@@ -64,11 +64,14 @@ class Words(click.ParamType):
 
 
 class Faces(Words):
-    """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone, and nothing
-    adds to `all`."""
+    """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone, nothing adds
+    to `all`, and `only:` takes the place of what is before it."""
 
     def __init__(self) -> None:
         super().__init__("SELECT", face_words, listed=True)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        return super().convert(str(value).removeprefix(ONLY), param, ctx)
 
     def added(self, values: Sequence[str]) -> str | None:
         alone = any(":" in value or "!" in value or "all" in value.split(",") for value in values)
