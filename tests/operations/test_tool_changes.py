@@ -41,5 +41,5 @@ def test_what_a_candidate_costs_beside_a_choice_is_what_the_choice_with_it_costs
     cutter, setup = rng.integers(0, 3, 20).astype(np.int32), rng.integers(0, 3, 20).astype(np.int32)
     problem = Problem(np.zeros((1, 20)), cutter, setup, Costs(0.0, 20.0, 300.0, (2, 0, 1)))
     chosen = rng.choice(20, 4, replace=False)
-    more = problem.beside(frozenset(zip(setup[chosen].tolist(), cutter[chosen].tolist(), strict=True)))
+    more = problem.further(frozenset(zip(setup[chosen].tolist(), cutter[chosen].tolist(), strict=True)))
     assert more.tolist() == [problem.total(np.append(chosen, k)) - problem.total(chosen) for k in range(20)]

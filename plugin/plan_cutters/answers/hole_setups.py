@@ -48,7 +48,11 @@ def _promised(ready: Prepared, holes: Iterable[int], without: Sequence[Axis]) ->
 
 
 def for_holes(
-    ready: Prepared, axes: Sequence[Axis], conditions: Sequence[Conditions], hold: Callable[[Axis], Conditions | None], most: int
+    ready: Prepared,
+    axes: Sequence[Axis],
+    conditions: Iterable[Conditions | None],
+    hold: Callable[[Axis], Conditions | None],
+    most: int,
 ) -> dict[Axis, int]:
     """Directions in which holes are made that are made in no setup that is there: at most so many, with how many more in each.
 
@@ -58,7 +62,7 @@ def for_holes(
     result, left = dict[Axis, int](), {*range(len(ready.holes))}
     if not left or not axes or most <= 0 or not made_of(ready.options.libraries):
         return result
-    left -= made_in(ready, conditions, left)
+    left -= made_in(ready, filter(None, conditions), left)
     promised = _promised(ready, left, axes)
     while promised and len(result) < most:
         axis = max(promised, key=lambda each: len(promised[each] & left))

@@ -427,18 +427,18 @@ class Ranking:
                 self._settle(k)
             return self._conditions(k) if self.steady(k) else None
 
-        conditions = [each for k in chosen if (each := self._conditions(k)) is not None]
         axes = [direction_of(self.candidates.axis[k]) for k in chosen]
-        more = for_holes(self.ready, axes, conditions, hold, most - len(chosen))
+        more = for_holes(self.ready, axes, map(self._conditions, chosen), hold, most - len(chosen))
         self.drilling = {number[axis]: holes for axis, holes in more.items()}
         return (*chosen, *self.drilling)
 
     def _conditions(self, k: int) -> Conditions | None:
         """The conditions in a direction with what holds the part there."""
-        held, axis = self.held[k], self.candidates.axis[k]
-        if held is None:
+        if (held := self.held[k]) is None:
             return None
-        among = self.ready.scene.surround_held(direction_of(axis), held.fixture, held.stock and held.stock.stock)
+        axis = self.candidates.axis[k]
+        stock = held.stock.stock if held.stock else None
+        among = self.ready.scene.surround_held(direction_of(axis), held.fixture, stock)
         return replace(self.ready.conditions, setup=axis, x=held.x and np.array(held.x), surroundings=among)
 
     def _raw(self, chosen: tuple[int, ...]) -> float:

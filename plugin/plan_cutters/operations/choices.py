@@ -372,7 +372,7 @@ def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, column
     cheapest = now.min(axis=1)
     served = np.flatnonzero(np.isfinite(cheapest))
     saved = problem.gains(np.where(np.isfinite(cheapest), cheapest, 0.0), served) - costs.operation
-    saved -= problem.beside(frozenset(zip(columns.setup.tolist(), columns.cutter.tolist(), strict=True)))
+    saved -= problem.further(frozenset(zip(columns.setup.tolist(), columns.cutter.tolist(), strict=True)))
     best, seconds = None, plan_with(some, plan.name, columns, times=True).total
     for k in np.argsort(-saved, kind="stable")[:_TRIED_MORE].tolist():
         with_it = columns.and_(search.columns.of(active[[k]]))

@@ -36,7 +36,7 @@ class Costs:
     order: tuple[int, ...] = ()
 
     def between(self, uses: Iterable[tuple[int, int]]) -> float:
-        """What changes and further setups cost for uses, each a setup and the number of a cutter, in any order."""
+        """Price the changes and further setups of uses, each a setup and the number of a cutter, in any order."""
         known = sorted({(setup, self.order[cutter] if self.order else cutter) for setup, cutter in uses})
         return self.cutter * tool_changes(known) + self.setup * max(0, len({setup for setup, _ in known}) - 1)
 
@@ -91,8 +91,8 @@ class Problem:
     def _uses(self, chosen: Which) -> frozenset[tuple[int, int]]:
         return frozenset(zip(self.setup[chosen].tolist(), self.cutter[chosen].tolist(), strict=True))
 
-    def beside(self, uses: frozenset[tuple[int, int]]) -> Floats:
-        """What each candidate (m,) costs in changes of cutters and in setups beside some uses, each a setup and a cutter."""
+    def further(self, uses: frozenset[tuple[int, int]]) -> Floats:
+        """Price what each candidate (m,) adds in changes of cutters and in setups to some uses, each a setup and a cutter."""
         if uses not in self._more:
             now, shape = self.costs.between(uses), (int(self.setup.max()) + 1, int(self.cutter.max()) + 1)
             self._more[uses] = np.array([self.costs.between(uses | {use}) - now for use in np.ndindex(shape)]).reshape(shape)
@@ -117,7 +117,7 @@ class Problem:
         """The candidate that saves most beside a choice, with its own costs, and how much."""
         gain = gains - self.costs.operation
         if len(chosen):
-            gain -= self.beside(self._uses(chosen))
+            gain -= self.further(self._uses(chosen))
         best = int(gain.argmax())
         return best, float(gain[best])
 

@@ -168,7 +168,7 @@ class Task:
         return self.orientations[0].turning > 0
 
     def costs(self, operation: float = 0.0) -> Costs:
-        """What operations, changes of cutters and setups cost."""
+        """Give what operations, changes of cutters and setups cost."""
         options, in_turn = self.ready.options, by_radius(self.cutters)
         return Costs(operation, options.change_time, options.setup_time, tuple(in_turn.index(each) for each in self.cutters))
 
