@@ -1,12 +1,14 @@
 """Setups for holes alone: proposed where drills of the libraries make holes from there alone, else named as what to do next."""
 
 import math
+from itertools import pairwise
 
 import cadquery as cq
 import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.words.text import MOST, text_of
 from tests.support.drills import drill, library_of
 from tests.support.plates import block, drilled
 
@@ -67,6 +69,16 @@ def test_what_is_not_proposed_is_named_next():
     assert more.holes == 2
     assert not any(np.dot(more.axis, each.axis) > 0.99 for each in found.setup_proposal.setups)
     assert any(line.startswith("Next: clamped with") and "2 holes" in line for line in found.text.lines)
+
+
+def test_the_setup_for_holes_is_named_where_space_is_short():
+    """Many areas that are left, and lines about them, do not push it out."""
+    found = made(plate("+x"), drill(5.0), setup=(0, 0, 1))
+    (left, *_), lines = found.process.left, [f"F{k} may be wrong." for k in range(8)]
+    long = found.process.model_copy(update={"left": [left] * 4, "doubts": lines})
+    text = text_of(found.model_copy(update={"process": long}))
+    assert len(text.lines) <= MOST
+    assert any("2 holes that drills" in f"{one} {two.strip()}" for one, two in pairwise(text.lines))
 
 
 @pytest.mark.parametrize(("setup", "others"), [((0, 0, 1), ()), ((0, 0, 1), ((0, 0, -1),))])
