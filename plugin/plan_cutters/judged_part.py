@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints
 from cad_io.part.edges import InsideEdge, inside_edges
 from plan_cutters.answers.drilling import drilled
+from plan_cutters.answers.hole_setups import further_setup
 from plan_cutters.answers.means import fitting
+from plan_cutters.answers.steps import one_more_setup
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.features import inside_radius_entries, pattern_entries, sharp_edge_entries
@@ -211,6 +213,7 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
             done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
             made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))
             process = with_drilling(document.process, ready, made, index_times)
+            process = process.model_copy(update={"hole_setup": further_setup(ready, made, partial(one_more_setup, ready))})
             document = document.model_copy(update={"holes": hole_entries(ready, made), "process": process})
     return Result(document, ready, over, part.travels, answers)
 

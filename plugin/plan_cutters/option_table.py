@@ -17,6 +17,8 @@ LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 EFFORT: Mapping[str, float] = {"quick": 0.2, "normal": 1.0, "thorough": 5.0}
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
+#: Before a setup or a selection of faces that takes the place of those before it.
+ONLY = "only:"
 _POSITIVE = math.ulp(0.0), _LONGEST, f"must be a positive number of mm, at most {_LONGEST:g}"
 _NOT_NEGATIVE = 0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"
 _AT_LEAST_1 = 1, math.inf, "must be at least 1"

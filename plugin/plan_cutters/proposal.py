@@ -15,7 +15,7 @@ from plan_cutters.answers.setup_ranking import Ranking, proposed
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE
-from plan_cutters.domain.figures import exact, percent
+from plan_cutters.domain.figures import count, exact, percent
 from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.stock import PART, Stock
@@ -240,7 +240,7 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
     return filled(
         ProposedSetup, held, axis=_axis(ranking, k), stands_on=[] if held.stock else _rests_on(ranking, k), clamping=held.kind,
         grips=_named(held.grips), how_held=held.words, why_held=held.why, left_for=left, promised=promised,
-        fixtures=[each.text for each in (held.stock, held.fixture) if each is not None],
+        fixtures=[each.text for each in (held.stock, held.fixture) if each is not None], holes=ranking.drilling.get(k, 0),
     )  # fmt: skip
 
 
@@ -256,9 +256,10 @@ def _described(
     held = held_share >= _ENOUGH
     where = [f"{axis_words(each.axis)} ({stands_in(each, 'no plane')})" for each in setups]
     of = f"{len(ranking.held)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
+    bored = "".join(f" Setup {n} is for {count(each.holes, 'hole')}." for n, each in enumerate(setups, 1) if each.holes)
     why = (
         f"With {of} {_among(ranking.words)}, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of "
-        f"the samples' area. The plan reaches {percent(share)} of the target area"
+        f"the samples' area.{bored} The plan reaches {percent(share)} of the target area"
         f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
     )
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),

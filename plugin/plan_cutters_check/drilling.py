@@ -5,7 +5,7 @@ A tool for holes is put down as wide as the hole that it leaves, from above its 
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -101,6 +101,15 @@ def _turned(question: Question, step: Mapping[str, Any]) -> dict[str, Any]:
     del made["other_angles_deg"]
     # What the machine has no word for is not written.
     return {name: value for name, value in made.items() if value is not None or step.get(name) is not None}
+
+
+def changes(uses: Iterable[tuple[int, str]]) -> int:
+    """Count the tools that are put in for uses, each a setup and a tool, after the first, setup by setup."""
+    count, there = 0, None
+    for _, tool in sorted(uses, key=lambda each: each[0]):
+        count += there not in (None, tool)
+        there = tool
+    return count
 
 
 def hole(question: Question, number: int) -> dict[str, Any]:

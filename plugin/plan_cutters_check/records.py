@@ -94,9 +94,19 @@ def _operations(reckoned: Reckoned) -> dict[str, Any]:
     }
 
 
+def _sizes(document: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
+    """What cutters are sorted by within a setup."""
+    return {
+        each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
+        for k, each in enumerate(document["cutters"])
+    }
+
+
 def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
     label, written, cutting = plan.label, plan.operations, float(plan["seconds"][plan.label >= 0].sum())
     made = [_operation(reckoned, plan, i, each) for i, each in enumerate(written)]
+    size = _sizes(reckoned.question.document)
+    in_turn = sorted(written, key=lambda each: (each.get("step") is None, each.get("step") or 0, size[each["cutter"]]))
     rest = np.flatnonzero(reckoned.finished & (label < 0))
     links = sum(each["link_seconds"] for each in made)
     return {
@@ -106,7 +116,7 @@ def _plan(reckoned: Reckoned, plan: Planned) -> dict[str, Any]:
         "seconds": cutting + links + plan.entry["other_seconds"] if math.isfinite(cutting) else None,
         "link_seconds": links,
         "cutting_seconds": cutting if math.isfinite(cutting) else None,
-        "changes": max(0, len({each["cutter"] for each in written}) - 1),
+        "changes": drilling.changes((each["setup"], each["cutter"]) for each in in_turn),
         "pieces": sum(len(each["regions"]) for each in made),
         "operations": made,
         "rest": reckoned.judged.of(rest, "samples", "area_mm2", "share"),
@@ -195,10 +205,7 @@ def _remaining(written: Sequence[Mapping[str, Any]], whole: float, rest: float, 
 def _steps(reckoned: Reckoned, plan: Planned) -> list[dict[str, Any]]:
     """Those of the planner's own first, then by setup, by cutter, the largest first, by how they cut, and by area."""
     operations, own = plan.operations, reckoned.own or []
-    size = {
-        each["id"]: (each.get("group") == "last", -each["radius"], each["corner_radius"], each["length"], k)
-        for k, each in enumerate(reckoned.question.document["cutters"])
-    }
+    size = _sizes(reckoned.question.document)
 
     def rank(each: Mapping[str, Any]) -> tuple[Any, ...]:
         kind = _ORDER.index(each["strategy"]) if each["mode"] == "fixed" else len(_ORDER)

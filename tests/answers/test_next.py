@@ -105,7 +105,7 @@ def test_turned_over_as_a_second_setup():
     assert is_excluded(out)
     assert not result.reaches["R3L40"].reached[result.samples.normal[:, 2] < 0].any()
     (top,) = np.unique(result.samples.face[result.samples.normal[:, 2] > 0])
-    assert out.option == f"--faces F{top}"
+    assert out.option == f"--faces only:F{top}"
     assert followed(part, out, *words).cutters[0].feasible
 
 

@@ -295,8 +295,25 @@ def test_on_a_fourth_axis_a_bar_lies_along_it_in_a_chuck_and_is_turned_round_the
         assert np.allclose(each.x, up, atol=1e-9)
         assert abs(np.dot(each.axis, up)) < 1e-9
     assert np.allclose(chucks[0], -chucks[1], atol=1e-9)
-    first = Fixture.parse(setups[0].fixtures[-1]).clamping
-    assert first.grip == 20.0
+    # The stock in the first setup, and what was turned there in the second.
+    assert [Fixture.parse(each.fixtures[-1]).clamping.grip for each in setups] == [20.0, 20.0]
+
+
+@pytest.mark.parametrize(
+    ("wide", "long", "deep"),
+    [(20.0, 60.0, 20.0), (12.0, 60.0, 12.0), (40.0, 60.0, 20.0), (40.0, 24.0, 16.0), (40.0, 18.0, 40.0 / 3.0), (40.0, 13.0, 3.0)],
+)
+def test_a_bar_that_lies_is_gripped_as_deep_as_it_can_be(wide, long, deep):
+    """The least of 20 mm, its diameter and two thirds of its length, but a third of the diameter where that is there."""
+    bar = cq.Workplane("YZ").circle(0.5 * wide).extrude(long).val().wrapped
+    how = {**HOW, "machine": "4-axis-a", "cutters": "D8L60F30S8", "setup": "+z"}
+    for word, grip in (("chuck", deep), ("chuck:5", 5.0)):
+        (chuck,) = prepare(bar, Options(**{**how, "fixtures": word})).conditions.surroundings.fixtures
+        assert chuck.fixture.clamping.grip == pytest.approx(grip, abs=1e-6)
+    # Where it stands, more of it is machined.
+    stands = Options(**{**how, "machine": "3-axis", "setup": "+x", "fixtures": "chuck"})
+    (chuck,) = prepare(bar, stands).conditions.surroundings.fixtures
+    assert chuck.fixture.clamping.grip == 3.0
 
 
 @pytest.mark.parametrize(("machine", "setup", "along"), [("4-axis-a", "+z", (1, 0, 0)), ("trunnion-ac", "+x", (1, 0, 0))])

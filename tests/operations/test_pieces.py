@@ -9,6 +9,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import planning, plans
+from plan_cutters.operations.fastest import Costs
 from plan_cutters.operations.motion import _Times
 from plan_cutters.operations.plans import small_pieces
 from tests.support.cad_parts import box
@@ -70,9 +71,8 @@ def test_no_step_is_planned_with_a_cutter_without_a_feed(monkeypatch):
 
 def times_of(cost, moving, *, change=7.0, setup=11.0):
     """Samples of four that columns of two cutters serve, the rest with motion of cutter 1 in setups 0 and 1."""
-    options = SimpleNamespace(change_time=change, setup_time=setup)
     task = SimpleNamespace(
-        ready=SimpleNamespace(options=options), indexing=SimpleNamespace(constant=5.0), together=lambda some: 3.0 * len(some)
+        costs=lambda: Costs(0.0, change, setup), indexing=SimpleNamespace(constant=5.0), together=lambda some: 3.0 * len(some)
     )
     columns = columns_of(np.zeros((1, 3)), np.zeros((1, 2)), 0, 0).and_(columns_of(np.zeros((1, 3)), np.ones((1, 2)), 1, 0))
     return _Times(task, columns, np.array(cost), np.array(moving), np.array([1, 1, 1, 1]), np.array([0, 0, 1, 1]))

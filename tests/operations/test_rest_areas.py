@@ -58,7 +58,7 @@ def test_the_large_cutter_takes_the_plane_if_that_saves_more_than_its_change(cha
 
 
 def plan_of(problem, chosen, more=0.0):
-    operations = [SimpleNamespace(cutter=(LARGE, SMALL)[problem.cutter[each]]) for each in chosen.tolist()]
+    operations = [SimpleNamespace(cutter=(LARGE, SMALL)[problem.cutter[each]], setup=0, step=0) for each in chosen.tolist()]
     return SimpleNamespace(operations=operations, total=problem.total(chosen) + more)
 
 

@@ -28,11 +28,8 @@ def asked(part, *words, folder=""):
 
 
 def followed(part, step, *words):
-    """A plan with what a step says: `--cutter` beside what is said, all else in place of its like."""
-    typed = step.option.split()
-    given_now = [words[k : k + 2] for k in range(0, len(words), 2)]
-    kept = [word for pair in given_now if pair[0] == "--cutter" or pair[0] not in typed for word in pair]
-    return run(part, options(*kept, *typed, "--area-budget", "0"), Clock())
+    """A plan with what a step says, typed behind the command as it is."""
+    return run(part, options(*words, *step.option.split(), "--area-budget", "0"), Clock())
 
 
 def answered(plan):

@@ -45,6 +45,9 @@ _LISTED = (
      "shown selected_for_setup inside_radii** sharp_edges** setups** setup_proposal** largest_radius** least_set** not_mended** "
      "selection** samples.max_gap_mm samples.convex samples.concave samples.saddle samples.regions inside_other_bodies** "
      "missing** patterns**"),
+    ("no tool but those of the plan is put down", "operations.plans[].operations[].", "slide**"),
+    ("no tool but those of the plan is put down", "process.steps[].", "slide**"),
+    ("which other setups would do is not looked for", "process.", "hole_setup**"),
     ("holes are not looked for again", "holes[].", "faces** depth_mm through bottom cone_deg countersink** counterbore** group"),
     ("which other tools would do is not looked for", "holes[].", "missing**"),
     ("the best order of the rotary axes is not looked for", "process.drilling[].", "index_seconds"),

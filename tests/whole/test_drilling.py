@@ -177,17 +177,40 @@ def test_a_drill_without_a_feed_has_no_time():
     assert made.process.seconds is None
 
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("drilled")
-    words = {**WORDS, "libraries": [library_of(*TOOLS)]}
-    cq.exporters.export(cq.Workplane(plate()), str(folder / "plate.step"))
+def _question(folder, shape, words):
+    cq.exporters.export(cq.Workplane(shape), str(folder / "plate.step"))
     plan(folder / "plate.step", **words).write(folder, ["json", "npz"])
     document = json.loads((folder / "plan.json").read_text())
     arrays = {name: dict(np.load(folder / name)) for name in ("samples.npz", "operations.npz")}
-    part, options = read_part(folder / "plate.step"), Options(**words)
+    return question_of(read_part(folder / "plate.step"), Options(**words), document, arrays)
 
-    question = question_of(part, options, document, arrays)
+
+def test_a_tool_that_comes_back_in_the_next_setup_is_changed_to_again(tmp_path):
+    """A pocket and bores from above, a pocket and a bore from below: mills and a drill come back."""
+    shape = block(60, 40, 16).cut(cq.Workplane("XY").box(20, 20, 8).translate((-12, 0, 0)))
+    shape = shape.cut(cq.Workplane("XY").box(20, 20, 8).translate((12, 0, -16)))
+    for x, y, turn in ((-26.0, 16.0, 0.0), (-26.0, -16.0, 0.0), (26.0, 16.0, 180.0)):
+        shape = shape.cut(drilled(5.0, 7.0, 118.0, (x, y)).rotate((0, 0, -8), (1, 0, -8), turn))
+    words = {"cutters": ["D12L40F25S12", "D6L40F25S6"], "machine": "3-axis", "other_setups": ((0, 0, -1),)}
+    question = _question(tmp_path, shape.val(), {**WORDS, **words, "libraries": [library_of(drill(5.0))]})
+    process, assumed = question.document["process"], question.document["operations"]["assumed"]
+    # Step for step as the table has them: the tool in the spindle, setup by setup, mills before drills.
+    rows = [(step["setup"], step["cutter"]) for step in process["steps"]]
+    rows += [(step["setup"], step["tool"]) for step in process["drilling"]]
+    spindle = [tool for number in (0, 1) for setup, tool in rows if setup == number]
+    changes = sum(spindle[k] != spindle[k - 1] for k in range(1, len(spindle)))
+    assert changes > len(set(spindle)) - 1
+    assert process["change_seconds"] == pytest.approx(changes * assumed["change_s"])
+    names = ("cutting", "link", "index", "change", "setup")
+    assert process["seconds"] == pytest.approx(sum(process[f"{name}_seconds"] for name in names))
+    assert not on_paper(question).entries.differ
+    process["change_seconds"] = assumed["change_s"] * (len(set(spindle)) - 1)
+    assert any("change_seconds" in each for each in on_paper(question).entries.differ)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    question = _question(tmp_path_factory.mktemp("drilled"), plate(), {**WORDS, "libraries": [library_of(*TOOLS)]})
     return question, Bench(resting(question), lambda doing: None)
 
 

@@ -10,6 +10,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
+from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.setups.workpiece import Bearing, enclosed
 
@@ -38,7 +39,10 @@ class Candidates(Record):
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
         triangles, planar = _of_part(ready)
         vertex, sign = triangles.vertex, ready.scene.orientation.sign[triangles.face - 1]
-        axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
+        # From where drills of the libraries come, if there are any.
+        holes = [way * hole.axis for hole in ready.holes if made_of(ready.options.libraries) for way in (1.0, -1.0)]
+        normals = _normals(triangles.vertex, triangles.face, planar)
+        axis = distinct(np.concatenate([cube(), normals, fibonacci(_SPREAD), np.array(holes).reshape(-1, 3)]))
         heights = _Heights.of(ready, axis)
         stands_on, tall = heights.stood_on(planar), heights.high.max(axis=0) - heights.lowest
         corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)

@@ -110,10 +110,10 @@ class _Maker:
         chains, setups = [*self._chains(hole)], self.ready.setups
         if not chains:
             return ""
-        if not any(setups[way.setup].allows(way.axis[None])[0] for way in self._ways(hole)):
-            return "axis"
-        long = any(all(task.body is not None and task.drill.reach >= task.depth for task in chain) for chain in chains)
-        return "in_the_way" if long else "short"
+        if not any(all(task.body is not None and task.drill.reach >= task.depth for task in chain) for chain in chains):
+            return "short"
+        allowed = any(setups[way.setup].allows(way.axis[None])[0] for way in self._ways(hole))
+        return "in_the_way" if allowed else "axis"
 
     def _floored(self, hole: Hole) -> bool:
         """Whether mills finish a bottom that no drill leaves."""

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.answers.candidates import SAME, Candidates
 from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by
+from plan_cutters.answers.hole_setups import for_holes
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.clamping import CHUCK
 from plan_cutters.domain.cutter import Cutter
@@ -35,6 +36,7 @@ from plan_cutters.judging.judge import GroundDigests
 from plan_cutters.judging.limits import within_limits
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over_plane
 from plan_cutters.scene.flats_and_flanks import search
+from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.work import Progress, evenly
@@ -120,6 +122,8 @@ class Ranking:
     stock: Stock | None = None  #: What the first setup grips; None: the part.
     stocked: dict[int, Held | None] = field(default_factory=dict)  #: By candidate whose stock is gripped: how it was searched.
     gripped: dict[int, bool] = field(default_factory=dict)  #: By candidate: a vise or chuck holds it as it is.
+    #: By candidate that was chosen for holes alone: how many drills make there, and in none of those before it.
+    drilling: dict[int, int] = field(default_factory=dict)
     progress: Progress = _untold
 
     @classmethod
@@ -406,7 +410,36 @@ class Ranking:
                 break
             chosen = fewer
         # What a later setup grips and stands on is finished before, if any order of them does that.
-        return min(((*chosen[:1], *rest) for rest in permutations(chosen[1:])), key=self._raw)
+        chosen = min(((*chosen[:1], *rest) for rest in permutations(chosen[1:])), key=self._raw)
+        return self._with_holes(chosen, most, without)
+
+    def _with_holes(self, chosen: tuple[int, ...], most: int, without: frozenset[int]) -> tuple[int, ...]:
+        """Chosen directions, and those behind them in which drills make holes that they make in none of these."""
+        number = dict[Axis, int]()
+
+        def hold(axis: Axis) -> Conditions | None:
+            cosine = self.candidates.axis @ np.array(axis)
+            k = number[axis] = int(cosine.argmax())
+            if cosine[k] < SAME or k in without or k in chosen:
+                return None
+            self._searched(k)
+            if self.steady(k):
+                self._settle(k)
+            return self._conditions(k) if self.steady(k) else None
+
+        axes = [direction_of(self.candidates.axis[k]) for k in chosen]
+        more = for_holes(self.ready, axes, map(self._conditions, chosen), hold, most - len(chosen))
+        self.drilling = {number[axis]: holes for axis, holes in more.items()}
+        return (*chosen, *self.drilling)
+
+    def _conditions(self, k: int) -> Conditions | None:
+        """The conditions in a direction with what holds the part there."""
+        if (held := self.held[k]) is None:
+            return None
+        axis = self.candidates.axis[k]
+        stock = held.stock.stock if held.stock else None
+        among = self.ready.scene.surround_held(direction_of(axis), held.fixture, stock)
+        return replace(self.ready.conditions, setup=axis, x=held.x and np.array(held.x), surroundings=among)
 
     def _raw(self, chosen: tuple[int, ...]) -> float:
         """The area, in steps, that later setups hold while it is raw, and that another one serves."""
@@ -540,6 +573,7 @@ def proposed(
     cutters = tuple(replace(each, name="") for each in ready.cutters)
     follows_from = (
         GroundDigests().of(ready), ready.samples.area, ready.scene.targets, ready.scene.part.key, cutters, most, words, stock,
+        made_of(ready.options.libraries) if ready.holes else (), len(ready.holes), ready.options.drill_below,
     )  # fmt: skip
     stored, chosen = ready.cache.cached("proposal", follows_from, made)
     return Ranking(ready, **{name: copy(value) for name, value in stored.items()}), chosen

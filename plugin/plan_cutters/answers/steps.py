@@ -20,6 +20,7 @@ from plan_cutters.domain.dimensions import is_spec, spelled, written
 from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.errors import PlanError
+from plan_cutters.option_table import ONLY
 from plan_cutters.options import Options
 from plan_cutters.outcome import Advice, Step
 from plan_cutters.plan_file.answers import LostAreaEntry, MoveEntry, StepEntry
@@ -36,9 +37,9 @@ def option(
 ) -> str | None:  # fmt: skip
     """Write the command-line options that differ from now, so that a plan has these cutters, setups and so on.
 
-    The result is None where no option can say it. `--cutter` is added to the options of now; every other option replaces the same
-    option. Cutters that the options name now are not repeated. Those of the default tool set are written, because a plan leaves
-    them out as soon as other cutters are given.
+    The result is None where no option can say it. It is made to stand behind the options of now: cutters are added to them, and
+    setups that they name count once. Cutters that the options name now are not repeated. Those of the default tool set are
+    written, because a plan leaves them out as soon as other cutters are given.
     """
     options = ready.options
     words = [] if tuple(cutters) == (cutter,) else _more(ready, cutters)
@@ -53,7 +54,9 @@ def option(
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
             return None
-        words += [word for axis in setups for word in ("--setup", ",".join(f"{each:.6g}" for each in axis))]
+        only = "" if setups[0] == ready.scene.setup else ONLY
+        typed = [",".join(f"{each:.6g}" for each in axis) for axis in setups]
+        words += [word for each in (only + typed[0], *typed[1:]) for word in ("--setup", each)]
     if conditions is not None and conditions.machine != ready.conditions.machine:
         words += ["--machine", conditions.machine.name]
     if conditions is not None and conditions.postures.tilt != ready.conditions.postures.tilt:
@@ -64,8 +67,20 @@ def option(
         # Another cutter might make `auto` choose otherwise.
         words += _pinned(ready, ready.chosen.targets if faces is None else faces)
     elif faces is not None:
-        words += ["--faces", ",".join(f"F{number}" for number in faces)]
+        words += ["--faces", ONLY + ",".join(f"F{number}" for number in faces)]
     return " ".join(words) or None
+
+
+def one_more_setup(ready: Prepared, axis: Axis) -> list[str] | None:
+    """The words that ask for a further setup behind the command of a plan; None where its setups have no words.
+
+    What is named again counts once; a setup that is named takes the place of one that is there by default.
+    """
+    if proposed(ready) and not _files(ready):
+        return None
+    files = [place.file if place else "" for place in places(ready.options)]
+    typed = [file or ",".join(f"{x:.6g}" for x in own) for file, (own, _) in zip(files, ready.axes, strict=True)]
+    return [word for each in (*typed, ",".join(f"{x:.6g}" for x in axis)) for word in ("--setup", each)]
 
 
 def proposed(ready: Prepared) -> bool:
@@ -90,7 +105,7 @@ def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
     selected = select_faces(
         part.faces, ready.chosen.asked, tree=part.tree, ignored=scene.ignored, blends=part.blends, repeated=scene.repeated
     )
-    return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
+    return words if tuple(selected) == tuple(faces) else [*words, "--faces", ONLY + ranges(faces)]
 
 
 def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:

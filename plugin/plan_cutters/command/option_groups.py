@@ -9,7 +9,7 @@ import click
 
 from plan_cutters import __version__
 from plan_cutters.command import validation
-from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
+from plan_cutters.command.validation import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups, say
 from plan_cutters.option_table import GROUPS, OPTIONS, Option
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
@@ -24,7 +24,7 @@ _ALL = "plan_cutters.help_all"
 
 
 class Grouped(click.Option):
-    """An option under a heading of the help. Lists that are repeated add up; any other option has one value.
+    """An option under a heading of the help. Lists that are repeated add up; of any other option the last value counts.
 
     `brief` is its line in a short help, which leaves out options that have none; True: the same as in the whole one.
     """
@@ -45,14 +45,16 @@ class Grouped(click.Option):
         return super().consume_value(ctx, opts)
 
     def _one(self, values: list[str], ctx: click.Context) -> str:
-        """The value that repeated ones make; a usage error where they contradict each other."""
+        """The value that repeated ones make; where the last one takes the place of others, that is said."""
         if ctx.resilient_parsing or all(value == values[0] for value in values):
             return values[-1]
-        added = self.type.added(values) if isinstance(self.type, Words) else None
-        if added is None and len({self.type_cast_value(ctx, value) for value in values}) > 1:
-            several = " and ".join(dict.fromkeys(values))
-            raise click.UsageError(f"{max(self.opts, key=len)} has one value, not {several}: give one of them", ctx)
-        return values[-1] if added is None else added
+        if isinstance(self.type, Words) and (added := self.type.added(values)) is not None:
+            return added
+        others = {self.type_cast_value(ctx, value): value for value in values}
+        others.pop(self.type_cast_value(ctx, values[-1]))
+        if others:
+            say(ctx, f"{max(self.opts, key=len)} {values[-1]} behind it takes the place of {' and '.join(others.values())}")
+        return values[-1]
 
 
 def heading(title: str) -> Any:

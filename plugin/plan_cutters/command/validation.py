@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 import click
 from click.shell_completion import CompletionItem, shell_complete
@@ -16,13 +16,17 @@ from plan_cutters.command.codes import ended
 from plan_cutters.command.entry import OURS, commands, instead, module_of
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
 from plan_cutters.errors import OptionError, PlanError
-from plan_cutters.option_table import OF_OPERATIONS, OPTIONS
+from plan_cutters.option_table import OF_OPERATIONS, ONLY, OPTIONS
 from plan_cutters_base.whole import refusal
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
 
+#: A setup by its direction or file.
+_Stand = tuple[float, ...] | str
+#: Directions of setups that differ by less are one.
+_SAME = 1e-5
 #: Where the context of a command says that setups are named behind `auto`.
 _NAMED = "plan_cutters.named_setups"
 #: What the shell itself completes, which knows about `~` and blanks.
@@ -60,13 +64,18 @@ class Words(click.ParamType):
 
 
 class Faces(Words):
-    """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone."""
+    """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone, nothing adds
+    to `all`, and `only:` takes the place of what is before it."""
 
     def __init__(self) -> None:
         super().__init__("SELECT", face_words, listed=True)
 
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        return super().convert(str(value).removeprefix(ONLY), param, ctx)
+
     def added(self, values: Sequence[str]) -> str | None:
-        return None if any(":" in value or "!" in value for value in values) else super().added(values)
+        alone = any(":" in value or "!" in value or "all" in value.split(",") for value in values)
+        return None if alone else super().added(values)
 
 
 #: A path, completed as a file.
@@ -100,20 +109,49 @@ class Range(click.ParamType):
         return low, high
 
 
-def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
-    """Let setups that are named behind `auto` take its place, as an option of advice that is typed behind the command does."""
-    if not isinstance(value, tuple) or value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
-        return value
+def say(ctx: click.Context, text: str) -> None:
+    """Say on standard error what the words of a command mean, once: the child that does the work reads them again."""
     from plan_cutters_base.workers.child import is_child
 
+    if not (is_child() or ctx.resilient_parsing):
+        click.echo(text, err=True)
+
+
+def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
+    """Let an option of advice that is typed behind the command do as it says.
+
+    A direction or file that is named again counts once, `only:` takes the place of all before it, and what is named behind `auto`
+    that of `auto`.
+    """
+    if not isinstance(value, tuple):
+        return value
+    start = max((k for k, each in enumerate(value) if isinstance(each, Only)), default=0)
+    if start:
+        say(ctx, f"--setup {value[start].text}: it takes the place of what is named before it")
+    value = _once(each.setup if isinstance(each, Only) else each for each in value[start:])
+    if value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
+        return value
     named = value[1:]
     ctx.meta[_NAMED] = named
     if "fixtures" in ctx.params:
         ctx.params["fixtures"] = fixtures_of_setups(ctx, _, ctx.params["fixtures"])
-    # The command reads its words twice: the child that does the work need not say it again.
-    if not (is_child() or ctx.resilient_parsing):
-        click.echo(f"--setup auto: {len(named)} named behind it take its place; nothing is proposed", err=True)
+    say(ctx, f"--setup auto: {len(named)} named behind it take its place; nothing is proposed")
     return named
+
+
+def _once(setups: Iterable[_Stand]) -> tuple[_Stand, ...]:
+    """Setups without those whose direction or file was named before."""
+    result = list[_Stand]()
+    for each in setups:
+        result += [] if any(_alike(each, one) for one in result) else [each]
+    return tuple(result)
+
+
+def _alike(a: _Stand, b: _Stand) -> bool:
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b != "auto"
+    lengths = math.hypot(*a), math.hypot(*b)
+    return min(lengths) > 0.0 and math.dist([x / lengths[0] for x in a], [x / lengths[1] for x in b]) <= _SAME
 
 
 def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
@@ -126,7 +164,6 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
     from plan_cutters.setups.files import read_setup
-    from plan_cutters_base.workers.child import is_child
 
     try:
         first = Fixture.parse(value[0])
@@ -135,19 +172,27 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
         return value
     if not stated or not (first.to_place or value[0].strip().lower() == TABLE):
         return value
-    if not (is_child() or ctx.resilient_parsing):
-        click.echo(f"--setup auto: the setups behind it say what holds the part; --fixture {value[0]} is left out", err=True)
+    say(ctx, f"--setup auto: the setups behind it say what holds the part; --fixture {value[0]} is left out")
     return value[1:]
 
 
+class Only(NamedTuple):
+    """A setup that takes the place of those before it, as it is typed."""
+
+    setup: _Stand
+    text: str
+
+
 class Setup(click.ParamType):
-    """A direction, as +z or x,y,z, or a setup file."""
+    """A direction, as +z or x,y,z, or a setup file; where it is repeatable also `auto`, and `only:` before one of them."""
 
     name = "AXIS|FILE"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...] | str:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         from plan_cutters.domain.posture import along
 
+        if value.startswith(ONLY) and param is not None and param.multiple:
+            return Only(self.convert(value.removeprefix(ONLY), param, ctx), value)
         if (named := along(value)) is not None:
             return named
         if value.strip().lower() == "auto" and param is not None and param.multiple:

@@ -8,7 +8,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from cad_io.part.holes import Hole
 from plan_cutters.domain.drill import Bored, Drilled, Kind, Missing, time_of_hole
-from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.operations import INDEX_TIME, tool_changes
 from plan_cutters.domain.thread import thread_in, tolerance_in
 from plan_cutters.plan_file import holes as schema
 from plan_cutters.plan_file.frozen import filled, vector
@@ -42,13 +42,13 @@ def with_drilling(process: ProcessEntry, ready: Prepared, made: Sequence[Bored],
     if process.seconds is None or None in seconds:
         names = ("seconds", "cutting_seconds", "link_seconds", "index_seconds", "change_seconds", "setup_seconds")
         return process.model_copy(update={"drilling": drilling, **dict.fromkeys(names)})
-    tools = len({step.tool for step in drilling}) + len({step.cutter for step in process.steps if step.operation})
+    uses = [*((s.setup, s.cutter) for s in process.steps if s.operation), *((s.setup, s.tool) for s in drilling)]
     setups = len({*(step.setup for step in drilling), *(step.setup for step in process.steps)})
     times: dict[str, Any] = {
         "cutting_seconds": (process.cutting_seconds or 0.0) + sum(each or 0.0 for each in seconds),
         "link_seconds": (process.link_seconds or 0.0) + sum(step.link_seconds for step in drilling),
         "index_seconds": (process.index_seconds or 0.0) + sum(step.index_seconds for step in drilling),
-        "change_seconds": options.change_time * (tools - 1),
+        "change_seconds": options.change_time * tool_changes(uses),
         "setup_seconds": options.setup_time * (setups - 1),
     }  # fmt: skip
     return process.model_copy(update={"drilling": drilling, "seconds": sum(times.values()), **times})

@@ -370,11 +370,23 @@ def in_colours_of_steps(operations: schema.OperationsEntry, process: schema.Proc
 def _times(options: Options, plan: schema.OperationPlanEntry, setups: int) -> dict[str, Any]:
     """What the time of a plan is made of, by the fields of the process."""
     clamping = options.setup_time * max(0, setups - 1)
-    change = options.change_time * max(0, len({each.cutter for each in plan.operations}) - 1)
+    change = options.change_time * plan.changes
     return {
         "cutting_seconds": plan.cutting_seconds or 0.0, "link_seconds": plan.link_seconds, "setup_seconds": clamping,
         "change_seconds": change, "index_seconds": max(0.0, plan.other_seconds - change - clamping),
     }  # fmt: skip
+
+
+def _slide(same: Sequence[schema.OperationEntry]) -> schema.SlideEntry | None:
+    """The walls along which the shank slides in operations that are one step; None where one comes near something else."""
+    least = [each for each in same if each.clearance_mm == min(one.clearance_mm or 0.0 for one in same)]
+    slides = [each.slide for each in least if each.slide is not None]
+    if len(slides) < len(least):
+        return None
+    return schema.SlideEntry(
+        faces=sorted({face for each in slides for face in each.faces}, key=lambda face: int(face[1:])),
+        relieved_mm=min(each.slide.relieved_mm if each.slide else each.clearance_mm or 0.0 for each in same),
+    )
 
 
 def place_in_shop(step: schema.OperationEntry | schema.ProcessStep, size: Mapping[str, int]) -> tuple[object, ...]:
@@ -431,6 +443,7 @@ class _Parts:
                 mine, same[0], seconds=None if None in seconds else sum(s for s in seconds if s is not None),
                 link_seconds=sum(each.link_seconds for each in same), repeat=repeat, repeat_deg=by, take="share",
                 clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
+                slide=_slide(same),
                 alone_mm2=same[0].exclusive_mm2 if single else float(self.area[gone].sum()),
             ))  # fmt: skip
         # Those that are images of others count with all of them.

@@ -1,6 +1,8 @@
 """The plan of operations: the words that ask for one, and how an operation cuts."""
 
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -46,6 +48,20 @@ def strategy_of(number: NDArray[np.uint8], area: Floats) -> Strategy:
     if not len(number):
         return "point"
     return STRATEGIES[int(size.argmax())] if size.max() >= _NEARLY_ALL * size.sum() else "mixed"
+
+
+def tool_changes(uses: Iterable[tuple[int, Hashable]]) -> int:
+    """Count how often another tool than the one in the spindle is put in, the first one being there.
+
+    `uses`: the setup and the tool of each step; within a setup in their order. A setup begins with the tool that is there.
+
+    >>> tool_changes([(0, "D12"), (0, "D12"), (0, "D6")]), tool_changes([(1, "D12"), (0, "D12"), (0, "D6")])
+    (1, 2)
+    >>> tool_changes([(0, "D12"), (0, "D6"), (1, "D6")]), tool_changes([])
+    (1, 0)
+    """
+    tools = [tool for _, tool in sorted(uses, key=lambda use: use[0])]
+    return sum(before != after for before, after in pairwise(tools))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -6,6 +6,7 @@ what to buy.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
@@ -198,6 +199,17 @@ _SIZES = (
     (10, 100, 50, 2, 16.5),
     (12, 120, 60, 2, 22),
 )
+
+
+def relieved(cutter: Cutter) -> Cutter | None:
+    """The same cutter with a neck ground behind its flutes; None where its shank is not as wide, or too short for one."""
+    shank = cutter.radius if cutter.shank_radius is None else cutter.shank_radius
+    neck = cutter.length - (cutter.flutes or cutter.length) - _STUB
+    if cutter.necks or abs(shank - cutter.radius) > SAME or neck <= SAME:
+        return None
+    return replace(cutter, neck=Segment(_RELIEF * cutter.radius, neck))
+
+
 #: Smaller cutters stand on a shank of this radius, which begins so far below the holder, mm.
 _SHANK, _STUB = 3.0, 5.0
 #: Length of the holders, mm.

@@ -19,7 +19,7 @@ from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.choices import Worth, by_size, largest_first, worths
 from plan_cutters.operations.entries import Timed
-from plan_cutters.operations.fastest import Costs, Problem, against_bound, bounded, cheap
+from plan_cutters.operations.fastest import Problem, against_bound, bounded, cheap
 from plan_cutters.operations.fewest import spread
 from plan_cutters.operations.motion import few_enough, fewer, recommended
 from plan_cutters.operations.plans import plan_with, worth_their_turn
@@ -139,16 +139,16 @@ def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float
     """
     own = cost.reshape(len(cost), -1, task.times)
     turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(task.times)]
-    each = Costs(problem.costs.operation / task.times, problem.costs.cutter, problem.costs.setup)
+    each = replace(problem.costs, operation=problem.costs.operation / task.times)
     return Problem(np.concatenate(turned), images.cutter, images.setup, each, task.indexing.turning(images))
 
 
 def _problem(task: Task, symmetry: Symmetry, base: Columns, cost: NDArray[np.float64]) -> Problem:
     """What samples cost with orientations and their images, each of which is set `order` times."""
-    options, indexing = task.ready.options, task.indexing
+    indexing = task.indexing
     step = indexing.constant if indexing.rate is None else indexing.together(symmetry.images(base.of(np.zeros(1, np.int64))))
     turns = symmetry.order * step if indexing.rate is None else step
-    return Problem(cost, base.cutter, base.setup, Costs(turns, options.change_time, options.setup_time))
+    return Problem(cost, base.cutter, base.setup, task.costs(turns))
 
 
 #: A plan of repeated steps may take so much more time, as a share: equal copies are cut alike, and are set up once.

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.preference import by_radius
-from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged, promising
+from plan_cutters.operations.fastest import Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.labels import LEAST_SHARE, MINOR_SHARE
 from plan_cutters.operations.orientations import STEP
-from plan_cutters.operations.plans import MINOR_AREA, costs_with, moving_over, plan_with, worth_their_turn
+from plan_cutters.operations.plans import MINOR_AREA, changes_of, costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task, at_some, shared_area
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.operations import OneMoreEntry
@@ -34,8 +34,8 @@ class Worth(NamedTuple):
     """A cutter is worth this beside the others that were compared.
 
     `only` (n,) int64: samples that none of the others reaches. `saves`: seconds by which the fastest plan found with it is below
-    the fastest one without it, before its own change; None where no plan without it was found. `change`: seconds that its change
-    costs: 0 where it is the only one then.
+    the fastest one without it, before its own changes; None where no plan without it was found. `change`: seconds that its
+    changes cost: 0 where it is the only one then.
     """
 
     cutter: Cutter
@@ -96,22 +96,22 @@ def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:
     result = []
     for c in by_size(task):
         others = np.logical_or.reduce([mine for k, mine in enumerate(reached) if k != c])
-        saves, change = _saves(plans, task.cutters[c], task.ready.options.change_time)
+        saves, change = _saves(task, plans, task.cutters[c])
         result.append(Worth(task.cutters[c], task.rows[reached[c] & ~others], saves, change))
     return tuple(result)
 
 
-def _saves(plans: Sequence[OperationPlan], cutter: Cutter, change: float) -> tuple[float | None, float]:
-    """Seconds that a cutter saves before its change, and what that costs."""
-    used = [(plan.total, {each.cutter for each in plan.operations}) for plan in plans]
-    with_it = [(seconds, len(cutters)) for seconds, cutters in used if cutter in cutters]
-    without = [seconds for seconds, cutters in used if cutter not in cutters]
+def _saves(task: Task, plans: Sequence[OperationPlan], cutter: Cutter) -> tuple[float | None, float]:
+    """Seconds that a cutter saves before its changes, and what these cost."""
+    change = task.ready.options.change_time
+    with_it = [plan for plan in plans if any(each.cutter == cutter for each in plan.operations)]
+    without = [plan.total for plan in plans if all(each.cutter != cutter for each in plan.operations)]
     if not with_it:
         return 0.0, change
-    best, cutters = min(with_it)
-    # The first cutter is there anyway.
-    change = change if cutters > 1 else 0.0
-    return (max(0.0, min(without) - best + change) if without else None), change
+    best = min(with_it, key=lambda plan: plan.total)
+    others = [each for each in best.operations if each.cutter != cutter]
+    change *= changes_of(task, best.operations) - changes_of(task, others)
+    return (max(0.0, min(without) - best.total + change) if without else None), change
 
 
 def with_and_without(problem: Problem, chosen: Rows) -> Iterator[Rows]:
@@ -231,13 +231,12 @@ def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Prob
 
     Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
     """
-    options, indexing = task.ready.options, task.indexing
+    indexing = task.indexing
     wanted = np.setdiff1d(task.rows, search.alone)
     active, table = search.whole
     columns, area = search.columns.of(active), shared_area(task.ready.samples, wanted, search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
-    costs = Costs(mean, options.change_time, options.setup_time)
-    problem = task.problems.of(columns, active, table, search.rows, area, costs)
+    problem = task.problems.of(columns, active, table, search.rows, area, task.costs(mean))
     return columns, problem, float(area.sum())
 
 
@@ -344,11 +343,11 @@ def _others(task: Task, columns: Columns) -> Columns:
 
 
 def _turn(task: Task, every: Columns, chosen: list[int], k: int) -> float:
-    """Seconds that a further column of some takes besides cutting: turning the part, and changing to a cutter that is new."""
+    """Seconds that a further column of some takes besides cutting: turning the part, and changing cutters."""
     before, after = (every.of(np.array(each, np.int64)) for each in (chosen, [*chosen, k]))
-    new = every.cutter[k] not in every.cutter[chosen]
-    turn = task.indexing.together(after) - task.indexing.together(before)
-    return turn + (task.ready.options.change_time if new else 0.0)
+    turn, costs = task.indexing.together(after) - task.indexing.together(before), task.costs()
+    now, then = (costs.between(zip(each.setup.tolist(), each.cutter.tolist(), strict=True)) for each in (before, after))
+    return turn + then - now
 
 
 #: Less is not worth a word, s and share of the plan's time; candidates that are planned with, at most.
@@ -368,12 +367,12 @@ def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, column
         return None
     few, (active, table) = at_some(task, search.rows), search.whole
     area, now = costs_with(few, columns)
-    costs = Costs(task.indexing.constant if task.indexing.rate is None else 0.0, options.change_time, options.setup_time)
+    costs = task.costs(task.indexing.constant if task.indexing.rate is None else 0.0)
     problem = task.problems.of(search.columns.of(active), active, table, search.rows, area, costs)
     cheapest = now.min(axis=1)
     served = np.flatnonzero(np.isfinite(cheapest))
     saved = problem.gains(np.where(np.isfinite(cheapest), cheapest, 0.0), served) - costs.operation
-    saved -= costs.cutter * ~np.isin(problem.cutter, columns.cutter) + costs.setup * ~np.isin(problem.setup, columns.setup)
+    saved -= problem.further(frozenset(zip(columns.setup.tolist(), columns.cutter.tolist(), strict=True)))
     best, seconds = None, plan_with(some, plan.name, columns, times=True).total
     for k in np.argsort(-saved, kind="stable")[:_TRIED_MORE].tolist():
         with_it = columns.and_(search.columns.of(active[[k]]))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
 from plan_cutters.operations.choices import Worth
+from plan_cutters.operations.plans import changes_of
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
@@ -90,7 +91,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
         cutting_seconds=plan.cutting if known else None,
         link_seconds=plan.links,
         other_seconds=plan.other,
-        changes=max(0, len({each.cutter for each in operations}) - 1),
+        changes=changes_of(task, plan.operations),
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         ratio_at_most=_ratio(operations, timed),
         proved_share=sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None,

@@ -1,14 +1,14 @@
 """The operations that take the least time together, and how far from the best they are at most.
 
 It is a facility location: each sample is cut by one chosen operation that serves it, each operation costs an index of the rotary
-axes, each cutter after the first a change and each setup after the first a clamping. A choice is made greedily and made better by
-leaving out and by exchanging operations. The bound is Lagrange's: any prices of samples give one for each set of cutters and of
+axes, each change of cutters is paid for, and each setup after the first. A choice is made greedily and made better by leaving out
+and by exchanging operations. The bound is Lagrange's: any prices of samples give one for each set of cutters and of
 setups, and the least of these bounds every choice (`docs/operations_proof.md`, lemma O8; lemma O9 where rotary axes have rates).
 Prices are made better by steps along the mean of what samples are served too often or not at all; candidates that no better
 choice can have are left out on the way.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, pairwise, product
 
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
+from plan_cutters.domain.operations import tool_changes
 from plan_cutters.plan_file.operations import FastestEntry
 
 Which = NDArray[np.int64]
@@ -23,14 +24,21 @@ Which = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit.
+    """Each operation, each change of cutters, and each setup after the first costs this whatever it cuts, in the samples' unit.
 
-    Where candidates turn, the cost of an operation only leads the choice.
+    Where candidates turn, the cost of an operation only leads the choice. `order`: of each cutter its place within a setup;
+    empty: they come by their numbers.
     """
 
     operation: float
     cutter: float
     setup: float
+    order: tuple[int, ...] = ()
+
+    def between(self, uses: Iterable[tuple[int, int]]) -> float:
+        """Price the changes and further setups of uses, each a setup and the number of a cutter, in any order."""
+        known = sorted({(setup, self.order[cutter] if self.order else cutter) for setup, cutter in uses})
+        return self.cutter * tool_changes(known) + self.setup * max(0, len({setup for setup, _ in known}) - 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,6 +62,8 @@ class Problem:
 
     def __init__(self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None) -> None:
         self.cost, self.cutter, self.setup, self.costs, self.turning = cost, cutter, setup, costs, turning
+        #: Of some uses, each a setup and a cutter, what each other one costs beside them.
+        self._more = dict[frozenset[tuple[int, int]], Floats]()
         finite = cost[np.isfinite(cost)]
         #: Costs more than any choice.
         self.dear = float(cost.min(axis=1, initial=np.inf).sum() + finite.max(initial=0.0) * len(cost)) + 10.0 * sum(
@@ -70,17 +80,23 @@ class Problem:
         """As `total`, for a choice with which the samples (n,) are known to cost so much."""
         if not len(chosen):
             return self.total(chosen)
-        return float(samples.sum()) + self.costs.operation * len(chosen) + self._changes(chosen)
+        return float(samples.sum()) + self.costs.operation * len(chosen) + self.costs.between(self._uses(chosen))
 
     def turned(self, chosen: Which) -> float:
         """As `total`, but with what the rotary axes take in truth."""
         if self.turning is None or not len(chosen):
             return self.total(chosen)
-        return self.cutting(chosen) + self.turning.together(chosen) + self._changes(chosen)
+        return self.cutting(chosen) + self.turning.together(chosen) + self.costs.between(self._uses(chosen))
 
-    def _changes(self, chosen: Which) -> float:
-        cutters, setups = len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
-        return self.costs.cutter * (cutters - 1) + self.costs.setup * (setups - 1)
+    def _uses(self, chosen: Which) -> frozenset[tuple[int, int]]:
+        return frozenset(zip(self.setup[chosen].tolist(), self.cutter[chosen].tolist(), strict=True))
+
+    def further(self, uses: frozenset[tuple[int, int]]) -> Floats:
+        """Price what each candidate (m,) adds in changes of cutters and in setups to some uses, each a setup and a cutter."""
+        if uses not in self._more:
+            now, shape = self.costs.between(uses), (int(self.setup.max()) + 1, int(self.cutter.max()) + 1)
+            self._more[uses] = np.array([self.costs.between(uses | {use}) - now for use in np.ndindex(shape)]).reshape(shape)
+        return np.asarray(self._more[uses][self.setup, self.cutter])
 
     def cutting(self, chosen: Which) -> float:
         """Sum up the costs of the samples, each with the best of a choice."""
@@ -101,8 +117,7 @@ class Problem:
         """The candidate that saves most beside a choice, with its own costs, and how much."""
         gain = gains - self.costs.operation
         if len(chosen):
-            gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
-            gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
+            gain -= self.further(self._uses(chosen))
         best = int(gain.argmax())
         return best, float(gain[best])
 
@@ -143,8 +158,8 @@ def against_bound(seconds: float, bound: float, at_best: float, samples: int, ca
 class Location:
     """A choice of operations.
 
-    `chosen` (k,) int64: ascending. `cost`: of all samples, each with the best of the chosen, of operations, and of cutters and
-    setups after the first. `bound`: no choice costs less.
+    `chosen` (k,) int64: ascending. `cost`: of all samples, each with the best of the chosen, of operations, of changes of
+    cutters, and of setups after the first. `bound`: no choice costs less.
     """
 
     chosen: Which
@@ -416,7 +431,7 @@ def _bound(problem: Problem, chosen: Which) -> float:
 
 
 def _sets(problem: Problem) -> Iterator[tuple[float, NDArray[np.bool_]]]:
-    """Of each set of cutters and setups what those after the first cost, and which candidates (m,) it has.
+    """Of each set of cutters and setups what those after the first cost at least, and which candidates (m,) it has.
 
     Where there are too many sets, one stands for all: that with all candidates, for which nothing is paid.
     """

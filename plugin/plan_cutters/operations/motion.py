@@ -76,13 +76,11 @@ class _Times:
         """The `total` of columns that take so long at each sample (r,), infinite where none serves."""
         left = ~np.isfinite(own)
         cutting = float(np.where(left, self.moving, own).sum())
-        options, columns = self.task.ready.options, self.columns.of(np.array(some, np.int64))
+        columns = self.columns.of(np.array(some, np.int64))
         motions = {*zip(self.setup[left].tolist(), self.cutter[left].tolist(), strict=True)}
         turns = self.task.together(columns) + self.task.indexing.constant * len(motions)
-        cutters = {*columns.cutter.tolist(), *(c for _, c in motions)}
-        setups = {*columns.setup.tolist(), *(s for s, _ in motions)}
-        others = options.change_time * max(0, len(cutters) - 1) + options.setup_time * max(0, len(setups) - 1)
-        return cutting + turns + others, cutting
+        uses = motions.union(zip(columns.setup.tolist(), columns.cutter.tolist(), strict=True))
+        return cutting + turns + self.task.costs().between(uses), cutting
 
 
 def recommended(task: Task, columns: Columns) -> Columns:

@@ -1,7 +1,7 @@
 """A plan made of chosen columns: what each sample goes with, region by region, and the tilted plane of each operation."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import NamedTuple
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import area as size
-from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of
-from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
+from plan_cutters.domain.operations import STRATEGIES, Columns, strategy_of, tool_changes
+from plan_cutters.domain.preference import NEARLY_ALL, by_radius, group_of, rank
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.labels import (
     MINOR_SECONDS,
@@ -33,8 +33,9 @@ from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.holes import WorkplaneEntry
+from plan_cutters.plan_file.operations import SlideEntry
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.distances import least_clearance
+from plan_cutters.scene.distances import least_clearance, slid_along
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, tilted_plane
 from plan_cutters.scene.preparation import Prepared, places
 
@@ -168,8 +169,9 @@ def plan_with(
             tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
             strategy[mine] = stands.strategy
             clearance, word = clearance_of(task, operation, stands), strategy_of(stands.strategy, area[mine])
+            slide = None if clearance is None else _slide(task, operation, stands, clearance)
             linked = float(np.nansum(link[mine])) + _to_pieces(task, region[mine])
-            operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word, link_seconds=linked)
+            operations[k] = operation.with_fields(clearance_mm=clearance, slide=slide, strategy=word, link_seconds=linked)
         links = sum(each.fields["link_seconds"] for each in operations)
     operations = workplanes(operations, task.ready, task.indexing)
     seconds = length * slower / _speed(task, operations, number)
@@ -206,12 +208,19 @@ def _speed(task: Task, operations: Sequence[Operation], number: NDArray[np.int32
 
 
 def _other(task: Task, operations: Sequence[Operation]) -> float:
-    """Seconds of orientations, and of each cutter and each setup after the first, which are there anyway."""
+    """Seconds of orientations, of changes of cutters, and of each setup after the first, which is there anyway."""
     options = task.ready.options
     # How simultaneous motion begins is not known: it takes the time of an orientation that no rates tell.
     turns = sum(each.fields.get("index_s", task.indexing.constant) for each in operations)
-    cutters, setups = len({each.cutter for each in operations}), len({each.setup for each in operations})
-    return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
+    changes, setups = changes_of(task, operations), len({each.setup for each in operations})
+    return turns + options.change_time * changes + options.setup_time * max(0, setups - 1)
+
+
+def changes_of(task: Task, operations: Iterable[Operation]) -> int:
+    """Changes of cutters of some operations: a planner's own in their order, then by size."""
+    place = {cutter: k for k, cutter in enumerate(by_radius(task.cutters))}
+    in_turn = sorted(operations, key=lambda each: (not each.step, each.step, place[each.cutter]))
+    return tool_changes((each.setup, each.cutter) for each in in_turn)
 
 
 def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
@@ -435,6 +444,12 @@ def clearance_of(task: Task, operation: Operation, stands: _Stands | None = None
     stands = stands or _stands(task, operation)
     clearance = least_clearance(stands.samples, operation.cutter, stands.held, task.ready.setups[operation.setup])
     return clearance if math.isfinite(clearance) else None
+
+
+def _slide(task: Task, operation: Operation, stands: _Stands, clearance: float) -> SlideEntry | None:
+    conditions = task.ready.setups[operation.setup]
+    faces, wider = slid_along(stands.samples, operation.cutter, stands.held, conditions, clearance)
+    return SlideEntry(faces=[f"F{number}" for number in faces], relieved_mm=wider) if faces else None
 
 
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Columns, columns_of
+from plan_cutters.domain.preference import by_radius
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.fastest import Costs, Problem
 from plan_cutters.operations.labels import Seams
@@ -165,6 +166,11 @@ class Task:
     def moves(self) -> bool:
         """Whether an axis can turn the tool while it cuts."""
         return self.orientations[0].turning > 0
+
+    def costs(self, operation: float = 0.0) -> Costs:
+        """Give what operations, changes of cutters and setups cost."""
+        options, in_turn = self.ready.options, by_radius(self.cutters)
+        return Costs(operation, options.change_time, options.setup_time, tuple(in_turn.index(each) for each in self.cutters))
 
     @property
     def times(self) -> int:

@@ -79,6 +79,13 @@ class TurningEntry(Frozen):
     )
 
 
+class SlideEntry(Frozen):
+    """A shank slides along the walls that its flutes cut, for it is as wide as these."""
+
+    faces: list[str]
+    relieved_mm: float = Field(description="least clearance with a neck ground behind the flutes, 0.95 of them wide")
+
+
 class OperationEntry(Frozen):
     """One cutter in one setup, with one orientation of its axis or with simultaneous motion."""
 
@@ -120,6 +127,9 @@ class OperationEntry(Frozen):
         default=None,
         description="least at any of its samples, as in axes.csv: what does not cut keeps so far from its surroundings; 100: "
         "that or more; null: not known",
+    )
+    slide: SlideEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="why its clearance is hardly any; not written otherwise"
     )
     orbit: int | None = Field(
         default=None, description="the same for all orientations that are images of each other about an axis; null: not repeated"
@@ -397,6 +407,9 @@ class ProcessStep(Frozen):
         default=0.0, description="of its area, cut from below: the tool's axis points under the plane across the setup axis"
     )
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
+    slide: SlideEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="why its clearance is hardly any; not written otherwise"
+    )
     alone_mm2: float | None = Field(
         default=None,
         description="of its area, that no other step serves on the faces that it has: gone if it is left out and nothing is "
@@ -444,6 +457,14 @@ class NextEntry(Frozen):
     left_share: float | None = Field(description="of what is requested, that stays; null where it was not judged")
 
 
+class HoleSetupEntry(Frozen):
+    """A further setup, in which tools of the libraries make holes that they make in none of the plan's."""
+
+    axis: Vector = Field(description="direction of the part along the spindle")
+    holes: int = Field(description="that are made there, where nothing but the part is in the way")
+    argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
+
+
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
@@ -456,6 +477,9 @@ class ProcessEntry(Frozen):
         exclude_if=lambda steps: not steps,
         description="steps that drill `holes` with tools of the libraries, by setup; their numbers follow those of `steps`, "
         "and their seconds are in those of the process; not written where there are none",
+    )
+    hole_setup: HoleSetupEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="the one for most holes; not written where there is none"
     )
     setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
     stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")

@@ -273,6 +273,11 @@ class ProposedSetup(Frozen):
     why_held: str = Field(default="", description="why it is held so; empty where nothing else was tried")
     left_for: list[HiddenFaces] = Field(default=[], description="which other setups machine what it stands on and grips")
     promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")
+    holes: int = Field(
+        default=0,
+        exclude_if=lambda holes: not holes,
+        description="that drills make from here and from no setup before it, where it is for these alone; else not written",
+    )
 
 
 class SetupProposal(Frozen):

@@ -20,12 +20,15 @@ from cad_io.errors import SampleError
 from cad_io.sample import foot_on
 from plan_cutters.domain.assembly import Assembly, assembly, grown, rungs
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.standard_tools import relieved
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
-from plan_cutters.kernels.codes import PART
+from plan_cutters.kernels.codes import PART, SHANK
 from plan_cutters.scene.conditions import Conditions, laid_tool_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.work import in_chunks
 
+#: A face that leans so far against a tool axis at most is a wall: sine of 1 deg.
+_WALL = 0.0175
 #: Added to the chord error, mm, for rounding.
 _ROUNDING = 1e-9
 
@@ -115,6 +118,31 @@ def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts,
         else:
             free = middle
     return float(steps[free]) if free >= 0 else 0.0
+
+
+def slid_along(
+    samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions, clearance: float
+) -> tuple[list[int], float]:
+    """Walls along which a shank slides that is as wide as the flutes that cut there, and the clearance with a relieved one, mm.
+
+    `clearance`: the least one of the postures. No walls where that is more than the tolerance, something else than the shank is
+    as near, or a relieved shank would not do.
+    """
+    neck = relieved(cutter) if clearance <= conditions.tolerance else None
+    wider = 0.0 if neck is None else least_clearance(samples, neck, verdicts, conditions)
+    # Half of what is ground off is more than what rounding takes.
+    if neck is None or not wider > max(conditions.tolerance, 0.5 * (cutter.radius - neck.necks[0].radius)):
+        return [], 0.0
+    steps, rows = rungs(cutter), np.flatnonzero(verdicts.reached)
+    triangle, which = np.full(len(samples), -1, np.int32), np.full(len(samples), -1, np.int32)
+    made = _probed(samples, verdicts, rows, cutter, float(steps[steps > clearance][0]), conditions, triangle, which)
+    met = rows[triangle[rows] >= 0]
+    near = conditions.obstacles.faces[triangle[met]]
+    if not len(met) or near.min() <= 0 or (made.piece[0, which[met], PART] != SHANK).any():
+        return [], 0.0
+    # At a wall that is cut the edge of another face may be met first.
+    wall = np.abs((samples.normal[met] * verdicts.axis[met]).sum(axis=1)) <= _WALL
+    return np.unique(np.where(wall, samples.face[met], near)).tolist(), wider
 
 
 def _unknown(cutter: Cutter, conditions: Conditions) -> bool:

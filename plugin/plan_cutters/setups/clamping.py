@@ -69,13 +69,15 @@ def held(
     usual = requested.sizes is None and requested.grip == GRIP
     most = max(part.tall - _ABOVE, 0.5 * part.tall) if requested.grip == GRIP else math.inf
     requested = replace(requested, grip=min(deep if usual and deep else requested.grip, most))
-    places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
+    lying = fixture.up is not None
+    places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested, lying=lying)
     refused += [Refused(each.rank, "its jaws would reach as high as the part") for each in places if each.high > most + part.flat]
     places = [each for each in places if each.high <= most + part.flat]
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
-    # Of even ones about the middle of the part, then on the larger faces.
+    # Of even ones about the middle of the part, then on the larger faces; a bar that lies is gripped as deep as it can be.
     places.sort(
-        key=lambda each: (each.soft != "", each.bored, each.thin, int((each.hidden - least) / step), -round(each.firm, 6),
+        key=lambda each: (each.soft != "", each.bored, each.thin, -each.clamping.grip * lying,
+                          int((each.hidden - least) / step), -round(each.firm, 6),
                           each.above, round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
     searched = Counter[tuple[int, ...]]()

@@ -32,15 +32,17 @@ _TURN, _BINS = 5, 360
 #: Arcs of fewer degrees do not tell their cylinder; one that lies in jaws is as far above the part's lowest point at most, as a
 #: share of what they grip.
 _ARC, _LOWEST = 20, 0.1
-#: Of a cylinder that is gripped deep, so much at most.
-_DEEP = 2.0 / 3.0
+#: Of a cylinder that is gripped deep, so much at most; a bar that lies is gripped so deep, mm, and by this share of its diameter
+#: at least, if it is there.
+_DEEP, _LIES, _THIRD = 2.0 / 3.0, 20.0, 1.0 / 3.0
 _X, _Y, _Z = np.eye(3)
 #: Jaws are higher than they grip by more than numbers are rounded, mm.
 _HAIR = 1e-6
 
 
-def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
-    """Where a chuck may grip, and why it may not where a cylinder is no such place."""
+def chuck_places(part: Workpiece, requested: Requested, *, lying: bool = False) -> tuple[list[Place], list[Refused]]:
+    """Where a chuck may grip, and why it may not where a cylinder is no such place; a part that is `lying` stands out of it
+    freely."""
     places, refused = list[Place](), list[Refused]()
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
     for wall, centre, radius in _cylinders(part, part.vertex, part.normal):
@@ -49,6 +51,8 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
         if requested.sizes is None and requested.grip == GRIP and part.targets.isdisjoint(wall.faces):
             # A pin that nobody machines is gripped deep, and some of it stays free below the part.
             grips.append(max(GRIP, min(2.0 * radius, _DEEP * (wall.high - wall.low))))
+        elif requested.sizes is None and requested.grip == GRIP and lying:
+            grips += [each for each in [_lies(radius, wall.high - wall.low)] if each > GRIP]
         if 2.0 * radius > largest_gripped():
             why, grips = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}", []
         for above, reach in [each for grip in grips for each in stands(wall.low, grip)]:
@@ -61,6 +65,12 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
         if not result:
             refused.append(Refused((wall.low > 0.5 * requested.grip, -area_of(wall.vertex)), why))
     return places, refused if places or refused else [Refused((True, 0.0), short)]
+
+
+def _lies(radius: float, long: float) -> float:
+    """How deep a cylinder of a bar that lies is gripped, mm; 0 where not even the least of it is there."""
+    deep, least = min(_LIES, 2.0 * radius, _DEEP * long), 2.0 * radius * _THIRD
+    return deep if deep >= least else least if least < long else 0.0
 
 
 def _cylinders(part: Workpiece, vertices: Floats, normals: Floats) -> list[tuple[Wall, Floats, float]]:

@@ -1,5 +1,6 @@
 """Put the process into words: steps in a table of 80 columns, what is left by cause, what to do next."""
 
+import math
 import re
 import shlex
 import textwrap
@@ -17,7 +18,7 @@ from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.holes import DrillingStep
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
-from plan_cutters.plan_file.words.answers import is_excluded, needs
+from plan_cutters.plan_file.words.answers import is_excluded, more_setup, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.holes import drilling_words
 from plan_cutters.plan_file.words.names import named
@@ -140,20 +141,28 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
         more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
-    known = [(step.clearance_mm, k) for k, step in steps.items() if step.clearance_mm is not None]
-    clearance = ""
-    if known:
-        least, step = min(known)
-        wider = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN
-        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
-        much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {step}"
-        clearance = f"Least clearance of neck, shank and holder: {much}{advice}."
     return ProcessStory(
         rows=tuple(rows), stands=tuple(each.text for each in process.setups), roughing=roughing(process), more=more,
         besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
-        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=clearance,
+        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=_clearance(plan, steps),
     )  # fmt: skip
+
+
+def _clearance(plan: Plan, steps: Mapping[int, schema.ProcessStep]) -> str:
+    """The least clearance with its step, and how to have more; empty where none is known."""
+    known = [(step.clearance_mm, step.slide is not None, k) for k, step in steps.items() if step.clearance_mm is not None]
+    if not known:
+        return ""
+    least, _, k = min(known)
+    wider, slide = least < schema.MARGIN and plan.effective.holder_clearance_mm < schema.MARGIN, steps[k].slide
+    much = f"{mm(_FAR)} or more" if least >= _FAR else f"{mm(least)} in step {k}"
+    if slide is not None:
+        advice = f": the shank is as wide as the flutes and slides along {listed(slide.faces, _FACES)}; a relieved shank (neck) "
+        advice += f"clears it, with {mm(slide.relieved_mm)} there"
+    else:
+        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
+    return f"Least clearance of neck, shank and holder: {much}{advice}."
 
 
 def with_process_words(plan: Plan) -> Plan:
@@ -165,6 +174,8 @@ def with_process_words(plan: Plan) -> Plan:
     ]
     setups = [each.model_copy(update={"text": stand_text(plan, each)}) for each in plan.process.setups]
     following = list(_next_entries(plan, plan.process, needed))
+    # What mills need most comes first; a setup for holes is among those that are shown.
+    following[1:1] = _for_holes(plan)
     words = {"steps": steps, "setups": setups, "left": needed, "doubts": doubts(plan), "next": following}
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
@@ -318,6 +329,16 @@ def _next_entries(
     # It comes second where a step is known that helps most of what is left for another cause.
     known = most.cause != "sharp_edge" and any(each.share >= _HELPED for each in most.helped)
     yield from chain(others, rounded) if known else chain(rounded, others)
+
+
+def _for_holes(plan: Plan) -> Iterator[schema.NextEntry]:
+    """The setup from which drills make most of the holes that they make in no setup of the plan."""
+    if (more := plan.process.hole_setup) is not None:
+        now = plan.process.setups
+        cosine = sum(a * b for a, b in zip(more.axis, now[0].up, strict=True))
+        turn = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
+        words = f"{more_setup(more.axis, turn, 1 + len(now))} for {count(more.holes, 'hole')} that drills make there"
+        yield schema.NextEntry(words=words, argv=more.argv, left_share=None)
 
 
 def _answered_entries(plan: Plan, process: schema.ProcessEntry, left: float) -> Iterator[schema.NextEntry]:

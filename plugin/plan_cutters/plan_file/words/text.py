@@ -166,7 +166,7 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each(left[:1], _LEFT, 0)
     yield from each(left[1:], _LEFT)
     yield from each(process.next[:1], 3, 0)
-    yield from each(process.next[1:], 3)
+    yield from each(process.next[1:], 3, 2 if plan.process.hole_setup is None else 0)
     yield from each(stays[process.much :], _LEFT, 2 if left else 1)
     unseen = first.not_seen(plan, story.names) if first.unseen(plan) else []
     yield from each([*first.undecided(plan, story.names), *unseen], 2, 1)
