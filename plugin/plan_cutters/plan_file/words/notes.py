@@ -251,7 +251,9 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    lines += [text for doubt in (_unit, _travel, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)]
+    lines += [
+        text for doubt in (_unit, _travel, _into_solid, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)
+    ]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
         lines.append(
@@ -316,6 +318,19 @@ def _raw(plan: Plan) -> Iterator[str]:
         if raw and mine:
             yield f"Setup {setup.number} holds raw faces: no step before it machines {listed(raw, _FACES)}."
         done.update(face for step in mine for face in step.faces)
+
+
+def _into_solid(plan: Plan) -> Iterator[str]:
+    """Steps of mills that go down to the bottoms of holes, which are solid until their drills have been there."""
+    behind = dict[int, set[int]]()
+    for k, step in enumerate(plan.process.steps, 1):
+        for number, bores in enumerate(plan.process.drilling, len(plan.process.steps) + 1):
+            floors = {face for each in bores.holes for face in plan.holes[each.hole].floor}
+            if bores.setup >= step.setup and floors.intersection(step.faces):
+                behind.setdefault(k, set()).add(number)
+    for k, drills in behind.items():
+        which = f"step{'s' * (len(drills) > 1)} {_runs(sorted(drills))}"
+        yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
 def _across(plan: Plan) -> Iterator[str]:

@@ -223,7 +223,10 @@ def stand_text(plan: Plan, setup: schema.ProcessSetup) -> str:
         bored = isinstance(clamping, Vise) and clamping.bored
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
-        gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
+        high = f"{mm(setup.grip_mm)} high"
+        if setup.contact_mm is not None:
+            high = f"{mm(setup.contact_mm)} high by jaws that reach {mm(setup.grip_mm)} up"
+        gripped = f"in soft jaws bored to it, {high}" if bored else f"gripped {high}"
         how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
         are = "is" if len(setup.stands_on or ()) == 1 else "are"
