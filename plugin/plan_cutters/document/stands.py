@@ -16,7 +16,6 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
 
-
 #: Of the height of jaws, faces before them have nearly all.
 _NEARLY = 0.9
 
