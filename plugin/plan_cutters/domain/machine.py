@@ -137,6 +137,10 @@ def direction_of(value: Any, what: str) -> tuple[float, float, float]:
     return x / size, y / size, z / size
 
 
+#: What rounding may take from a cosine.
+_ROUNDING = 1e-12
+
+
 @degrees_too({"tilt_limit": Angle(0.0, 180.0)}, error=MachineError)
 @dataclass(frozen=True, slots=True)
 class Machine:
@@ -289,7 +293,7 @@ class Machine:
 
     def holds(self, axis: Floats, setup: Floats, kinematics: Kinematics | None) -> NDArray[np.bool_]:
         """As `allows`, with the rotary axes in the part's frame."""
-        held = axis @ setup[2] >= self.limit_cos
+        held = axis @ setup[2] >= self.limit_cos - _ROUNDING
         return np.asarray(held if kinematics is None else held & kinematics.allows(axis))
 
     @classmethod

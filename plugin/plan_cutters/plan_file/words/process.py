@@ -99,7 +99,7 @@ class ProcessStory:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
         each setup."""
         drills = sorted((row for row in self.rows if row.holes), key=lambda row: -row.holes)
-        unshown = drills[max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
+        unshown = drills[_DRILLED // 2 if self.more else max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
         shown = [row for row in self.rows if row not in unshown]
         rows = [(row.number, *row[2:6]) for row in shown]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
