@@ -38,7 +38,7 @@ NoteCode = Literal[
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
-    "repeated_body", "crosses_itself", "folds_back", "bodies_apart",
+    "repeated_body", "crosses_itself", "folds_back", "changed_by_step", "bodies_apart",
 ]  # fmt: skip
 
 
@@ -174,6 +174,16 @@ def crosses_itself(faces: Sequence[str], why: str, areas_mm2: float, option: str
     )
 
 
+def changed_by_step(face: str, here_mm2: float, there_mm2: float) -> Note:
+    """A face of a shape comes back from STEP with another area."""
+    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is missing"
+    return Note(
+        "changed_by_step",
+        f"Written as STEP and read again, {face} {back}: its surface of revolution crosses its axis. This plan is of the shape "
+        "as it was given; its STEP models, and any other STEP of it, show another part.",
+    )
+
+
 def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note:
     """A body of the part that lies where another one lies; number 0: a shell."""
     name, other = (f"body {n}" if n else "a shell" for n in (number, stays))
@@ -242,7 +252,7 @@ _WRONG = "is its unit wrong? `--unit` gives the right one."
 _SHEETS = "stand", "construction sheets do", "them"
 #: Notes that are doubts, in the order in which these are listed.
 _DOUBTFUL: tuple[tuple[NoteCode, ...], ...] = (
-    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back"),
+    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back", "changed_by_step"),
     ("bodies_apart",),
 )  # fmt: skip
 
