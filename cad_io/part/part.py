@@ -212,8 +212,9 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
         self.meshed: dict[int, tuple[Any, str]] = {}
-        #: What lies where others lie; kept by `repeats`.
+        #: What lies where others lie, and areas that faces come back with from STEP, mm2; kept by `repeats` and `write.back`.
         self.repeats: tuple[Any, ...] | None = None
+        self.changed_by_step: Mapping[int, float] | None = None
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])

@@ -3,11 +3,14 @@
 The same input gives the same bytes. The kernel keeps the groups of styles, one a product, in a map by address and writes them
 in the map's order (OCCT 7.9), which differs from run to run: here they follow the order of the products, and are numbered anew.
 Two instances of one product differ in their verdicts, so each is a product. Solids, shells and sheets are put into products so
-that FreeCAD shows their colours, too.
+that FreeCAD shows their colours, too. Some surfaces of revolution that cross their axis come back from STEP as another part of
+it.
 """
 
 import contextlib
+import os
 import re
+import tempfile
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -16,13 +19,16 @@ from typing import Any, NamedTuple
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepGProp import BRepGProp
 from OCP.BRepTools import BRepTools_Modifier
+from OCP.GeomAbs import GeomAbs_SurfaceOfRevolution, GeomAbs_Torus
+from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.ShapeCustom import ShapeCustom, ShapeCustom_DirectModification
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
-from OCP.STEPControl import STEPControl_AsIs
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
@@ -34,8 +40,9 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
-from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
+from cad_io.kernel import edges_of, explore, faces, may_refuse, shape_map, silence, translated
 from cad_io.kernel.shapes import Node, children, compound, flat, placed
+from cad_io.part import Part
 from cad_io.split.pieces import Piece, Split
 from plan_cutters_base.forks import ChildDied, TimeLimit, limited
 from plan_cutters_base.whole import whole
@@ -420,3 +427,62 @@ def _wrapped(number: int, entity: bytes, new: dict[int, int]) -> bytes:
             line = b"  "
         line += token
     return b"\n".join([*lines, line]) + b";\n"
+
+
+#: Processor seconds that it may take, and more for each face.
+_BACK, _BACK_A_FACE = 20.0, 0.2
+#: Areas that differ by a smaller share are one.
+_SAME = 0.01
+
+
+def changed_by_step(part: Part) -> Mapping[int, float]:
+    """Faces whose area is another one once they were written as STEP and read again, with that area, mm2; it is looked for once.
+
+    Only surfaces of revolution and tori are looked at: planes, quadrics and splines come back as they are. A face that does not
+    come back at all has the area 0.
+    """
+    if part.changed_by_step is not None:
+        return part.changed_by_step
+    numbers = [
+        f.number for f in part.faces if f.area > 0.0 and f.surface in ("revolution", "torus") and _doubtful(part, f.number)
+    ]
+    part.changed_by_step = {}
+    if numbers:
+        with contextlib.suppress(TimeLimit, ChildDied):
+            areas = limited(lambda: _areas(part, numbers), _BACK + _BACK_A_FACE * len(numbers))
+            pairs = zip(numbers, areas, strict=True)
+            part.changed_by_step = {n: there for n, (here, there) in pairs if abs(there - here) > _SAME * here}
+    return part.changed_by_step
+
+
+def _doubtful(part: Part, number: int) -> bool:
+    """Whether the whole surface may cross its axis: a torus does where its tube is wider than the circle about which it lies."""
+    adaptor = part.adaptor(number)
+    if adaptor.GetType() == GeomAbs_Torus:
+        torus = adaptor.Torus()
+        return bool(torus.MinorRadius() >= torus.MajorRadius())
+    return bool(adaptor.GetType() == GeomAbs_SurfaceOfRevolution)
+
+
+def _areas(part: Part, numbers: list[int]) -> list[tuple[float, float]]:
+    """Areas of faces by the kernel, as they are and as they come back."""
+    silence()
+    pairs = list[tuple[float, float]]()
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "face.step")
+        for number in numbers:
+            here, there = _area(part.face(number)), 0.0
+            with may_refuse():
+                writer, reader = STEPControl_Writer(), STEPControl_Reader()
+                writer.Transfer(part.face(number), STEPControl_AsIs)
+                if writer.Write(file) == IFSelect_RetDone and reader.ReadFile(file) == IFSelect_RetDone:
+                    reader.TransferRoots()
+                    there = _area(reader.OneShape())
+            pairs.append((here, there))
+    return pairs
+
+
+def _area(shape: object) -> float:
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, properties)
+    return float(properties.Mass())

@@ -1,6 +1,7 @@
 """Plans of operations on machines of no and of one rotary axis, and of two of which one or both stand still."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,11 +13,12 @@ from plan_cutters import Axis, Cutter, Machine, plan
 from plan_cutters.domain.cutter import Segment
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.errors import OptionError
+from plan_cutters.machines import read_machine, to_toml
 from plan_cutters.operations.labels import flowing_faces
 from plan_cutters.operations.orientations import Indexing, Orientations, candidates
 from plan_cutters.report.process_file import process_toml
 from plan_cutters_check.check import check
-from tests.support.cad_parts import box
+from tests.support.cad_parts import ball, box
 from tests.support.grooves import tee
 from tests.support.written_plan import Written
 
@@ -97,6 +99,23 @@ def test_nothing_is_simultaneous_where_no_axis_can_move(results, machine):
     own = {"step": [{"cutter": FLAT, "mode": "simultaneous"}]}
     with pytest.raises(OptionError, match="step 1: it is simultaneous, and on this machine no axis turns the tool"):
         planned(box(), results[machine].conditions.machine, operations=None, process=own)
+
+
+def test_nothing_is_simultaneous_where_axes_stand_still_while_the_machine_cuts(tmp_path):
+    """On the built-in 3+2 and on a trunnion that is stated so; what motion alone would take is left by name."""
+    indexed = replace(builtin_machines()["trunnion-ac"], indexed=True)
+    file = tmp_path / "mill.toml"
+    file.write_text(to_toml(indexed))
+    assert read_machine(file) == indexed
+    for machine in ("3+2", indexed):
+        dome = planned(ball(), machine, most_operations=1, operations="fastest")
+        (made, entry) = of_each(dome, "fastest")
+        assert all(each.mode == "fixed" for each in entry.operations)
+        assert (made.label[dome.ready.finished] >= 0).sum() + entry.rest.samples == dome.ready.finished.sum()
+        with pytest.raises(OptionError, match="on this machine no axis turns the tool while it cuts"):
+            planned(box(), machine, operations=None, process={"step": [{"cutter": FLAT, "mode": "simultaneous"}]})
+    moving = planned(ball(), "trunnion-ac", most_operations=1, operations="fastest")
+    assert any(each.mode == "simultaneous" for each in of_each(moving, "fastest")[1].operations)
 
 
 @pytest.mark.parametrize("machine", sorted(builtin_machines()))

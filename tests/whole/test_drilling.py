@@ -204,8 +204,6 @@ def test_a_tool_that_comes_back_in_the_next_setup_is_changed_to_again(tmp_path):
     names = ("cutting", "link", "index", "change", "setup")
     assert process["seconds"] == pytest.approx(sum(process[f"{name}_seconds"] for name in names))
     assert not on_paper(question).entries.differ
-    process["change_seconds"] = assumed["change_s"] * (len(set(spindle)) - 1)
-    assert any("change_seconds" in each for each in on_paper(question).entries.differ)
 
 
 @pytest.fixture(scope="module")

@@ -100,3 +100,16 @@ def test_a_hole_aslant_is_made_from_its_own_direction():
     bore = drilled(5.0, 8.0).rotate((0, 0, 0), (0, 1, 0), 15.0).translate((12, 0, 0))
     found = made(block(60, 40, 30).cut(bore).val(), drill(5.0, flutes=45.0), setup=(0, 0, 1))
     assert found.process.hole_setup.axis == pytest.approx((math.sin(lean), 0.0, math.cos(lean)), abs=1e-5)
+
+
+def test_a_doubt_names_steps_of_mills_that_go_to_the_bottoms_of_holes_before_these_are_drilled():
+    """A flat-bottomed bore that a drill opens and a mill finishes: the mill goes down behind the drill."""
+    bored = block(60, 40, 30).cut(cq.Workplane("XY").workplane(offset=-12).circle(4.0).extrude(40))
+    found = made(bored.val(), drill(8.0, flutes=40.0), cutters=["D6L40F25S6", "D12L40F25S12"], operations="fewest", setup="+z")
+    (hole,) = found.holes
+    assert hole.floor
+    deep = [k for k, step in enumerate(found.process.steps, 1) if set(hole.floor) & set(step.faces)]
+    assert deep
+    drills = len(found.process.steps) + len(found.process.drilling)
+    lines = [each for each in found.process.doubts if "behind" in each]
+    assert lines == [f"Run step {k} behind step {drills}: it goes to the bottoms of holes that are drilled there." for k in deep]

@@ -55,9 +55,9 @@ _HEIGHTS, _EVEN = 12, 0.002
 _STOOD, _TURNED_FOR = 2, 0.02
 #: Where a tool is found below the table, postures that lean so far from the setup axis at most are tried, rad.
 _UPRIGHT = float(np.radians(60.0))
-#: A setup in which the part does not stand by itself counts so much in a search; one in which nothing holds it firmly, without
-#: soft jaws or a nest, is taken where the others serve less than this share of what it serves.
-_UNSTEADY, _SOFT = 0.75, 0.5
+#: A setup in which the part does not stand by itself counts so much in a search; one that needs a nest is taken where the others
+#: serve less than this share of what it serves, or leave so much of the area to it.
+_UNSTEADY, _SOFT, _NEST_FOR = 0.75, 0.5, 0.1
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
 #: Directions at right angles: cosine at most.
@@ -281,12 +281,12 @@ class Ranking:
             self._settle(over, ~self.served(chosen[0]))
         while 0 < len(chosen) < most:
             open_rows = ~np.logical_or.reduce([self.served(k) for k in chosen])
-            others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed) and self.steady(k)]
-            others.sort(key=lambda k: k != over)
+            others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed)]
             gain = self.share(np.stack([self.served(k) & open_rows for k in others], axis=1)) if others else np.zeros(0)
-            if not (gain >= _CLAMPED_FOR).any():
+            worth = [(k, g) for k, g in zip(others, gain, strict=True) if g >= (_CLAMPED_FOR if self.steady(k) else _NEST_FOR)]
+            if not worth:
                 break
-            more = others[int(np.round(gain / _EVEN).argmax())]
+            more = max(worth, key=lambda each: (self.steady(each[0]), round(each[1] / _EVEN), each[0] == over))[0]
             self._settle(more, open_rows)
             if float(self.share((self.served(more) & open_rows)[:, None])[0]) >= _CLAMPED_FOR:
                 chosen = (*chosen, more)
@@ -366,12 +366,12 @@ class Ranking:
         fixture, along = Fixture.parse(word), self.ready.conditions.machine.chuck_axis
         if fixture.kind != CHUCK or along is None:
             return [(fixture, None)]
-        axis, tall = self.candidates.axis, self.candidates.tall
-        across = [j for j in np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist() if self.candidates.bearing[j].round]
-        # A disk stands, unless a person asks for a chuck.
-        least = max(tall[k] if len(self.words) > 1 else 0.0, (1.0 - _EVEN) * max(tall[across], default=0.0))
-        longest = [j for j in across if tall[j] >= least]
-        lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in longest]
+        axis, tall, asked = self.candidates.axis, self.candidates.tall, len(self.words) == 1
+        across = np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist()
+        # Who asks for a chuck may lay a bar in it about a part that is not round, or a disk that would stand.
+        across = [j for j in across if self.candidates.bearing[j].round or (asked and self.stock is not None)]
+        least = max(0.0 if asked else tall[k], (1.0 - _EVEN) * max(tall[across], default=0.0))
+        lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in across if tall[j] >= least]
         return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]
 
     def lying(self, k: int) -> list[tuple[Fixture, Axis | None]]:

@@ -79,7 +79,7 @@ def command(request: ToolsRequest) -> int:
     def one(file: str) -> None:
         library = listing(file, assume_stickout=request.assume_stickout, holder=holder, skip_bad=request.skip_bad)
         libraries.append(library)
-        if not library and not (library.holders and not library.entries):
+        if not library and not library.drills and not (library.holders and not library.entries):
             raise nothing(library)
 
     lines = faults(request.files, one, request.debug)

@@ -134,6 +134,7 @@ def _entry(hole: Hole, group: int, made: Bored) -> schema.HoleEntry:
     ]
     return filled(
         schema.HoleEntry, hole, faces=[f"F{number}" for number in hole.faces], **_size(hole),
+        floor=[f"F{number}" for number in hole.floor if number not in hole.faces],
         cone_deg=hole.cone and _degrees(hole.cone), axis=vector(hole.axis + 0.0), place_mm=_rounded(hole.place), group=group,
         countersink=sink and schema.CountersinkEntry(diameter_mm=round(sink[0], _DIGITS), angle_deg=_degrees(sink[1])),
         counterbore=bore and schema.CounterboreEntry(diameter_mm=round(bore[0], _DIGITS), depth_mm=round(bore[1], _DIGITS)),

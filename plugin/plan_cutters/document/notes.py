@@ -10,6 +10,7 @@ from cad_io.arrays import rows_by_face
 from cad_io.graphs import connected
 from cad_io.part.edges import folded_faces
 from cad_io.part.part import CROSSES
+from cad_io.write.step import changed_by_step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, ranges
 from plan_cutters.domain.placement import axis_words
@@ -95,7 +96,7 @@ def _of_sides(ready: Prepared) -> Iterator[Note]:
 
 
 def _of_surfaces(scene: Scene) -> Iterator[Note]:
-    """Name surfaces of revolution that cross their axis: they may be others than were made."""
+    """Name surfaces of revolution that cross their axis: they are, or would come back from STEP as, others than were made."""
     part, ignored = scene.part, set(scene.ignored)
     faces = [f for f in part.faces if f.number not in ignored]
     if crossing := [f.number for f in faces if f.unjudged == CROSSES]:
@@ -105,6 +106,9 @@ def _of_surfaces(scene: Scene) -> Iterator[Note]:
     turned = [f.number for f in faces if f.surface == "revolution" and f.unjudged is None]
     for n, other in sorted(folded_faces(part, turned).items()):
         yield note("folds_back", f"F{n}", neighbour=f"F{other}", size_mm2=part.faces[n - 1].area, option=f"`--ignore F{n}`")
+    for n, there in changed_by_step(part).items():
+        if n not in ignored:
+            yield notes.changed_by_step(f"F{n}", part.faces[n - 1].area, there)
 
 
 def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:

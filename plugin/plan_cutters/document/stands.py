@@ -3,7 +3,10 @@
 from collections.abc import Collection, Iterable
 from typing import Any, Literal
 
-from cad_io.arrays import Triangles
+import numpy as np
+
+from cad_io.arrays import Floats, Triangles
+from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
 from plan_cutters.plan_file.frozen import Vector, vector
@@ -12,6 +15,9 @@ from plan_cutters.scene.fixtures import stock_body
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
+
+#: Of the height of jaws, faces before them have nearly all.
+_NEARLY = 0.9
 
 
 def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | None]:
@@ -71,8 +77,22 @@ def _gripped(gripping: PlacedFixture, triangles: Triangles, *, stock: bool) -> d
     grips = frozenset[int]() if stock else faces_in_jaws(clamping, own, triangles.face, triangles.chord_error)
     return {
         "held": fixture.kind, "grips": _named(grips), "apart_mm": clamping.numbers[-1], "grip_mm": clamping.grip,
+        "contact_mm": _contact(clamping, own[np.isin(triangles.face, list(grips))]),
         "clamping": fixture.text, "soft": "" if gripping.hold is None else gripping.hold.soft,
     }  # fmt: skip
+
+
+def _contact(clamping: Clamping, vertex: Floats) -> float | None:
+    """How high faces (n, 3, 3) in the frame of a vise or chuck stand before its jaws, of a vise on the side where that is less;
+    None where that is nearly as high as the jaws reach.
+    """
+    side = vertex[:, :, 0].mean(axis=1) > 0.0
+    sides = [vertex[side], vertex[~side]] if isinstance(clamping, Vise) else [vertex]
+    heights = [
+        min(clamping.grip, float(z.max())) - max(0.0, float(z.min())) for z in (each[..., 2] for each in sides if len(each))
+    ]
+    least = min(heights, default=clamping.grip)
+    return None if least >= _NEARLY * clamping.grip else max(0.0, least)
 
 
 def _rests_on(part: Workpiece, fixture: Fixture, triangles: Triangles) -> list[str]:

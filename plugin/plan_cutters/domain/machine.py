@@ -137,6 +137,10 @@ def direction_of(value: Any, what: str) -> tuple[float, float, float]:
     return x / size, y / size, z / size
 
 
+#: What rounding may take from a cosine.
+_ROUNDING = 1e-12
+
+
 @degrees_too({"tilt_limit": Angle(0.0, 180.0)}, error=MachineError)
 @dataclass(frozen=True, slots=True)
 class Machine:
@@ -156,6 +160,8 @@ class Machine:
         How it was understood where that is not plain.
     fixed : bool
         Whether an empty list of axes means that nothing turns the tool: a machine of three axes.
+    indexed : bool
+        Whether its rotary axes stand still while it cuts, as on a 3+2 machine: no simultaneous motion is planned.
     """
 
     name: str = "unlimited"
@@ -164,13 +170,14 @@ class Machine:
     tool_axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     notes: tuple[str, ...] = ()
     fixed: bool = False
+    indexed: bool = False
 
     if TYPE_CHECKING:
 
         def __init__(
             self, name: str = "unlimited", tilt_limit: float | None = None, axes: Sequence[Axis] = (),
-            tool_axis: Sequence[float] | Floats = ..., notes: Sequence[str] = (), fixed: bool = False, *,
-            tilt_limit_deg: float | None = None,
+            tool_axis: Sequence[float] | Floats = ..., notes: Sequence[str] = (), fixed: bool = False,
+            indexed: bool = False, *, tilt_limit_deg: float | None = None,
         ) -> None: ...  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -179,8 +186,9 @@ class Machine:
         object.__setattr__(self, "axes", tuple(items(self.axes, "a machine's axes", "axes", error=MachineError)))
         object.__setattr__(self, "notes", tuple(items(self.notes, "a machine's notes", "texts", error=MachineError)))
         object.__setattr__(self, "tool_axis", direction_of(self.tool_axis, "a machine's tool axis"))
-        if not isinstance(self.fixed, bool):
-            raise MachineError(f"a machine is fixed or not, not {shown(self.fixed)}")
+        for word in ("fixed", "indexed"):
+            if not isinstance(value := getattr(self, word), bool):
+                raise MachineError(f"a machine is {word} or not, not {shown(value)}")
         self._check_axes()
         if self.tilt_limit is None:
             return
@@ -285,7 +293,7 @@ class Machine:
 
     def holds(self, axis: Floats, setup: Floats, kinematics: Kinematics | None) -> NDArray[np.bool_]:
         """As `allows`, with the rotary axes in the part's frame."""
-        held = axis @ setup[2] >= self.limit_cos
+        held = axis @ setup[2] >= self.limit_cos - _ROUNDING
         return np.asarray(held if kinematics is None else held & kinematics.allows(axis))
 
     @classmethod
@@ -349,4 +357,4 @@ def builtin_machines() -> dict[str, Machine]:
         ),
         "nutating-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "tool", (0.0, 1.0, 1.0), limits_deg=(-180.0, 180.0))),
     }
-    return {name: Machine(name, axes=axes, fixed=not axes) for name, axes in table.items()}
+    return {name: Machine(name, axes=axes, fixed=not axes, indexed=name == "3+2") for name, axes in table.items()}

@@ -78,7 +78,9 @@ class OwnProcess:
                 written = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
                 raise OptionError(f"{self._where(step)}: angles: {written}; {there_are}")
             if step.mode == "simultaneous" and not moves:
-                raise OptionError(f"{self._where(step)}: it is simultaneous, and on this machine no axis turns the tool")
+                raise OptionError(
+                    f"{self._where(step)}: it is simultaneous, and on this machine no axis turns the tool while it cuts"
+                )
         for number, each in enumerate(self.forbidden, 1):
             cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
 
@@ -200,7 +202,7 @@ def operations_requested(
     unpriced = list[str]()
     if process is not None:
         names = [axis.name for axis in machine.rotary] if machine.turns else ["azimuth", "tilt"]
-        process.check(cutters, setups, names, not machine.turns or machine.turning > 0)
+        process.check(cutters, setups, names, not machine.turns or (machine.turning > 0 and not machine.indexed))
         named = [cutter_of(each.cutter, cutters, "process") for each in process.steps]
         unpriced = [each.typed for each in named if each not in feeds]
     chosen = operations or ("fewest" if unpriced or not feeds else "fastest")

@@ -78,6 +78,7 @@ class MachineTable(Table):
     tool_chain: list[AxisTable]
     tilt_limit: Size | None = None
     fixed: bool | None = None
+    indexed: bool = False
     notes: list[str] = []
     max_tool: MaxTool | None = None
     part_mount: Mount | None = None
@@ -130,7 +131,7 @@ def _machine(entry: Any, content: Content, added: Added) -> Machine:
     tilt = None if table.tilt_limit is None else _size(table.tilt_limit, angle, "tilt_limit")
     fixed = table.fixed if table.fixed is not None else not any(each.kind == "rotary" for each in axes)
     tool = (table.tool_axis[0], table.tool_axis[1], table.tool_axis[2])
-    return Machine(table.name, tilt, tuple(axes), tool, tuple(notes), fixed)
+    return Machine(table.name, tilt, tuple(axes), tool, tuple(notes), fixed, table.indexed)
 
 
 def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: float) -> Axis:
@@ -207,6 +208,7 @@ def plain(machine: Machine) -> dict[str, Any]:
         "sign": "tool-relative",
         "tool_axis": list(machine.tool_axis),
         "fixed": machine.fixed,
+        **({"indexed": True} if machine.indexed else {}),
     }
     if machine.tilt_limit is not None:
         entry["tilt_limit"] = stated_degrees(machine.tilt_limit)

@@ -165,7 +165,7 @@ class Task:
     @property
     def moves(self) -> bool:
         """Whether an axis can turn the tool while it cuts."""
-        return self.orientations[0].turning > 0
+        return self.orientations[0].turning > 0 and not self.ready.conditions.machine.indexed
 
     def costs(self, operation: float = 0.0) -> Costs:
         """Give what operations, changes of cutters and setups cost."""

@@ -12,6 +12,10 @@ def _none(entry: object) -> bool:
     return entry is None
 
 
+def _empty(entry: list[str]) -> bool:
+    return not entry
+
+
 class WorkplaneEntry(Frozen):
     """The tilted plane that a control turns to: z is the tool axis, x the machine's X turned with it. Part coordinates."""
 
@@ -80,6 +84,7 @@ class HoleEntry(Frozen):
     depth_mm: float = Field(description="from the mouth to the lower end of that cylinder, without the point of a drill")
     through: bool
     bottom: Literal["flat", "cone", "open", "round"] = Field(description="open where it is through; round: a sphere or torus")
+    floor: list[str] = Field(default=[], exclude_if=_empty, description="faces of a bottom that a mill has to reach")
     cone_deg: float | None = Field(description="the whole angle of a bottom that is a cone, else null")
     countersink: CountersinkEntry | None
     counterbore: CounterboreEntry | None

@@ -434,6 +434,11 @@ class ProcessSetup(Frozen):
     grips: list[str] = Field(default=[], description="faces that jaws touch; none of stock")
     apart_mm: float | None = Field(default=None, description="between the jaws of a vise; what a chuck grips is so wide")
     grip_mm: float | None = Field(default=None, description="how high jaws reach over what the part rests on")
+    contact_mm: float | None = Field(
+        default=None,
+        exclude_if=lambda each: each is None,
+        description="how much of that the faces that jaws touch have, where it is less",
+    )
     clamping: str | None = Field(default=None, description="what holds it, as --fixture takes it")
     soft: str = Field(default="", description="why soft jaws or a nest are needed; empty: the part is held as it is")
     text: str = ""

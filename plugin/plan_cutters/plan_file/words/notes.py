@@ -38,7 +38,7 @@ NoteCode = Literal[
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
-    "repeated_body", "crosses_itself", "folds_back", "bodies_apart",
+    "repeated_body", "crosses_itself", "folds_back", "changed_by_step", "bodies_apart",
 ]  # fmt: skip
 
 
@@ -174,6 +174,16 @@ def crosses_itself(faces: Sequence[str], why: str, areas_mm2: float, option: str
     )
 
 
+def changed_by_step(face: str, here_mm2: float, there_mm2: float) -> Note:
+    """A face of a shape comes back from STEP with another area."""
+    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is missing"
+    return Note(
+        "changed_by_step",
+        f"Written as STEP and read again, {face} {back}: its surface of revolution crosses its axis. This plan is of the shape "
+        "as it was given; its STEP models, and any other STEP of it, show another part.",
+    )
+
+
 def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note:
     """A body of the part that lies where another one lies; number 0: a shell."""
     name, other = (f"body {n}" if n else "a shell" for n in (number, stays))
@@ -242,7 +252,7 @@ _WRONG = "is its unit wrong? `--unit` gives the right one."
 _SHEETS = "stand", "construction sheets do", "them"
 #: Notes that are doubts, in the order in which these are listed.
 _DOUBTFUL: tuple[tuple[NoteCode, ...], ...] = (
-    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back"),
+    ("run_unfinished",), ("coarser_than_requested",), ("repeated_body", "crosses_itself", "folds_back", "changed_by_step"),
     ("bodies_apart",),
 )  # fmt: skip
 
@@ -251,7 +261,9 @@ def doubts(plan: Plan) -> list[str]:
     """All doubts about a plan with its process, for people: whole sentences; empty where there is none."""
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
-    lines += [text for doubt in (_unit, _travel, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)]
+    lines += [
+        text for doubt in (_unit, _travel, _into_solid, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)
+    ]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
         lines.append(
@@ -316,6 +328,19 @@ def _raw(plan: Plan) -> Iterator[str]:
         if raw and mine:
             yield f"Setup {setup.number} holds raw faces: no step before it machines {listed(raw, _FACES)}."
         done.update(face for step in mine for face in step.faces)
+
+
+def _into_solid(plan: Plan) -> Iterator[str]:
+    """Steps of mills that go down to the bottoms of holes, which are solid until their drills have been there."""
+    behind = dict[int, set[int]]()
+    for k, step in enumerate(plan.process.steps, 1):
+        for number, bores in enumerate(plan.process.drilling, len(plan.process.steps) + 1):
+            floors = {face for each in bores.holes for face in plan.holes[each.hole].floor}
+            if bores.setup >= step.setup and floors.intersection(step.faces):
+                behind.setdefault(k, set()).add(number)
+    for k, drills in behind.items():
+        which = f"step{'s' * (len(drills) > 1)} {_runs(sorted(drills))}"
+        yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
 def _across(plan: Plan) -> Iterator[str]:

@@ -99,7 +99,7 @@ class ProcessStory:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
         each setup."""
         drills = sorted((row for row in self.rows if row.holes), key=lambda row: -row.holes)
-        unshown = drills[max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
+        unshown = drills[_DRILLED // 2 if self.more else max(_DRILLED, _ROWS - len(self.rows) + len(drills)) :]
         shown = [row for row in self.rows if row not in unshown]
         rows = [(row.number, *row[2:6]) for row in shown]
         wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
@@ -223,7 +223,10 @@ def stand_text(plan: Plan, setup: schema.ProcessSetup) -> str:
         bored = isinstance(clamping, Vise) and clamping.bored
         across = f"{mm(setup.apart_mm or 0.0)} {'apart' if setup.held == 'vise' and not bored else 'wide'}"
         rests = f", rests on {on}" if setup.grips and on else ""
-        gripped = f"in soft jaws bored to it, {mm(setup.grip_mm)} high" if bored else f"gripped {mm(setup.grip_mm)} high"
+        high = f"{mm(setup.grip_mm)} high"
+        if setup.contact_mm is not None:
+            high = f"{mm(setup.contact_mm)} high by jaws that reach {mm(setup.grip_mm)} up"
+        gripped = f"in soft jaws bored to it, {high}" if bored else f"gripped {high}"
         how = f"{'across' if bored else 'in'} a {setup.held}{what}, {across}, {gripped}{rests}"
     elif setup.held is None:
         are = "is" if len(setup.stands_on or ()) == 1 else "are"

@@ -10,7 +10,7 @@ from plan_cutters.plan_file.words import headline as first
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
-from plan_cutters.plan_file.words.holes import holes
+from plan_cutters.plan_file.words.holes import holes, missing_tools
 from plan_cutters.plan_file.words.names import Line, as_fields, named, short_names, typed
 from plan_cutters.plan_file.words.notes import repeated_warnings
 from plan_cutters.plan_file.words.operations import in_short, one_more, operations
@@ -99,7 +99,7 @@ MOST = 22
 #: Doubts, and cutters, that are named.
 _DOUBTS, _CUTTERS = 4, 6
 #: Steps that are listed where there is no space for more, and then fewer.
-_FEWER = (6, 4, 2)
+_FEWER = (*range(14, 2, -2), 2)
 #: Lines on an area that is left.
 _LEFT = 3
 #: Lines on what each cutter reaches by itself.
@@ -158,7 +158,9 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each([" ".join(filter(None, (story.headline.about, *first.not_judged(plan))))], 3, 1)
     yield from each([first.in_summary(plan)], 2, 1)
     yield from ((0, [line]) for line in ([process.roughing] if process.roughing else []) + process.table())
-    yield from each(holes(plan), 2, 1)
+    of_holes, lack = [*holes(plan)], bool(missing_tools(plan))
+    yield from each(of_holes[:1], 2, 1)
+    yield from each(of_holes[1:], 3 if lack else 2, 0 if lack else 1)
     if plan.process.plan == "fewest":
         yield from each([named(plan, one_more(plan.operations))], 3)
     stays = [", ".join(filter(None, each)) for each in process.remaining]
