@@ -14,7 +14,7 @@ from plan_cutters.judging.axes import AxisField, angle_between, held_within, roo
 from plan_cutters.judging.cells import CellContacts, Field, quartered, tensors
 from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, search_postures
+from plan_cutters.scene.conditions import Context, probed, search_postures
 from plan_cutters.scene.work import CHUNK, Work, in_chunks
 
 if TYPE_CHECKING:
@@ -299,16 +299,9 @@ def _free(
     contacts: CellContacts, axes: Floats, side: Floats, face_cells: FaceCells, rows: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """At which rows of contacts the cutter meets nothing with axes that lean to a side."""
-    from plan_cutters.kernels.search.search import probe
-
-    conditions, tool = face_cells.context.conditions, face_cells.context.outer
-    met, which = np.zeros(len(contacts), np.int32), np.zeros(len(contacts), np.int32)
+    context = face_cells.context
     face_cells.work.add(_PROBE * len(rows))
-
-    def probed(piece: NDArray[np.int64]) -> None:
-        probe(piece, contacts.point, contacts.normal, axes, side, tool, conditions.obstacles.tree, met, which)
-
-    in_chunks(probed, rows, conditions.jobs)
+    met, _ = probed(rows, contacts.point, contacts.normal, axes, side, context.outer, context.conditions)
     return np.asarray(met[rows] == -1)
 
 

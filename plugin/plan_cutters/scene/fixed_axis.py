@@ -27,11 +27,6 @@ FLAT = 1e-4
 _BLOCK, _AT_ONCE = 4096, 20_000
 
 
-def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
-    """At which of some samples (m,) a cutter stands free with one axis (3,)."""
-    return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
-
-
 def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,) that the machine holds, touching the sample itself.
 

@@ -118,7 +118,7 @@ def _bounds_of(piece, k, bound):
 def flutes(turning, k):
     """Piece k as the eight sides take it."""
     piece = turning.piece
-    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
+    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH])
 
 
 @maker
