@@ -16,7 +16,8 @@ from plan_cutters.operations.passes import Extents, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, serves
+from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at
+from tests.support.serving import serves
 from tests.support.sheets import around
 
 TOLERANCE, SCALLOP, ACCURACY, WIDE = 0.01, 0.02, math.radians(0.5), 60.0

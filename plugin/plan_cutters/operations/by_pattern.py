@@ -24,7 +24,7 @@ from plan_cutters.operations.fewest import spread
 from plan_cutters.operations.motion import few_enough, fewer, recommended
 from plan_cutters.operations.plans import plan_with, worth_their_turn
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
-from plan_cutters.operations.task import SOME, Task, costs_of, paces, shared_area, thinned
+from plan_cutters.operations.task import SOME, Task, shared_area, thinned
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.work import Progress, evenly, part_of
@@ -125,11 +125,8 @@ def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
 
 def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
     """Seconds, or mm of path without a feed, of samples (r,) with columns (r, k): infinite where one does not serve it."""
-    samples = task.ready.samples
     table = task.probes.table(rows, columns)
-    pace = paces(columns, rows, samples, task.cutters, task.paths, table)
-    pace = np.fmax(pace, task.walls.paces(columns, rows, table))
-    return costs_of(columns, pace, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
+    return task.costs(columns, task.paces(columns, rows, table), table, np.nan_to_num(task.ready.samples.area[rows]))
 
 
 def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float64]) -> Problem:

@@ -237,7 +237,7 @@ def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Prob
     columns, area = search.columns.of(active), shared_area(task.ready.samples, wanted, search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
     costs = Costs(mean, options.change_time, options.setup_time)
-    problem = task.problems.of(columns, active, table, search.rows, area, costs)
+    problem = task.problem(columns, active, table, search.rows, area, costs)
     return columns, problem, float(area.sum())
 
 
@@ -303,8 +303,8 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
     Nobody programs all axes at once for a hundredth of the area, where a few orientations have it, each worth its turn, or one
     has all that is left. `offered`: candidates for some samples, those that one prefers first.
     """
-    options, area = task.ready.options, np.nan_to_num(task.ready.samples.area)
-    if options.most_operations is not None or options.index_step is not None or not task.moves or not len(columns):
+    area = np.nan_to_num(task.ready.samples.area)
+    if not task.may_move or not len(columns):
         return columns
     open_ = ~task.probes.kept(task.rows, task.images(columns)).any(axis=1)
     rest = task.rows[open_ if task.moved is None else open_ & ~task.moved[task.rows]]
@@ -369,7 +369,7 @@ def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, column
     few, (active, table) = at_some(task, search.rows), search.whole
     area, now = costs_with(few, columns)
     costs = Costs(task.indexing.constant if task.indexing.rate is None else 0.0, options.change_time, options.setup_time)
-    problem = task.problems.of(search.columns.of(active), active, table, search.rows, area, costs)
+    problem = task.problem(search.columns.of(active), active, table, search.rows, area, costs)
     cheapest = now.min(axis=1)
     served = np.flatnonzero(np.isfinite(cheapest))
     saved = problem.gains(np.where(np.isfinite(cheapest), cheapest, 0.0), served) - costs.operation

@@ -48,7 +48,7 @@ from plan_cutters.operations.plans import (
 )
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.task import Problems, Task, at_some, thinned
+from plan_cutters.operations.task import Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import LeastSet, OperationPlan, Operations
@@ -127,7 +127,7 @@ def plan_operations(
             finest = FINEST if options.index_step is None else options.index_step
             search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(parts[1], 0, 2))
             fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(parts[1], 1, 2))
-            few, alone, some = fewest.columns.of(fewest.chosen), len(fewest.alone), thinned(task)
+            few, alone, some = fewest.columns.of(fewest.cover.chosen), len(fewest.alone), thinned(task)
             made = _plans(task, some, search, few, offer, parts[2])
             more = one_more(task, some, search, made[0][0], _columns_of(task, made[0][0]))
         plans, timed, worth, instead = made
@@ -135,7 +135,7 @@ def plan_operations(
     notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
-    columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
+    columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.cover.chosen)
     return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 
 
@@ -335,11 +335,9 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time,
         machine.acceleration,
     )  # fmt: skip
-    walls = Walls.of(probes, paths)
     where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
-    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing, walls), walls,
+    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing, Walls(probes, paths),
                 MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths), Seams.of(ready))  # fmt: skip
 
 

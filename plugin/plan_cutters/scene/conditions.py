@@ -241,15 +241,15 @@ def free_in_posture(
 
 
 def probed(
-    rows: NDArray[np.int64], point: Floats, normal: Floats, axis: Floats, tilt_direction: Floats, tool: Tool, conditions: Conditions
+    rows: NDArray[np.int64], point: Floats, normal: Floats, axis: Floats, lean: Floats, tool: Tool, conditions: Conditions
 ) -> tuple[Ints, Ints]:
     """Triangles (n,) that reach into a tool at postures of some rows, -1 for none, and into which of its pieces; -2 where it does
-    not touch at the tilt. Bodies are not looked at. `point`, `normal`, `axis`, `tilt_direction` (n, 3) float.
+    not touch at the tilt. Bodies are not looked at. `point`, `normal`, `axis`, `lean` (n, 3) float: `lean` is the tilt direction.
     """
     from plan_cutters.kernels.search.search import probe
 
     tree, (triangle, which) = conditions.obstacles.tree, np.full((2, len(point)), -2, np.int32)
-    in_chunks(lambda some: probe(some, point, normal, axis, tilt_direction, tool, tree, triangle, which), rows, conditions.jobs)
+    in_chunks(lambda some: probe(some, point, normal, axis, lean, tool, tree, triangle, which), rows, conditions.jobs)
     return triangle, which
 
 
