@@ -74,15 +74,9 @@ def decompose(
     selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     if not len(context.dummy):
         return interference_free
-    shape, solids, contacts = (context.dummy, context.outer), conditions.obstacles.solids, contacts_of(samples)
-
-    def tested(piece: NDArray[np.int64]) -> int:
-        return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
-
+    given = contacts_of(samples), context.dummy, context.outer, conditions.obstacles.solids, interference_free
     # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
-    looked = in_chunks(tested, selected, conditions.jobs, fixed=True)
-    if work is not None:
-        work.add(looked)
+    in_chunks(lambda piece: dummy_clear(piece, *given), selected, conditions.jobs, fixed=True, counted=work)
     return interference_free
 
 

@@ -3,14 +3,14 @@ shop's habit, without each cutter, with other cutters at the same orientations, 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Columns, columns_of
+from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
@@ -333,14 +333,10 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
 
 def _others(task: Task, columns: Columns) -> Columns:
     """The columns of all cutters at orientations of a choice that are not among it."""
-    others, there = columns.of(np.zeros(0, np.int64)), {*columns.key.tolist()}
-    for k in range(len(columns)):
-        for c in range(len(task.cutters)):
-            one = columns_of(columns.axis[[k]], columns.angle[[k]], c, int(columns.setup[k]))
-            if one.key[0] not in there:
-                there.add(one.key[0])
-                others = others.and_(one)
-    return others
+    m, n = len(columns), len(task.cutters)
+    every = replace(columns.of(np.repeat(np.arange(m), n)), cutter=np.tile(np.arange(n, dtype=np.int32), m))
+    every = every.of(every.first)
+    return every.of(np.flatnonzero(~np.isin(every.key, columns.key)))
 
 
 def _turn(task: Task, every: Columns, chosen: list[int], k: int) -> float:

@@ -243,7 +243,7 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
     at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
-    bound = bounded(choice.problem, choice.safe).bound
+    bound = bounded(choice.problem, choice.safe)
     timed = against_bound(fastest.total, bound, at_best, len(choice.problem.cost), len(choice.columns))
     return [*printed, fastest], (timed, choice.area), worths(task, plans), notes
 

@@ -29,7 +29,7 @@ from plan_cutters.operations.labels import (
 from plan_cutters.operations.moving_axes import turning_times
 from plan_cutters.operations.orientations import Indexing
 from plan_cutters.operations.passes import Cut, cut_by_tip, on_floor
-from plan_cutters.operations.task import Task, paces
+from plan_cutters.operations.task import Task, costs_of, paces
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.holes import WorkplaneEntry
@@ -113,9 +113,9 @@ def plan_with(
     area, edge = np.nan_to_num(samples.area), task.seams.edge
     serves, pace = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
-    pace[rows] = task.paces(columns, rows, serves[rows], again=True)
+    pace[rows] = _paces(task, columns, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
-    cost[rows] = task.costs(columns, pace[rows], serves[rows], area[rows])
+    cost[rows] = costs_of(columns, pace[rows], serves[rows], area[rows], task.cutters, task.paths)
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
@@ -480,7 +480,7 @@ def costs_with(task: Task, columns: Columns, *, chosen: bool = False) -> tuple[F
     rows, every = task.rows, task.images(columns)
     area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
     may = serves & ~_floors_of_other_setups(task, every, serves) if chosen else serves
-    cost = task.costs(every, task.paces(every, rows, serves, again=True), may, area)
+    cost = costs_of(every, _paces(task, every, serves), may, area, task.cutters, task.paths)
     if task.moved is not None:
         cost[task.moved[rows]] = np.inf
     # Of images the best one cuts a sample.
@@ -508,6 +508,12 @@ def _floors_of_other_setups(task: Task, columns: Columns, serves: NDArray[np.boo
         by_tip = paces(columns, rows[at], samples, task.cutters, task.paths, serves[at])
         flank[at] = task.walls.cached(columns, rows[at], serves[at]) > np.nan_to_num(by_tip)
     return others & flank
+
+
+def _paces(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
+    """What a mm of path cuts (r, k), mm2, of columns at the samples of a task that they serve: by the tip, or along a wall."""
+    by_tip = paces(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
+    return np.fmax(by_tip, task.walls.cached(columns, task.rows, serves))
 
 
 def worth_their_turn(task: Task, columns: Columns) -> Columns:

@@ -46,6 +46,16 @@ def paces(
     return result
 
 
+def costs_of(
+    columns: Columns, pace: Floats, serves: NDArray[np.bool_], area: Floats, cutters: Sequence[Cutter], paths: Paths
+) -> Floats:
+    """Seconds with links, or mm of path without a feed, of samples with columns; infinite where one does not serve a sample."""
+    speed = paths.speeds(cutters)[columns.cutter]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        costs = area[:, None] / (pace * speed)
+    return np.where(serves & np.isfinite(costs), costs, np.inf)
+
+
 def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     """The area (r,) that some samples stand for when each of all gives its own to the nearest of them, on its face if it can."""
     if not len(rows):
@@ -118,27 +128,16 @@ class Task:
         new = table & ~known
         pace[new] = self.paces(columns, rows, new)[new]
         before.rows, before.active, before.pace, before.known = rows, active, pace, known | new
-        cost = self.costs(columns, pace, table, area)
+        cost = costs_of(columns, pace, table, area, self.cutters, self.paths)
         # What is served and nowhere timed is served by whatever serves it, in no time that is known.
         untimed = ~np.isfinite(cost).any(axis=1)
         cost[untimed] = np.where(table[untimed], 0.0, np.inf)
         return Problem(cost, columns.cutter, columns.setup, costs, self.indexing.turning(columns))
 
-    def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_], *, again: bool = False) -> Floats:
-        """What a mm of path cuts (r, k), mm2, by the tip or along a wall, of columns at samples; nan where `where` is not set.
-
-        `again`: the columns are requested again and again.
-        """
+    def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
+        """What a mm of path cuts (r, k), mm2, by the tip or along a wall, of columns at samples; nan where `where` is not set."""
         by_tip = paces(columns, rows, self.ready.samples, self.cutters, self.paths, where)
-        return np.fmax(by_tip, (self.walls.cached if again else self.walls.paces)(columns, rows, where))
-
-    def costs(self, columns: Columns, pace: Floats, serves: NDArray[np.bool_], area: Floats) -> Floats:
-        """Seconds with links, or mm of path without a feed, of samples (r,) with columns (r, k) by their paces, mm2/mm; infinite
-        where one does not serve a sample."""
-        speed = self.paths.speeds(self.cutters)[columns.cutter]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            costs = area[:, None] / (pace * speed)
-        return np.where(serves & np.isfinite(costs), costs, np.inf)
+        return np.fmax(by_tip, self.walls.paces(columns, rows, where))
 
     def images(self, columns: Columns) -> Columns:
         """The columns that some stand for: each and its images, as many of each."""

@@ -205,18 +205,15 @@ def search_postures(
     from plan_cutters.kernels.search.search import search
 
     require_finite(contacts, rows)
-    conditions, tools = context.conditions, (context.outer, context.inner)
-    ranges, buffer = conditions.ranges._replace(strict=strict), verdict_arrays_of(verdicts)
-    possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
-
-    deep, distance = conditions.obstacles.depths(conditions.tolerance)[1], context.proved_at
-
-    def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, deep=deep, brief=brief, distance=distance))
-
-    looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
-    if work is not None:
-        work.add(looked)
+    conditions, deep = context.conditions, context.conditions.obstacles.depths(context.conditions.tolerance)[1]
+    given = (
+        contacts, conditions.ranges._replace(strict=strict), context.outer, context.inner, conditions.obstacles.solids,
+        conditions.surroundings.certain.solids, verdict_arrays_of(verdicts),
+    )  # fmt: skip
+    in_chunks(
+        lambda piece: search(piece, *given, deep=deep, brief=brief, distance=context.proved_at),
+        rows, conditions.jobs, progress, fixed=fixed, counted=work,
+    )  # fmt: skip
 
 
 def free_in_posture(
@@ -229,14 +226,8 @@ def free_in_posture(
     from plan_cutters.kernels.search.search import free
 
     conditions, stands = context.conditions, np.zeros(len(axis), bool)
-    point, normal, solids = contacts.point, contacts.normal, conditions.obstacles.solids
-
-    def tested(piece: NDArray[np.int64]) -> int:
-        return int(free(piece, point, normal, axis, tilt_direction, context.outer, solids, stands))
-
-    looked = in_chunks(tested, rows, conditions.jobs)
-    if work is not None:
-        work.add(looked)
+    given = contacts.point, contacts.normal, axis, tilt_direction, context.outer, conditions.obstacles.solids, stands
+    in_chunks(lambda piece: free(piece, *given), rows, conditions.jobs, counted=work)
     return stands
 
 
