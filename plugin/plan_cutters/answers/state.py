@@ -74,7 +74,6 @@ class Case:
 
 
 def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: float | None) -> Verdicts:
-    """Judge some samples again in one setup."""
     from plan_cutters.kernels.search.search import dummy_clear
 
     conditions, verdicts = ready.conditions, blank(len(rows))
@@ -142,7 +141,6 @@ class State:
                 yield key(there, cutter, setup), Case(there, cutter, above)
 
     def _in(self, setup: SetupOf) -> Prepared:
-        """The part in one setup alone."""
         ready = self.ready
         if setup.number is not None:
             return ready.alone(setup.number)

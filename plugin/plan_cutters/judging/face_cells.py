@@ -323,15 +323,9 @@ def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, status: CellSta
 
 
 def _cover(
-    contacts: CellContacts,
-    tensor: Floats,
-    axes: Floats,
-    flats: NDArray[np.bool_],
-    face_cells: FaceCells,
-    rows: NDArray[np.int64],
-    sides: Floats | None = None,
-    swings: Floats | None = None,
-) -> CellStatus:
+    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], face_cells: FaceCells,
+    rows: NDArray[np.int64], sides: Floats | None = None, swings: Floats | None = None,
+) -> CellStatus:  # fmt: skip
     """Outlook (m,) of rows of contacts with tensors and axes, that may turn; on the sides that they have, or others."""
     from plan_cutters.kernels.area.cover import Patches, cover
     from plan_cutters.kernels.area.zone import Nodes

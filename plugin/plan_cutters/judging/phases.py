@@ -106,17 +106,10 @@ _HOPELESS = 10.0
 
 
 def access(
-    samples: SurfaceSamples,
-    interference_free: NDArray[np.bool_],
-    context: Context,
-    *,
-    inside: Ints | None = None,
-    known: Verdicts | None = None,
-    rows: NDArray[np.int64] | None = None,
-    drilled: NDArray[np.bool_] | None = None,
-    progress: Progress | None = None,
-    work: Work | None = None,
-) -> Verdicts:
+    samples: SurfaceSamples, interference_free: NDArray[np.bool_], context: Context, *, inside: Ints | None = None,
+    known: Verdicts | None = None, rows: NDArray[np.int64] | None = None, drilled: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None, work: Work | None = None,
+) -> Verdicts:  # fmt: skip
     """Search a posture for every judged sample that is not interference-free.
 
     `interference_free` (n,) bool: as `decompose` gives them. `inside` (n,) int32: the body that each sample lies within, -1 for

@@ -270,7 +270,6 @@ def _remaining(task: Task, columns: Columns, search: Search, *, minor: bool) -> 
 
 
 def _few(rows: Rows) -> Rows:
-    """Some of the samples, evenly taken."""
     return rows[:: max(1, len(rows) // _MORE)]
 
 

@@ -282,14 +282,9 @@ class Search:
     """
 
     def __init__(
-        self,
-        probes: Probes,
-        columns: Columns,
-        rows: Rows,
-        stored: Callable[[Rows], Columns],
-        progress: Progress | None = None,
-        first: int = _FIRST,
-    ) -> None:
+        self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns],
+        progress: Progress | None = None, first: int = _FIRST,
+    ) -> None:  # fmt: skip
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
         self.wanted = len(rows)
         self.rows: Rows = np.zeros(0, np.int64)
@@ -412,11 +407,10 @@ class Search:
         return True
 
     def _missed(self, chosen: Rows) -> Rows:
-        """Samples that chosen candidates do not serve."""
         missing = np.setdiff1d(self._wanted, self.alone)
         order = np.argsort(-self._table[:, chosen].sum(axis=0), kind="stable")
         for column in chosen[order].tolist():
-            missing = missing[~self._probes.one(missing, self.columns, column)]
+            missing = missing[~self._probes.table(missing, self.columns.of(np.array([column])))[:, 0]]
         return missing
 
     def _add_rows(self, rows: Rows, progress: Progress | None = None) -> None:

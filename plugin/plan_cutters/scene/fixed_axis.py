@@ -50,16 +50,9 @@ def served_by(
 
 
 def _tested(
-    rows: NDArray[np.int64],
-    axes: Floats,
-    samples: SurfaceSamples,
-    context: Context,
-    progress: Progress | None = None,
-    *,
-    directions: bool = False,
-    only_leaning: bool = False,
-    held: NDArray[np.int64] | None = None,
-) -> tuple[NDArray[np.int8], int, Floats]:
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, progress: Progress | None = None, *,
+    directions: bool = False, only_leaning: bool = False, held: NDArray[np.int64] | None = None,
+) -> tuple[NDArray[np.int8], int, Floats]:  # fmt: skip
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
     asked for, its tilt directions (k, m, 3). With `only_leaning` no other way is tried. `held`: the axes that the machine holds.
     """

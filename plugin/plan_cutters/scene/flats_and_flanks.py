@@ -131,15 +131,9 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
 
 
 def _on_flank(
-    contacts: Contacts,
-    rows: Rows,
-    axis: Floats,
-    flank: Flank,
-    whole: bool,
-    context: Context,
-    verdicts: VerdictBuffer,
+    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer,
     hints: Rows,
-) -> None:
+) -> None:  # fmt: skip
     """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that.
 
     `hints` (2, n): triangles that were in the way at the axis before, or -1: of what surely is, and of what may be.

@@ -70,15 +70,9 @@ def part_of(tell: Progress, part: int, parts: int) -> Progress:
 
 
 def in_chunks(
-    work: Callable[[NDArray[np.int64]], int | None],
-    rows: NDArray[np.int64],
-    jobs: int,
-    progress: Progress | None = None,
-    chunk: int = CHUNK,
-    *,
-    fixed: bool = False,
-    counted: Work | None = None,
-) -> int:
+    work: Callable[[NDArray[np.int64]], int | None], rows: NDArray[np.int64], jobs: int, progress: Progress | None = None,
+    chunk: int = CHUNK, *, fixed: bool = False, counted: Work | None = None,
+) -> int:  # fmt: skip
     """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns, boxes.
 
     `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever

@@ -134,16 +134,9 @@ class Workpiece(Record):
 
     @classmethod
     def of(
-        cls,
-        vertex: Floats,
-        face: Ints,
-        sign: Floats,
-        planes: Collection[int],
-        targets: Collection[int],
-        setup: Sequence[float],
-        bodies: Sequence[frozenset[int]] = (),
-        chord: float = 0.0,
-    ) -> "Workpiece":
+        cls, vertex: Floats, face: Ints, sign: Floats, planes: Collection[int], targets: Collection[int],
+        setup: Sequence[float], bodies: Sequence[frozenset[int]] = (), chord: float = 0.0,
+    ) -> "Workpiece":  # fmt: skip
         """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
 
         Without targets, all faces are. `chord`: the error of the triangles, mm; the lowest point may be off by it.

@@ -305,7 +305,6 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):
 
 @kernel
 def _all(clear):
-    """Whether all lanes are marked."""
     least = 1.0
     for lane in range(LANES):
         least = min(least, clear[lane])
