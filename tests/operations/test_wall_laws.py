@@ -57,7 +57,7 @@ def wall(cutter, off, height, foot, seed):
     conditions = Conditions(Machine(), axis, PostureRange(), surroundings, TOLERANCE, 1, accuracy=ACCURACY)
     probes = Probes(samples, [cutter], [conditions], [np.ones(ROWS, bool)])
     paths = Paths(SCALLOP, 1.0, None, ACCURACY, Extents(samples, conditions.obstacles))
-    passes = Walls(probes, conditions.obstacles, paths).passes(0, 0, axis, rows)
+    passes = Walls(probes, paths).passes(0, 0, axis, rows)
     return SimpleNamespace(
         passes=passes, point=point, above=above, axis=axis, up=turn @ up, vertex=vertex, across=turn[:, 1], samples=samples,
         context=probes.contexts[0][0],

@@ -141,6 +141,7 @@ class Deepest(Record):
     """The deepest point of what stands around a tool."""
 
     face: int  #: Its face; negative for a fixture, as in `Surroundings.called`.
+    triangle: int  #: Of the obstacles.
     point: Floats  #: (3,) float: on the surface, where it could be found there, else on the triangle.
     depth: float  #: mm; negative outside the tool.
 
@@ -216,7 +217,7 @@ def deepest(
         shallow = max(depth - 2.0 * error, 0.5 * depth)
         foot = _foot(part, face, point, side, 4.0 * error + 1e-6, partial(beyond, depth=shallow))
         point = point if foot is None else foot
-    return Deepest(face, point, depth_of(point, depth))
+    return Deepest(face, triangle, point, depth_of(point, depth))
 
 
 def _foot(part: Part, face: int, point: Floats, size: float, within: float, depth: Callable[[Floats], Floats]) -> Floats | None:

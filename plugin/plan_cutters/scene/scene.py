@@ -172,6 +172,11 @@ class Scene(Record):
         )
 
     @property
+    def tolerance(self) -> float:
+        """The tolerance that can be kept, mm: `asked`, or what the triangles allow."""
+        return self.surround().tolerance(self.asked)
+
+    @property
     def options(self) -> dict[str, Any]:
         """Give the requested values as options of a plan."""
         return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked, "fixtures": self.fixtures}
