@@ -335,8 +335,8 @@ def _cover(
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home,
                       np.zeros(len(contacts)) if swings is None else swings)  # fmt: skip
     nodes, status = Nodes(field.index, field.closed, face_cells.about), np.zeros(len(contacts), np.uint8)
-    given = patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status
-    in_chunks(lambda piece: cover(piece, *given), rows, conditions.jobs, counted=face_cells.work)
+    arrays = patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status
+    in_chunks(lambda piece: cover(piece, *arrays), rows, conditions.jobs, counted=face_cells.work)
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
     mine = rows[status[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]

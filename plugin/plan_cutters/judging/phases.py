@@ -74,9 +74,9 @@ def decompose(
     selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     if not len(context.dummy):
         return interference_free
-    given = contacts_of(samples), context.dummy, context.outer, conditions.obstacles.solids, interference_free
+    arrays = contacts_of(samples), context.dummy, context.outer, conditions.obstacles.solids, interference_free
     # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
-    in_chunks(lambda piece: dummy_clear(piece, *given), selected, conditions.jobs, fixed=True, counted=work)
+    in_chunks(lambda piece: dummy_clear(piece, *arrays), selected, conditions.jobs, fixed=True, counted=work)
     return interference_free
 
 

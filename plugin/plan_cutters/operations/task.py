@@ -72,7 +72,7 @@ def nearest(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> NDArray[np.i
 
 @dataclass(slots=True, eq=False)
 class KnownPaces:
-    """What a mm of path cuts (r, m) of samples with candidates, as far as it was found, by their numbers."""
+    """Areas cut by a mm of path (r, m) of samples with candidates, as far as they were found, by their numbers."""
 
     rows: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
     active: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
@@ -135,7 +135,7 @@ class Task:
         return Problem(cost, columns.cutter, columns.setup, costs, self.indexing.turning(columns))
 
     def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
-        """What a mm of path cuts (r, k), mm2, by the tip or along a wall, of columns at samples; nan where `where` is not set."""
+        """Areas (r, k), mm2, that a mm of path cuts by the tip or along a wall, of columns at samples; nan outside `where`."""
         by_tip = paces(columns, rows, self.ready.samples, self.cutters, self.paths, where)
         return np.fmax(by_tip, self.walls.paces(columns, rows, where))
 

@@ -206,12 +206,12 @@ def search_postures(
 
     require_finite(contacts, rows)
     conditions, deep = context.conditions, context.conditions.obstacles.depths(context.conditions.tolerance)[1]
-    given = (
+    arrays = (
         contacts, conditions.ranges._replace(strict=strict), context.outer, context.inner, conditions.obstacles.solids,
         conditions.surroundings.certain.solids, verdict_arrays_of(verdicts),
     )  # fmt: skip
     in_chunks(
-        lambda piece: search(piece, *given, deep=deep, brief=brief, distance=context.proved_at),
+        lambda piece: search(piece, *arrays, deep=deep, brief=brief, distance=context.proved_at),
         rows, conditions.jobs, progress, fixed=fixed, counted=work,
     )  # fmt: skip
 
@@ -226,21 +226,22 @@ def free_in_posture(
     from plan_cutters.kernels.search.search import free
 
     conditions, stands = context.conditions, np.zeros(len(axis), bool)
-    given = contacts.point, contacts.normal, axis, tilt_direction, context.outer, conditions.obstacles.solids, stands
-    in_chunks(lambda piece: free(piece, *given), rows, conditions.jobs, counted=work)
+    arrays = contacts.point, contacts.normal, axis, tilt_direction, context.outer, conditions.obstacles.solids, stands
+    in_chunks(lambda piece: free(piece, *arrays), rows, conditions.jobs, counted=work)
     return stands
 
 
 def probed(
-    rows: NDArray[np.int64], point: Floats, normal: Floats, axis: Floats, lean: Floats, tool: Tool, conditions: Conditions
-) -> tuple[Ints, Ints]:
+    rows: NDArray[np.int64], point: Floats, normal: Floats, axis: Floats, tilt_direction: Floats, tool: Tool,
+    conditions: Conditions,
+) -> tuple[Ints, Ints]:  # fmt: skip
     """Triangles (n,) that reach into a tool at postures of some rows, -1 for none, and into which of its pieces; -2 where it does
-    not touch at the tilt. Bodies are not looked at. `point`, `normal`, `axis`, `lean` (n, 3) float: `lean` is the tilt direction.
+    not touch at the tilt. Bodies are not looked at. `point`, `normal`, `axis`, `tilt_direction` (n, 3) float.
     """
     from plan_cutters.kernels.search.search import probe
 
     tree, (triangle, which) = conditions.obstacles.tree, np.full((2, len(point)), -2, np.int32)
-    in_chunks(lambda some: probe(some, point, normal, axis, lean, tool, tree, triangle, which), rows, conditions.jobs)
+    in_chunks(lambda some: probe(some, point, normal, axis, tilt_direction, tool, tree, triangle, which), rows, conditions.jobs)
     return triangle, which
 
 

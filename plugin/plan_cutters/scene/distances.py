@@ -124,8 +124,9 @@ def _put_down(
     """The cutter grown by a distance, and what (n,) it meets at some samples, -1 for none, with which of its pieces."""
     made = grown(cutter, distance + conditions.obstacles.triangles.chord_error + _ROUNDING)
     # Arrays that may not be written are another type to the compiler: `probe` would be compiled once more for them.
-    axis, lean = verdicts.axis.copy(), verdicts.tilt_direction.copy()
-    return made, *probed(rows, verdicts.contact(samples.point), samples.normal, axis, lean, laid_tool_of(made), conditions)
+    axis, tilt_direction = verdicts.axis.copy(), verdicts.tilt_direction.copy()
+    contact = verdicts.contact(samples.point)
+    return made, *probed(rows, contact, samples.normal, axis, tilt_direction, laid_tool_of(made), conditions)
 
 
 #: Points along each side of the grids in which the deepest one is looked for, rounds, and how much finer each is than the last.
