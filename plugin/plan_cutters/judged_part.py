@@ -253,7 +253,6 @@ def _inside_edges(ready: Prepared) -> tuple[InsideEdge, ...]:
 
 
 def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:
-    """Usual sizes that reach most of some samples that a cutter gouges."""
     follows_from = _grounds(ready), ready.scene.part.key, replace(cutter, name=""), rows, area[rows]
     # A name says whether it was given in inches.
     inches = notation(cutter.name).inches

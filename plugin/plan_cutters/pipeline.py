@@ -220,7 +220,6 @@ def _operations(
 def _in_other_setups(
     ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge
 ) -> list[dict[Cutter, Verdicts]]:
-    """Find the verdicts of each cutter in each other setup."""
     number = len(ready.options.other_setups)
     with clock.stage("setups") as tell:
         done = partial(part_of, tell, parts=number * len(here))

@@ -247,7 +247,6 @@ def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -
 def _described(
     plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], left: list[list[HiddenFaces]], shares: tuple[float, float, int]
 ) -> Plan:
-    """The same plan with its proposal; its text is not made anew."""
     served = np.stack([ranking.served(k) for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))

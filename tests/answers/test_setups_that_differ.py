@@ -11,6 +11,7 @@ from plan_cutters.domain.stick_out import held
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, over_setups
 from plan_cutters.judging.judge import judge
 from tests.support.cad_parts import box
+from tests.support.serving import not_reached
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 
 pytestmark = pytest.mark.slow("plans again for each answer")
@@ -44,8 +45,8 @@ def test_a_case_looks_at_every_setup_as_a_plan_judges_it(limited):
     over = over_setups(each)[0]
     found = case.look(rows)
     assert np.array_equal(found.verdict == INACCESSIBLE, over.verdict == INACCESSIBLE)
-    assert np.array_equal(case.judged(), rows[~over.reached])
-    assert 0 < len(case.judged()) < len(rows)
+    assert np.array_equal(not_reached(case), rows[~over.reached])
+    assert 0 < len(not_reached(case)) < len(rows)
     first = Case(ready.alone(0), cutter).look(rows)
     clamped = ready.clamped[rows]
     assert clamped.any()
@@ -79,7 +80,7 @@ def test_a_setup_that_is_not_planned_yet_holds_what_stands_on_its_own_table():
     assert np.array_equal(over.clamped, found.samples.face == int(top[1:]))
     by_hand = plan(part, setup=Placement(DOWN, clamped=(top,), fixtures=TABLE), **HOW)
     (cutter,) = found.ready.cutters
-    reached = ~np.isin(np.arange(len(over.samples)), Case(over, cutter).judged())
+    reached = ~np.isin(np.arange(len(over.samples)), not_reached(Case(over, cutter)))
     assert np.array_equal(by_hand.samples.point, over.samples.point)
     assert np.array_equal(reached, by_hand.reaches[cutter.id].reached)
     assert State.of(found.ready, cutter).axes == (UP, (1.0, 0.0, 0.0))

@@ -10,8 +10,8 @@ from plan_cutters import plan
 from plan_cutters.domain.operations import columns_of
 from plan_cutters.operations import planning
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.scene.fixed_axis import serves
 from tests.support.cad_parts import box
+from tests.support.serving import serves
 from tests.support.shapes import ridge, trough
 
 OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "machine": "trunnion-ac", "grid": 7}

@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import Costs, Problem, Turning, bounded, cheap, exchanged, lagrange, promising
+from plan_cutters.operations.fastest import Costs, Problem, Turning, cheap, exchanged, lagrange, promising
+from tests.support.located import located
 
 
 def best(problem):
     """A choice of little cost, with its bound."""
-    return bounded(problem, cheap(problem))
+    return located(problem, cheap(problem))
 
 
 def problem_of(seed, n, m, cutters=3, setups=2):
@@ -118,7 +119,7 @@ def test_one_candidate_far_away_is_bounded_by_its_turn():
     cost = np.array([[1.0, 2.0], [1.0, np.inf]])
     problem = Problem(cost, np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(5.0, 0.0, 0.0),
                       Turning(lambda chosen: 30.0 if 0 in chosen else 10.0, np.array([30.0, 10.0])))  # fmt: skip
-    found = bounded(problem, np.array([0]))
+    found = located(problem, np.array([0]))
     assert (found.cost, found.bound) == (32.0, pytest.approx(32.0))
 
 

@@ -126,7 +126,7 @@ def planned(name, some=2500, **options):
 
 
 #: Candidates are laid farther apart than plans lay them, deg, so that a plan takes a second.
-COARSE = [(planning, "STEP", 17.0), (planning, "FINEST", 4.3), (planning, "COARSE", 23.0)]
+COARSE = [(planning, "STEP", 17.0), (planning, "FINEST", 4.3), (choices, "COARSE", 23.0)]
 
 FEEDS = {"feed": 870.0, "index_time": 3.7}
 CASES = {

@@ -20,7 +20,7 @@ from plan_cutters.operations import fewest as cover
 from plan_cutters.operations import proof as moving_proof
 from plan_cutters.operations import task as timing
 from plan_cutters.operations.choices import largest_first, with_and_without
-from plan_cutters.operations.fastest import Costs, Problem, Reach, Turning, bounded, cheap, exchanged, lagrange
+from plan_cutters.operations.fastest import Costs, Problem, Reach, Turning, cheap, exchanged, lagrange
 from plan_cutters.operations.labels import joined, labelled, pieces, regions_of
 from plan_cutters.operations.orientations import (
     Indexing,
@@ -36,6 +36,7 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.setups import solids
+from tests.support.located import located
 from tests.support.strips import strips_at
 from tests.support.tool_kinds import TOOLS
 from tests.support.traced import traced
@@ -86,7 +87,7 @@ def searched(problem, *, sure):
     chosen, dear = cheap(problem), cheap(problem, np.arange(0, problem.cost.shape[1], 2))
     order = np.unique(problem.cutter).tolist()[::-1]
     choices = [chosen, dear, exchanged(problem, chosen), largest_first(problem, order), *with_and_without(problem, chosen)]
-    return {"choices": choices, "bounds": [bounded(problem, each) for each in choices[:3]] if sure else [],
+    return {"choices": choices, "bounds": [located(problem, each) for each in choices[:3]] if sure else [],
             "totals": [[problem.total(each), problem.turned(each), problem.cutting(each)] for each in choices]}  # fmt: skip
 
 
@@ -227,11 +228,12 @@ def covering(seed, count, name, step):
     search = fewest.Search(probes, first, np.arange(3, count), stored)
     steps = []
     found = fewest.search_fewest(search, (where,), math.radians(step), math.radians(0.2 * step), lambda *done: steps.append(done))
-    search.surround(search.columns.of(found.chosen[:2]), math.radians(0.7 * step), (where,))
+    search.surround(search.columns.of(found.cover.chosen[:2]), math.radians(0.7 * step), (where,))
     active, table = search.whole
     search.require(np.arange(0, count, 7))
     served = table.sum(axis=0)
-    return steps, len(found.chosen), found.at_least, found.bound, found.relaxed, found.spacing, found.alone, found.samples, [
+    cover = found.cover
+    return steps, len(cover.chosen), cover.at_least, cover.bound, cover.relaxed, found.spacing, found.alone, found.samples, [
         len(first), len(search.columns), len(active), len(search.rows), probes.made, int(served.sum())]  # fmt: skip
 
 

@@ -13,10 +13,11 @@ from scipy.spatial.transform import Rotation
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.by_pattern import _apart
-from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap
+from plan_cutters.operations.fastest import Costs, Problem, cheap
 from plan_cutters.operations.orientations import DIGITS, Indexing, Orientations
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.scene.conditions import Conditions
+from tests.support.located import located
 from tests.support.sheets import AROUND
 
 Z = np.array([0.0, 0.0, 1.0])
@@ -68,5 +69,5 @@ def test_no_choice_of_images_takes_less_than_the_bound_of_one_copy(seed, rates):
     least = min(apart.cutting(some) + task.indexing.together(images.of(some)) for some in every)
     if rates is None:
         least = min(apart.cutting(some) + task.indexing.constant * len(some) for some in every)
-    found = bounded(apart, cheap(apart))
+    found = located(apart, cheap(apart))
     assert found.bound <= least * (1.0 + 1e-9)

@@ -8,7 +8,8 @@ import pytest
 
 from plan_cutters import Cutter, plan
 from plan_cutters.operations.choices import largest_first, with_and_without, worths
-from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap
+from plan_cutters.operations.fastest import Costs, Problem, cheap
+from tests.support.located import located
 from tests.support.shapes import trough
 
 LARGE, SMALL = Cutter.parse("R8L80rc8"), Cutter.parse("R3L80rc3")
@@ -17,7 +18,7 @@ FEED = 2000.0 / 60.0
 
 def best(problem):
     """A choice of little cost, with its bound."""
-    return bounded(problem, cheap(problem))
+    return located(problem, cheap(problem))
 
 
 def pass_width(cutter):

@@ -7,8 +7,8 @@ from plan_cutters import plan
 from plan_cutters.operations import planning
 from plan_cutters.operations import task as thinned
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import SAMPLES
+from tests.support.serving import serves
 from tests.support.shapes import trough
 
 OPTIONS = {"cutters": ["R2L60rc1", "R3L60rc1.5"], "operations": "fastest", "feed": 1000.0, "area_budget": 0}

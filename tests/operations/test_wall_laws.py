@@ -16,7 +16,8 @@ from plan_cutters.operations.passes import Extents, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.walls import Walls
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, serves
+from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at
+from tests.support.serving import serves
 from tests.support.sheets import around
 
 TOLERANCE, SCALLOP, ACCURACY, WIDE = 0.01, 0.02, math.radians(0.5), 60.0
@@ -56,7 +57,7 @@ def wall(cutter, off, height, foot, seed):
     conditions = Conditions(Machine(), axis, PostureRange(), surroundings, TOLERANCE, 1, accuracy=ACCURACY)
     probes = Probes(samples, [cutter], [conditions], [np.ones(ROWS, bool)])
     paths = Paths(SCALLOP, 1.0, None, ACCURACY, Extents(samples, conditions.obstacles))
-    passes = Walls(probes, conditions.obstacles, paths).passes(0, 0, axis, rows)
+    passes = Walls(probes, paths).passes(0, 0, axis, rows)
     return SimpleNamespace(
         passes=passes, point=point, above=above, axis=axis, up=turn @ up, vertex=vertex, across=turn[:, 1], samples=samples,
         context=probes.contexts[0][0],

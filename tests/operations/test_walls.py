@@ -1,6 +1,7 @@
 """Floors under the flat of the tip and walls along the flutes: strips, times and what is claimed, by closed forms."""
 
 import math
+from dataclasses import replace
 
 import cadquery as cq
 import numpy as np
@@ -21,6 +22,7 @@ from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
 from tests.support import waves
 from tests.support.cad_parts import box, rod
 from tests.support.places import real_file
@@ -201,10 +203,11 @@ def test_a_wall_is_higher_than_the_scallop(height, there):
     x, y, z = samples.point[row]
     low, high = z - 0.5 * height, z + 0.5 * height
     band = np.array([[[x, y - 5, low], [x, y + 5, low], [x, y + 5, high]], [[x, y - 5, low], [x, y + 5, high], [x, y - 5, high]]])
-    probes = Probes(samples, ready.cutters, ready.setups, ready.machinable)
     obstacles = Obstacles(Triangles(band, np.full(2, samples.face[row]), 0.0, ()))
+    alone = replace(ready.conditions, surroundings=Surroundings.sheet(obstacles))
+    probes = Probes(samples, ready.cutters, [alone], ready.machinable)
     paths = Paths(options.scallop, options.stepover, None, options.accuracy, Extents(samples, obstacles))
-    walls = Walls(probes, obstacles, paths)
+    walls = Walls(probes, paths)
     (strip,) = walls.passes(0, 0, np.array([0.0, 0.0, 1.0]), np.array([row])).strip
     assert np.isfinite(strip) == there
     assert not there or strip == pytest.approx(height)
@@ -219,7 +222,7 @@ def test_no_wall_of_a_real_case_is_lower_than_the_scallop():
     ready = prepare(real_file("cad/hard/jack_phone.igs"), options)
     extents = Extents(ready.samples, ready.conditions.obstacles)
     paths = Paths(options.scallop, options.stepover, None, options.accuracy, extents)
-    walls = Walls.of(Probes(ready.samples, ready.cutters, ready.setups, ready.machinable), paths)
+    walls = Walls(Probes(ready.samples, ready.cutters, ready.setups, ready.machinable), paths)
     strip = walls.passes(0, 0, np.array([0.0, 0.0, -1.0]), np.arange(len(ready.samples))).strip
     assert np.isfinite(strip).any()
     assert np.nanmin(strip) > options.scallop

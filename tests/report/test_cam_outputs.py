@@ -23,8 +23,8 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
 from plan_cutters.report.arrays import write_csv, write_vtk
 from plan_cutters.scene.conditions import Context, rotations_of
-from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import ROOT
+from tests.support.serving import serves
 
 HELD = Cutter.parse("R3L36rc3F8N2.5x10S3").asked(0.0, 0.0, Holder.parse("R10:14L10+R16L30"))
 

@@ -22,12 +22,13 @@ from plan_cutters.scene.conditions import (
     tools,
 )
 from plan_cutters.scene.distances import clearances, clearances_over, deepest, deepest_of, deepest_on, least_clearance
-from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, leaning, served_by, serves
+from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, leaning, served_by
 from plan_cutters.scene.flats_and_flanks import _at_angle, _nearest, on_the_flank, on_the_flat, search
 from plan_cutters.scene.work import Work
 from tests.support.grooves import leaning as leaning_groove
 from tests.support.grooves import off_level, tee
 from tests.support.kept_parts import ready, ready_of
+from tests.support.serving import serves
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 CUTTERS = {

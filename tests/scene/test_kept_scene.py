@@ -390,9 +390,9 @@ def test_scenes(keeps):
     bare = scene.clamped(())
     said["clamped"] = [
         scene.clamped(("table",)) is scene,
-        len(bare.around.fixtures),
-        bare.tolerance,
-        bare.turned,
+        len(bare.surround().fixtures),
+        bare.surround().tolerance(bare.asked),
+        bare.turned_faces(),
         len(bare.surround_closer(0.2).fixtures),
     ]
     said["word"] = said_by(Scene.of, of, setup=Placement(UP))

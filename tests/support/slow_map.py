@@ -7,8 +7,7 @@ import numba
 import numpy as np
 
 from plan_cutters.kernels.linear.vectors import cross, tilt_frame
-from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, parts_workspace
-from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, free_tilts
 from plan_cutters.kernels.search.place import permitted
 
 #: Parts that the tilts of one rotation may fall into.
@@ -68,7 +67,7 @@ def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, und
     count_out : (m, k) int32, written
     undecided : (m, k) float64, written
     """
-    f, t, e2, intervals, work = np.empty(3), np.empty(3), np.empty(3), np.empty((8, 2)), parts_workspace(_PARTS)
+    f, t, e2, intervals = np.empty(3), np.empty(3), np.empty(3), np.empty((8, 2))
     for place in range(len(rows)):
         row = rows[place]
         p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
@@ -79,12 +78,11 @@ def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, und
             for mode in range(len(tool.mode)):
                 _, left = permitted(contacts, row, ranges, tool, mode, f, intervals)
                 for i in range(left):
-                    done = divide(Frame(p, n, f, t), intervals[i, 0], intervals[i, 1], tool, mode, narrowest, tree, work)
-                    for k in range(done):
-                        width = work.parts[k, 1] - work.parts[k, 0]
-                        if work.parts[k, 2] == UNSURE:
-                            unsure += width
-                        elif work.parts[k, 2] == OPEN:
-                            count, lost = _enter(work.parts[k, 0], work.parts[k, 1], count, mine)
+                    low, high = intervals[i, 0], intervals[i, 1]
+                    for first, last, kind in free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, _PARTS):
+                        if kind == UNSURE:
+                            unsure += last - first
+                        elif kind == OPEN:
+                            count, lost = _enter(first, last, count, mine)
                             unsure += lost
             count_out[place, rotation], undecided[place, rotation] = _ordered(count, mine), unsure

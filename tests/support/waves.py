@@ -85,7 +85,7 @@ def flat(radius, length, depth):
 def cylinder(radius, length, depth):
     """The same as the eight sides of posture maps take it."""
     piece = flat(radius, length, depth).piece[0]
-    return Cylinder(radius, piece[0, 3], piece[0, 1], piece[0, 2], piece)
+    return Cylinder(radius, piece[0, 3], piece[0, 1], piece[0, 2])
 
 
 #: Walls of the comb: how many, how far apart, how thick at the bottom and how much less at the top, how high, how long; mm.

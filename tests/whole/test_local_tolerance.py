@@ -19,8 +19,8 @@ from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.fixed_axis import serves
 from tests.support import shapes
+from tests.support.serving import serves
 from tests.support.tool_reference import Reference
 
 TOLERANCE = 0.01

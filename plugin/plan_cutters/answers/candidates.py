@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.workpiece import Bearing, enclosed
+from plan_cutters.setups.workpiece import Bearing, enclosed, hull
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
@@ -47,10 +46,8 @@ class Candidates(Record):
         stands_on, tall = heights.stood_on(planar), heights.high.max(axis=0) - heights.lowest
         corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)
         _, centre = enclosed(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
-        try:
-            outline = corner[ConvexHull(corner).vertices]
-        except QhullError:
-            outline = corner
+        outer = hull(corner)
+        outline = corner if outer is None else corner[outer.vertices]
         bearing = []
         for k, faces in enumerate(stands_on):
             across = frame_of(axis[k])[:2].T

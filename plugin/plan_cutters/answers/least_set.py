@@ -109,39 +109,32 @@ def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int])
     alone = np.flatnonzero(rows.all(axis=0))
     if len(alone):
         return [min(alone.tolist(), key=lambda k: (rank[k], setup[k]))], True
-    rows = rows[essential_rows(rows)]
-    return _cover([np.flatnonzero(row).tolist() for row in rows], setup, rank)
+    return _cover(rows[essential_rows(rows)], setup, rank)
 
 
-def _cover(rows: list[list[int]], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:
+def _cover(rows: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:
     from scipy.optimize import Bounds, LinearConstraint, milp
-    from scipy.sparse import lil_array
+    from scipy.sparse import csr_array
 
-    m, places = len(setup), sorted(set(setup))
+    m, (places, place) = len(setup), np.unique(np.asarray(setup), return_inverse=True)
     # Runs, then setups that are used; one of either kind less is worth more than all that comes after it.
     least = 1.0 + sum(rank)
     cost = np.concatenate([least * (1.0 + len(places)) + np.array(rank, float), np.full(len(places), least)])
-    held = lil_array((len(rows) + m, m + len(places)))
-    for i, row in enumerate(rows):
-        held[i, row] = 1.0
-    for k in range(m):
-        # A run needs its setup.
-        held[len(rows) + k, k], held[len(rows) + k, m + places.index(setup[k])] = -1.0, 1.0
-    low = np.concatenate([np.ones(len(rows)), np.zeros(m)])
+    # A run needs its setup.
+    held = np.block([[rows, np.zeros((len(rows), len(places)))], [-np.eye(m), np.eye(len(places))[place]]])
+    low = np.repeat([1.0, 0.0], [len(rows), m])
     solution = milp(cost, integrality=np.ones(len(cost)), bounds=Bounds(0, 1),
                     options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
-                    constraints=LinearConstraint(held.tocsr(), low, np.inf))  # fmt: skip
+                    constraints=LinearConstraint(csr_array(held), low, np.inf))  # fmt: skip
     chosen = [] if solution.x is None else np.flatnonzero(solution.x[:m] > 0.5).tolist()
-    covers = all(set(row) & set(chosen) for row in rows)
+    covers = bool(rows[:, chosen].any(axis=1).all())
     return (chosen, solution.status == 0) if covers else (_greedy(rows, rank), False)
 
 
-def _greedy(rows: list[list[int]], rank: Sequence[int]) -> list[int]:
+def _greedy(rows: NDArray[np.bool_], rank: Sequence[int]) -> list[int]:
     """A cover, not the least: always the run that covers most of what is left."""
-    uncovered, chosen = [set(row) for row in rows], set()
-    while uncovered:
-        count = {k: sum(k in row for row in uncovered) for k in set().union(*uncovered)}
-        best = min(count, key=lambda k: (-count[k], rank[k], k))
-        chosen.add(best)
-        uncovered = [row for row in uncovered if best not in row]
+    chosen = list[int]()
+    while len(rows):
+        chosen.append(int(np.lexsort((rank, -rows.sum(axis=0)))[0]))
+        rows = rows[~rows[:, chosen[-1]]]
     return sorted(chosen)

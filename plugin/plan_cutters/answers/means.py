@@ -180,7 +180,6 @@ def _plain(second: list[tuple[float, float, Axis, State, Rows]], whole: float) -
 
 
 def _own(axis: Axis) -> bool:
-    """Whether it is one of the part's own."""
     return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
 
 

@@ -28,7 +28,6 @@ from plan_cutters.domain.verdicts import (
     blank,
     over_setups,
 )
-from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.answers import MoveEntry
 from plan_cutters.scene.conditions import Context, contacts_of, over_plane
@@ -73,17 +72,8 @@ class Case:
         """Those of some samples that it does not reach, or, if the search is `brief`, may not reach."""
         return rows[~self.look(rows, brief=brief).reached]
 
-    def judged(self, rows: Rows | None = None) -> Rows:
-        """Samples of the finished surface that it does not reach, as a plan finds them: of all, or of some, ascending."""
-        wanted = np.flatnonzero(self.ready.finished) if rows is None else rows[self.ready.finished[rows]]
-        for one in self.setups:
-            if len(wanted):
-                wanted = wanted[~judge(one, self.cutter, wanted).reached]
-        return wanted
-
 
 def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: float | None) -> Verdicts:
-    """Judge some samples again in one setup."""
     from plan_cutters.kernels.search.search import dummy_clear
 
     conditions, verdicts = ready.conditions, blank(len(rows))
@@ -151,7 +141,6 @@ class State:
                 yield key(there, cutter, setup), Case(there, cutter, above)
 
     def _in(self, setup: SetupOf) -> Prepared:
-        """The part in one setup alone."""
         ready = self.ready
         if setup.number is not None:
             return ready.alone(setup.number)

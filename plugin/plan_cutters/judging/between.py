@@ -154,20 +154,11 @@ class Between(Record):
 
 
 def between(
-    samples: SurfaceSamples,
-    verdicts: Verdicts,
-    context: Context,
-    part: Part,
-    orientation: Orientation,
-    *,
-    budget: int,
-    most: float = np.inf,
-    work: Work | None = None,
-    covered_samples: NDArray[np.bool_] | None = None,
-    axes: Fixed | Mapping[int, AxisField] | None = None,
-    own: NDArray[np.bool_] | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, context: Context, part: Part, orientation: Orientation, *, budget: int,
+    most: float = np.inf, work: Work | None = None, covered_samples: NDArray[np.bool_] | None = None,
+    axes: Fixed | Mapping[int, AxisField] | None = None, own: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
-) -> Between:
+) -> Between:  # fmt: skip
     """Find the share of the target area over which a cutter's postures hold.
 
     `samples`: the faces in them, `empty` ones included, are the target.

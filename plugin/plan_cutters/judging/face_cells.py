@@ -14,7 +14,7 @@ from plan_cutters.judging.axes import AxisField, angle_between, held_within, roo
 from plan_cutters.judging.cells import CellContacts, Field, quartered, tensors
 from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, search_postures
+from plan_cutters.scene.conditions import Context, probed, search_postures
 from plan_cutters.scene.work import CHUNK, Work, in_chunks
 
 if TYPE_CHECKING:
@@ -299,16 +299,9 @@ def _free(
     contacts: CellContacts, axes: Floats, side: Floats, face_cells: FaceCells, rows: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
     """At which rows of contacts the cutter meets nothing with axes that lean to a side."""
-    from plan_cutters.kernels.search.search import probe
-
-    conditions, tool = face_cells.context.conditions, face_cells.context.outer
-    met, which = np.zeros(len(contacts), np.int32), np.zeros(len(contacts), np.int32)
+    context = face_cells.context
     face_cells.work.add(_PROBE * len(rows))
-
-    def probed(piece: NDArray[np.int64]) -> None:
-        probe(piece, contacts.point, contacts.normal, axes, side, tool, conditions.obstacles.tree, met, which)
-
-    in_chunks(probed, rows, conditions.jobs)
+    met, _ = probed(rows, contacts.point, contacts.normal, axes, side, context.outer, context.conditions)
     return np.asarray(met[rows] == -1)
 
 
@@ -330,15 +323,9 @@ def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, status: CellSta
 
 
 def _cover(
-    contacts: CellContacts,
-    tensor: Floats,
-    axes: Floats,
-    flats: NDArray[np.bool_],
-    face_cells: FaceCells,
-    rows: NDArray[np.int64],
-    sides: Floats | None = None,
-    swings: Floats | None = None,
-) -> CellStatus:
+    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], face_cells: FaceCells,
+    rows: NDArray[np.int64], sides: Floats | None = None, swings: Floats | None = None,
+) -> CellStatus:  # fmt: skip
     """Outlook (m,) of rows of contacts with tensors and axes, that may turn; on the sides that they have, or others."""
     from plan_cutters.kernels.area.cover import Patches, cover
     from plan_cutters.kernels.area.zone import Nodes
@@ -348,11 +335,8 @@ def _cover(
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home,
                       np.zeros(len(contacts)) if swings is None else swings)  # fmt: skip
     nodes, status = Nodes(field.index, field.closed, face_cells.about), np.zeros(len(contacts), np.uint8)
-
-    def covered(piece: NDArray[np.int64]) -> int:
-        return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status))
-
-    face_cells.work.add(in_chunks(covered, rows, conditions.jobs))
+    arrays = patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status
+    in_chunks(lambda piece: cover(piece, *arrays), rows, conditions.jobs, counted=face_cells.work)
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
     mine = rows[status[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]

@@ -81,14 +81,9 @@ class Judge(Protocol):
 
 
 def judge(
-    ready: Prepared,
-    cutter: Cutter,
-    rows: NDArray[np.int64] | None = None,
-    known: Verdicts | None = None,
-    *,
-    progress: Progress | None = None,
-    work: Work | None = None,
-) -> Verdicts:
+    ready: Prepared, cutter: Cutter, rows: NDArray[np.int64] | None = None, known: Verdicts | None = None, *,
+    progress: Progress | None = None, work: Work | None = None,
+) -> Verdicts:  # fmt: skip
     """Find the verdicts of a cutter on some samples, or on all; nothing else is looked at or changed.
 
     `rows` (m,) int64: samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its

@@ -74,15 +74,9 @@ def decompose(
     selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     if not len(context.dummy):
         return interference_free
-    shape, solids, contacts = (context.dummy, context.outer), conditions.obstacles.solids, contacts_of(samples)
-
-    def tested(piece: NDArray[np.int64]) -> int:
-        return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
-
+    arrays = contacts_of(samples), context.dummy, context.outer, conditions.obstacles.solids, interference_free
     # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
-    looked = in_chunks(tested, selected, conditions.jobs, fixed=True)
-    if work is not None:
-        work.add(looked)
+    in_chunks(lambda piece: dummy_clear(piece, *arrays), selected, conditions.jobs, fixed=True, counted=work)
     return interference_free
 
 
@@ -112,17 +106,10 @@ _HOPELESS = 10.0
 
 
 def access(
-    samples: SurfaceSamples,
-    interference_free: NDArray[np.bool_],
-    context: Context,
-    *,
-    inside: Ints | None = None,
-    known: Verdicts | None = None,
-    rows: NDArray[np.int64] | None = None,
-    drilled: NDArray[np.bool_] | None = None,
-    progress: Progress | None = None,
-    work: Work | None = None,
-) -> Verdicts:
+    samples: SurfaceSamples, interference_free: NDArray[np.bool_], context: Context, *, inside: Ints | None = None,
+    known: Verdicts | None = None, rows: NDArray[np.int64] | None = None, drilled: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None, work: Work | None = None,
+) -> Verdicts:  # fmt: skip
     """Search a posture for every judged sample that is not interference-free.
 
     `interference_free` (n,) bool: as `decompose` gives them. `inside` (n,) int32: the body that each sample lies within, -1 for

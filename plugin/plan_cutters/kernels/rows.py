@@ -71,7 +71,6 @@ class Cylinder(NamedTuple):
     #: `low`, `high`: between which heights it is solid.
     low: float
     high: float
-    piece: Any  #: The same as a row of pieces (1, COLUMNS).
 
 
 #: Contact p, normal n, tilt direction f, and t = n x f; each (3,).

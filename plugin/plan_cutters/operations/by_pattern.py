@@ -24,7 +24,7 @@ from plan_cutters.operations.fewest import spread
 from plan_cutters.operations.motion import few_enough, fewer, recommended
 from plan_cutters.operations.plans import plan_with, worth_their_turn
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
-from plan_cutters.operations.task import SOME, Task, costs_of, paces, shared_area, thinned
+from plan_cutters.operations.task import SOME, Task, costs_of, shared_area, thinned
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.work import Progress, evenly, part_of
@@ -125,11 +125,8 @@ def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
 
 def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
     """Seconds, or mm of path without a feed, of samples (r,) with columns (r, k): infinite where one does not serve it."""
-    samples = task.ready.samples
-    table = task.probes.table(rows, columns)
-    pace = paces(columns, rows, samples, task.cutters, task.paths, table)
-    pace = np.fmax(pace, task.walls.paces(columns, rows, table))
-    return costs_of(columns, pace, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
+    table, area = task.probes.table(rows, columns), np.nan_to_num(task.ready.samples.area[rows])
+    return costs_of(columns, task.paces(columns, rows, table), table, area, task.cutters, task.paths)
 
 
 def _apart(task: Task, images: Columns, problem: Problem, cost: NDArray[np.float64]) -> Problem:
@@ -255,7 +252,7 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
         columns = worth_their_turn(offer.one, copied.base.of(largest_first(copied.problem, by_size(task))))
         compared.append(plan_with(offer.task, "fastest", columns))
         plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
-    bound = bounded(copied.apart, alone).bound
+    bound = bounded(copied.apart, alone)
     at_best = float(copied.problem.cost.min(axis=1, initial=np.inf).sum())
     timed = against_bound(plan.total, bound, at_best, *copied.apart.cost.shape), copied.area
     words = [

@@ -3,14 +3,14 @@ shop's habit, without each cutter, with other cutters at the same orientations, 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Columns, columns_of
+from plan_cutters.domain.operations import Columns
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Problem, cheap, exchanged, promising
 from plan_cutters.operations.fewest import Search
@@ -236,7 +236,7 @@ def _problem(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Prob
     active, table = search.whole
     columns, area = search.columns.of(active), shared_area(task.ready.samples, wanted, search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
-    problem = task.problems.of(columns, active, table, search.rows, area, task.costs(mean))
+    problem = task.problem(columns, active, table, search.rows, area, task.costs(mean))
     return columns, problem, float(area.sum())
 
 
@@ -269,7 +269,6 @@ def _remaining(task: Task, columns: Columns, search: Search, *, minor: bool) -> 
 
 
 def _few(rows: Rows) -> Rows:
-    """Some of the samples, evenly taken."""
     return rows[:: max(1, len(rows) // _MORE)]
 
 
@@ -302,8 +301,8 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
     Nobody programs all axes at once for a hundredth of the area, where a few orientations have it, each worth its turn, or one
     has all that is left. `offered`: candidates for some samples, those that one prefers first.
     """
-    options, area = task.ready.options, np.nan_to_num(task.ready.samples.area)
-    if options.most_operations is not None or options.index_step is not None or not task.moves or not len(columns):
+    area = np.nan_to_num(task.ready.samples.area)
+    if not task.may_move or not len(columns):
         return columns
     open_ = ~task.probes.kept(task.rows, task.images(columns)).any(axis=1)
     rest = task.rows[open_ if task.moved is None else open_ & ~task.moved[task.rows]]
@@ -332,14 +331,10 @@ def instead_of_motion(task: Task, columns: Columns, offered: Callable[[Rows], Co
 
 def _others(task: Task, columns: Columns) -> Columns:
     """The columns of all cutters at orientations of a choice that are not among it."""
-    others, there = columns.of(np.zeros(0, np.int64)), {*columns.key.tolist()}
-    for k in range(len(columns)):
-        for c in range(len(task.cutters)):
-            one = columns_of(columns.axis[[k]], columns.angle[[k]], c, int(columns.setup[k]))
-            if one.key[0] not in there:
-                there.add(one.key[0])
-                others = others.and_(one)
-    return others
+    m, n = len(columns), len(task.cutters)
+    every = replace(columns.of(np.repeat(np.arange(m), n)), cutter=np.tile(np.arange(n, dtype=np.int32), m))
+    every = every.of(every.first)
+    return every.of(np.flatnonzero(~np.isin(every.key, columns.key)))
 
 
 def _turn(task: Task, every: Columns, chosen: list[int], k: int) -> float:
@@ -368,7 +363,7 @@ def one_more(task: Task, some: Task, search: Search, plan: OperationPlan, column
     few, (active, table) = at_some(task, search.rows), search.whole
     area, now = costs_with(few, columns)
     costs = task.costs(task.indexing.constant if task.indexing.rate is None else 0.0)
-    problem = task.problems.of(search.columns.of(active), active, table, search.rows, area, costs)
+    problem = task.problem(search.columns.of(active), active, table, search.rows, area, costs)
     cheapest = now.min(axis=1)
     served = np.flatnonzero(np.isfinite(cheapest))
     saved = problem.gains(np.where(np.isfinite(cheapest), cheapest, 0.0), served) - costs.operation

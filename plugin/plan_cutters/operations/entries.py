@@ -11,24 +11,12 @@ from plan_cutters.operations.choices import Worth
 from plan_cutters.operations.plans import changes_of
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import Operation, OperationPlan
+from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.operations import (
-    AssumedEntry,
-    CutterUse,
-    FastestEntry,
-    FewestEntry,
-    OperationEntry,
-    OperationFace,
-    OperationPlanEntry,
-    OperationRegion,
-    OperationsEntry,
-    RestEntry,
-    runs,
-)
 from plan_cutters.plan_file.reasons import operation_colour
 
 #: The fastest plan against a bound, with the area, mm2, that the samples compared stand for.
-Timed = tuple[FastestEntry, float]
+Timed = tuple[schema.FastestEntry, float]
 #: Areas differ by less, as a share, where they are of the same samples.
 _SAME_AREA = 1e-3
 #: Fields of an operation that are not known where nothing was looked at, or where it is simultaneous.
@@ -37,8 +25,8 @@ _UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s
 
 def operations_entry(
     task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str],
-    fewest: FewestEntry | None, timed: Timed | None, worth: Sequence[Worth],
-) -> OperationsEntry:  # fmt: skip
+    fewest: schema.FewestEntry | None, timed: Timed | None, worth: Sequence[Worth],
+) -> schema.OperationsEntry:  # fmt: skip
     """Make the entry of plans.
 
     `reason` (n,) uint8: why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON. `worth`: of
@@ -47,14 +35,14 @@ def operations_entry(
     options, feed = task.ready.options, task.paths.feed
     area = np.where(task.ready.finished, np.nan_to_num(task.ready.samples.area), 0.0)
     entries = [_plan(task, each, area, reason, timed) for each in plans]
-    return OperationsEntry(
+    return schema.OperationsEntry(
         asked=options.operations or "",  # type: ignore[arg-type]
         rotary=task.orientations[0].names,
         plans=entries,
         fewest=fewest,
         fastest=None if timed is None else timed[0],
         cutters=[
-            CutterUse(
+            schema.CutterUse(
                 id=each.cutter.id,
                 takes_mm2={
                     str(one.name): sum(its.area_mm2 for its in one.operations if its.cutter == each.cutter.id) for one in entries
@@ -63,7 +51,7 @@ def operations_entry(
             )
             for each in worth
         ],
-        assumed=AssumedEntry(
+        assumed=schema.AssumedEntry(
             feed_mm_min=None if feed is None else {cutter.id: each for cutter, each in feed.items()}, scallop_mm=options.scallop,
             stepover=options.stepover, overlap_mm=options.overlap, index_s=task.indexing.constant,
             index_from=task.indexing.source, change_s=options.change_time, setup_s=options.setup_time, link_s=task.paths.link,
@@ -73,7 +61,9 @@ def operations_entry(
     )  # fmt: skip
 
 
-def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint8], timed: Timed | None) -> OperationPlanEntry:
+def _plan(
+    task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint8], timed: Timed | None
+) -> schema.OperationPlanEntry:
     whole, alone, rest = float(area.sum()), plan.alone, task.ready.finished & (plan.label < 0)
     operations = [
         _operation(k, each, plan, area[alone & (plan.label == k)], task, area, whole) for k, each in enumerate(plan.operations)
@@ -83,7 +73,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
     known = bool(np.isfinite(plan.cutting))
     held = [each for each in operations if each.proved_share is not None]
     size = sum(each.area_mm2 for each in held)
-    return OperationPlanEntry(
+    return schema.OperationPlanEntry(
         name=plan.name,  # type: ignore[arg-type]
         orientations=sum(each.mode == "fixed" for each in operations),
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations),
@@ -97,7 +87,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
         proved_share=sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None,
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         operations=operations,
-        rest=RestEntry(
+        rest=schema.RestEntry(
             samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
             reason_counts={REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)},
             short=len(plan.short),
@@ -105,7 +95,7 @@ def _plan(task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint
     )  # fmt: skip
 
 
-def _ratio(operations: Sequence[OperationEntry], timed: Timed | None) -> float | None:
+def _ratio(operations: Sequence[schema.OperationEntry], timed: Timed | None) -> float | None:
     """Cutting and links of the fixed operations over those at best; only where both are about the same area."""
     fixed = [each for each in operations if each.mode == "fixed"]
     if timed is None or timed[0].at_best_seconds <= 0.0 or any(each.seconds is None for each in fixed):
@@ -117,7 +107,7 @@ def _ratio(operations: Sequence[OperationEntry], timed: Timed | None) -> float |
 
 def _operation(
     number: int, operation: Operation, plan: OperationPlan, alone: Floats, task: Task, area: Floats, whole: float
-) -> OperationEntry:
+) -> schema.OperationEntry:
     rows, samples = operation.rows, task.ready.samples
     strip, length, seconds, mine = plan.strip[rows], plan.length[rows], plan.seconds[rows], area[rows]
     known = np.isfinite(strip) & (strip > 0.0)
@@ -125,7 +115,7 @@ def _operation(
         None if angle is None else dict(zip(task.orientations[0].names, angle.tolist(), strict=True))
         for angle in (operation.angle, operation.other_angle)
     )
-    return OperationEntry(
+    return schema.OperationEntry(
         id=operation.name, step=operation.step or None, mode=operation.mode, cutter=operation.cutter.id, setup=operation.setup,
         axis=None if operation.axis is None else vector(operation.axis), angles_deg=angles, other_angles_deg=others,
         samples=len(rows), area_mm2=float(mine.sum()), share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0,
@@ -139,19 +129,19 @@ def _operation(
     )  # fmt: skip
 
 
-def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> OperationRegion:
+def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> schema.OperationRegion:
     point = samples.point[rows]
-    return OperationRegion(
+    return schema.OperationRegion(
         id=number, samples=len(rows), area_mm2=float(area[rows].sum()), faces=_faces(rows, samples, area),
-        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=runs(rows),
+        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=schema.runs(rows),
     )  # fmt: skip
 
 
-def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[OperationFace]:
+def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[schema.OperationFace]:
     number, which, count = np.unique(samples.face[rows], return_inverse=True, return_counts=True)
     size = np.bincount(which, area[rows], len(number))
     faces = [
-        OperationFace(face=f"F{f}", samples=n, area_mm2=a)
+        schema.OperationFace(face=f"F{f}", samples=n, area_mm2=a)
         for f, n, a in zip(number.tolist(), count.tolist(), size.tolist(), strict=True)
     ]
     return sorted(faces, key=lambda each: -each.area_mm2)

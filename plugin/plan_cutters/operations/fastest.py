@@ -154,19 +154,6 @@ def against_bound(seconds: float, bound: float, at_best: float, samples: int, ca
                         gap=gap if known else None, samples=samples, candidates=candidates)  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Location:
-    """A choice of operations.
-
-    `chosen` (k,) int64: ascending. `cost`: of all samples, each with the best of the chosen, of operations, of changes of
-    cutters, and of setups after the first. `bound`: no choice costs less.
-    """
-
-    chosen: Which
-    cost: float
-    bound: float
-
-
 def cheap(problem: Problem, start: Which | None = None) -> Which:
     """Choose operations of little cost, from a choice that serves all or from nothing."""
     covers = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]
@@ -179,12 +166,6 @@ def cheap(problem: Problem, start: Which | None = None) -> Which:
             part = problem.of(own)
             covers.append(own[_improved(part, _grown(part, np.zeros(0, np.int64)))])
     return np.sort(min(covers, key=problem.total))
-
-
-def bounded(problem: Problem, chosen: Which) -> Location:
-    """Say what a choice costs, and bound what any choice does."""
-    cost = problem.turned(chosen)
-    return Location(chosen, cost, min(_bound(problem, chosen), cost))
 
 
 def promising(problem: Problem, chosen: Which) -> Which:
@@ -393,13 +374,13 @@ class _Ascent:
             self._reach = Reach.of(self._least, self._group)
 
 
-def _bound(problem: Problem, chosen: Which) -> float:
-    """Bound what any choice costs: the least over all sets of cutters and setups of what choices with these cost.
+def bounded(problem: Problem, chosen: Which) -> float:
+    """Bound what any choice costs by one: the least over all sets of cutters and setups of what choices with these cost.
 
     The set whose bound is the least is worked on until it is near to the choice.
     """
     if not len(problem.cost):
-        return 0.0
+        return min(0.0, problem.turned(chosen))
     most, costs, turning = problem.turned(chosen), problem.costs, problem.turning
     first = _shares(problem, chosen)
     reach = np.zeros(len(problem.cutter)) if turning is None else turning.reach
@@ -423,7 +404,7 @@ def _bound(problem: Problem, chosen: Which) -> float:
     while open_:
         least = min(open_, key=lambda each: each.bound)
         if least.over or least.bound >= most * (1.0 - _CLOSE) or work > _WORK:
-            return max(whole.bound, least.bound)
+            return min(most, max(whole.bound, least.bound))
         before = least.work
         least.step(most)
         work += least.work - before

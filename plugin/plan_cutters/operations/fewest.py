@@ -236,23 +236,16 @@ class Fewest(Record):
     """The fewest orientations found, with what proves how few there can be.
 
     `columns`: all candidates.
-    `chosen` (k,) int64: of the candidates.
+    `cover`: of the samples in the table by them.
     `rows` (r,) int64: samples in the table.
-    `weight` (r,) int64: their weights, in millionths: no candidate serves samples of more than 1,000,000 together.
-    `at_least`: no choice among the candidates has fewer.
-    `bound`, `relaxed`: what the weights prove, and the least sum of parts of candidates.
     `spacing`: between candidates where the weights lie, rad.
     `alone` (s,) int64: samples that no candidate serves.
     `samples`: how many are reached.
     """
 
     columns: Columns
-    chosen: Rows
+    cover: Cover
     rows: Rows
-    weight: Rows
-    at_least: int
-    bound: float
-    relaxed: float
     spacing: float
     alone: Rows
     samples: int
@@ -260,17 +253,18 @@ class Fewest(Record):
     @property
     def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
         """Name the proof that there are no fewer: the weights alone, a solver, or none yet."""
-        if np.ceil(self.bound - 1e-9) >= len(self.chosen):
+        if np.ceil(self.cover.bound - 1e-9) >= len(self.cover.chosen):
             return "weights"
-        return "branch and bound" if self.at_least >= len(self.chosen) else "not closed"
+        return "branch and bound" if self.cover.closed else "not closed"
 
     @property
     def entry(self) -> FewestEntry:
         """As the plan file has it."""
-        weights = [(row, weight) for row, weight in zip(self.rows.tolist(), self.weight.tolist(), strict=True) if weight]
+        cover = self.cover
+        weights = [(row, weight) for row, weight in zip(self.rows.tolist(), cover.weight.tolist(), strict=True) if weight]
         return FewestEntry(
-            found=len(self.chosen), at_least=self.at_least, proof=self.proof, weights=sorted(weights), bound=self.bound,
-            lp=self.relaxed, samples=self.samples, candidates=len(self.columns), spacing_deg=float(np.degrees(self.spacing)),
+            found=len(cover.chosen), at_least=cover.at_least, proof=self.proof, weights=sorted(weights), bound=cover.bound,
+            lp=cover.relaxed, samples=self.samples, candidates=len(self.columns), spacing_deg=float(np.degrees(self.spacing)),
             alone=len(self.alone),
         )  # fmt: skip
 
@@ -288,14 +282,9 @@ class Search:
     """
 
     def __init__(
-        self,
-        probes: Probes,
-        columns: Columns,
-        rows: Rows,
-        stored: Callable[[Rows], Columns],
-        progress: Progress | None = None,
-        first: int = _FIRST,
-    ) -> None:
+        self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns],
+        progress: Progress | None = None, first: int = _FIRST,
+    ) -> None:  # fmt: skip
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
         self.wanted = len(rows)
         self.rows: Rows = np.zeros(0, np.int64)
@@ -418,11 +407,10 @@ class Search:
         return True
 
     def _missed(self, chosen: Rows) -> Rows:
-        """Samples that chosen candidates do not serve."""
         missing = np.setdiff1d(self._wanted, self.alone)
         order = np.argsort(-self._table[:, chosen].sum(axis=0), kind="stable")
         for column in chosen[order].tolist():
-            missing = missing[~self._probes.one(missing, self.columns, column)]
+            missing = missing[~self._probes.table(missing, self.columns.of(np.array([column])))[:, 0]]
         return missing
 
     def _add_rows(self, rows: Rows, progress: Progress | None = None) -> None:
@@ -490,8 +478,7 @@ def search_fewest(
         spacing *= (finest / spacing) ** (1.0 / (levels - level))
         search.refine(best, spacing, orientations)
         best = search.solve(best.chosen, prove=level == levels - 1)
-    return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,
-                  search.alone, search.wanted)  # fmt: skip
+    return Fewest(search.columns, best, search.rows, spacing, search.alone, search.wanted)
 
 
 def spread(rows: Rows, point: Floats, most: int) -> Rows:

@@ -90,7 +90,7 @@ def recommended(task: Task, columns: Columns) -> Columns:
     or the most orientations were requested otherwise.
     """
     options = task.ready.options
-    if not len(columns) or options.most_operations is not None or options.index_step is not None or not task.moves:
+    if not len(columns) or not task.may_move:
         return columns
     times, stay = _Times.of(task, columns), list(range(len(columns)))
     (now, cutting), whole = times.total(stay), len(columns)
@@ -119,9 +119,7 @@ def fewer(task: Task, columns: Columns) -> list[tuple[Columns, float]]:
 
 def few_enough(task: Task, plan: OperationPlan) -> bool:
     """Whether a plan has no more fixed orientations than are recommended."""
-    options = task.ready.options
-    fixed, stand = plan.orientations, options.index_step is not None or not task.moves
-    return options.most_operations is not None or stand or fixed <= options.max_orientations
+    return not task.may_move or plan.orientations <= task.ready.options.max_orientations
 
 
 def with_moved(task: Task, faces: Sequence[int]) -> Task:
@@ -134,8 +132,7 @@ def flowing(task: Task, others: Callable[[Task], Columns], plan: OperationPlan) 
 
     `others`: gives fixed orientations for the samples that are not moved in a task. `plan`: the best one without.
     """
-    options = task.ready.options
-    if options.most_operations is not None or options.index_step is not None or task.paths.feed is None or not task.moves:
+    if task.paths.feed is None or not task.may_move:
         return None
     made = []
     for faces in _faces_tried(task, plan):

@@ -19,8 +19,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, Verdicts
 from plan_cutters.judging.axes import AxisField, angle_between, margin
 from plan_cutters.judging.cells import tensors
 from plan_cutters.operations.passes import Paths, cut_by_tip
-from plan_cutters.scene.conditions import Conditions, Context
-from plan_cutters.scene.work import in_chunks
+from plan_cutters.scene.conditions import Conditions, Context, probed, tilt_directions
 
 Rows = NDArray[np.int64]
 #: How often axes are drawn to their neighbours', at most, and which shares of the way are tried in turn.
@@ -60,21 +59,13 @@ class _Test:
 
     def free(self, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
         """Where the tool stands free at samples (m,) with axes (m, 3), leaning."""
-        from plan_cutters.kernels.search.search import probe
-
         conditions, samples = self.context.conditions, self.samples
         normal, (low, high) = samples.normal[rows], conditions.postures.tilt
         tilt = angle_between(axis, normal)
         good = (tilt >= low) & (tilt <= high) & (self.margin(rows, axis) > 0.0)
         good[good] = conditions.allows(axis[good])
         side = tilt_directions(axis, normal, samples.direction_max[rows])
-        met, which, some = np.full(len(rows), -2, np.int32), np.zeros(len(rows), np.int32), np.flatnonzero(good)
-        point = samples.point[rows]
-
-        def probed(piece: Rows) -> None:
-            probe(piece, point, normal, axis, side, self.context.outer, conditions.obstacles.tree, met, which)
-
-        in_chunks(probed, some, conditions.jobs)
+        met, _ = probed(np.flatnonzero(good), samples.point[rows], normal, axis, side, self.context.outer, conditions)
         return np.asarray(good & (met == -1))
 
 
@@ -152,13 +143,6 @@ def _along(samples: SurfaceSamples) -> Floats:
         normal, area = samples.normal[mine], np.nan_to_num(samples.area[mine])
         result[face] = np.linalg.eigh((normal * area[:, None]).T @ normal)[1][:, 0]
     return result
-
-
-def tilt_directions(axis: Floats, normal: Floats, direction: Floats) -> Floats:
-    """Unit directions (m, 3) in which axes (m, 3) lean from normals; the given ones where they do not."""
-    across = axis - (axis * normal).sum(axis=1)[:, None] * normal
-    length = np.linalg.norm(across, axis=1)[:, None]
-    return np.asarray(np.where(length > 1e-9, across / np.maximum(length, 1e-12), direction))
 
 
 def _widest(test: _Test, rows: Rows, known: Floats, along: Floats) -> Floats:

@@ -14,7 +14,7 @@ from plan_cutters.domain.verdicts import UNJUDGED
 from plan_cutters.operations.orientations import DIGITS, Orientations, apart, directions
 from plan_cutters.operations.plans import Reserved, costs_with, plan_with
 from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.task import Problems, Task
+from plan_cutters.operations.task import Task
 from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan
 
@@ -87,9 +87,7 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(task.everywhere) for cutter in task.cutters]
     )
     probes = Probes(ready.samples, task.cutters, ready.setups, open_, barred, task.everywhere)
-    walls = Walls.of(probes, task.paths)
-    problems = Problems(ready.samples, task.cutters, task.paths, task.indexing, walls)
-    return replace(task, rows=rows[reached[rows]], probes=probes, walls=walls, problems=problems)
+    return task.probed_by(probes, Walls(probes, task.paths), rows=rows[reached[rows]])
 
 
 def _judged(task: Task, process: OwnProcess) -> tuple[tuple[OwnResult, ...], NDArray[np.int64]]:

@@ -13,20 +13,9 @@ from plan_cutters.domain.figures import count, duration, percent, reporting
 from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.own_process import OwnResult, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.operations import choices
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.choices import (
-    COARSE,
-    accompanied,
-    fastest_choice,
-    instead_of_motion,
-    largest_first_choice,
-    one_more,
-    quicker,
-    served,
-    with_and_without,
-    worths,
-)
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
@@ -48,7 +37,7 @@ from plan_cutters.operations.plans import (
 )
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.task import Problems, Task, at_some, thinned
+from plan_cutters.operations.task import Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import LeastSet, OperationPlan, Operations
@@ -94,13 +83,9 @@ _NAMED = 6
 
 @reporting(lambda ready: ready.options.reported_unit)
 def plan_operations(
-    ready: Prepared,
-    everywhere: Sequence[Mapping[Cutter, Verdicts]],
-    least: LeastSet | None,
-    stage: Callable[[str], AbstractContextManager[Progress]],
-    over: Mapping[str, Verdicts],
-    searched: int,
-) -> Operations:
+    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None,
+    stage: Callable[[str], AbstractContextManager[Progress]], over: Mapping[str, Verdicts], searched: int,
+) -> Operations:  # fmt: skip
     """Plan the operations that finish together all that the cutters reach.
 
     `everywhere`: of each setup, the first one first, the verdicts by cutter. `least`: the fewest cutters that reach all that any
@@ -127,23 +112,23 @@ def plan_operations(
             finest = FINEST if options.index_step is None else options.index_step
             search = Search(task.probes, _first(task, STEP), task.rows, partial(_stored, task), part_of(parts[1], 0, 2))
             fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(parts[1], 1, 2))
-            few, alone, some = fewest.columns.of(fewest.chosen), len(fewest.alone), thinned(task)
+            few, alone, some = fewest.columns.of(fewest.cover.chosen), len(fewest.alone), thinned(task)
             made = _plans(task, some, search, few, offer, parts[2])
-            more = one_more(task, some, search, made[0][0], _columns_of(task, made[0][0]))
+            more = choices.one_more(task, some, search, made[0][0], _columns_of(task, made[0][0]))
         plans, timed, worth, instead = made
         plans = _proved(task, plans, searched, parts[3])
     notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
     entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
-    columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.chosen)
+    columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.cover.chosen)
     return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 
 
 def _plans_by_some(task: Task, offer: Repeated | None, parts: Sequence[Progress]) -> tuple[PlansTimed, Search, Task]:
     """Plans from few orientations among coarse candidates that serve some samples, with the search, and the task of these."""
     some = thinned(task)
-    search = Search(some.probes, _first(some, COARSE), some.rows, partial(_stored, some), parts[1], _PRICED)
-    return _plans(task, some, search, served(some, search), offer, parts[2]), search, some
+    search = Search(some.probes, _first(some, choices.COARSE), some.rows, partial(_stored, some), parts[1], _PRICED)
+    return _plans(task, some, search, choices.served(some, search), offer, parts[2]), search, some
 
 
 def _planned_rest(rest: Task, parts: Sequence[Progress]) -> Columns:
@@ -216,13 +201,13 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     Choices are compared by some of the samples; the plan of the one that is taken is made of all.
     """
     which, parts = task.ready.options.operations, [part_of(tell, k, 3) for k in range(3)]
-    printed = [] if which == "fastest" else [_capped(task, thinned(task), "fewest", quicker(task, search, few), parts[0])]
+    printed = [] if which == "fastest" else [_capped(task, thinned(task), "fewest", choices.quicker(task, search, few), parts[0])]
     if which == "fewest":
         return printed, None, (), ()
-    choice = fastest_choice(task, some, search, few, parts[1])
-    compared = [choice.columns.of(each) for each in (choice.safe, *with_and_without(choice.problem, choice.safe))]
+    choice = choices.fastest_choice(task, some, search, few, parts[1])
+    compared = [choice.columns.of(each) for each in (choice.safe, *choices.with_and_without(choice.problem, choice.safe))]
     if len(task.cutters) > 1:
-        by_size = largest_first_choice(some, search, few, minor=some is not task)
+        by_size = choices.largest_first_choice(some, search, few, minor=some is not task)
         compared.append(recommended(some, _worth(some, "fastest", by_size)))
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each), times=True) for each in compared]
@@ -243,9 +228,9 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[2](1, 1)
     at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
-    bound = bounded(choice.problem, choice.safe).bound
+    bound = bounded(choice.problem, choice.safe)
     timed = against_bound(fastest.total, bound, at_best, len(choice.problem.cost), len(choice.columns))
-    return [*printed, fastest], (timed, choice.area), worths(task, plans), notes
+    return [*printed, fastest], (timed, choice.area), choices.worths(task, plans), notes
 
 
 def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
@@ -291,7 +276,6 @@ def _in_motion(task: Task, quick: PlansTimed) -> PlansTimed:
 
 
 def _why_in_motion(fixed: OperationPlan, moving: OperationPlan, faces: Sequence[int]) -> str:
-    """Say why free-form faces go with simultaneous motion."""
     named = ", ".join(f"F{face}" for face in faces[:_NAMED]) + (f" and {len(faces) - _NAMED} more" if len(faces) > _NAMED else "")
     return (
         f"{named}: simultaneous motion cuts {'it' if len(faces) == 1 else 'each'} as a whole, and the plan takes about "
@@ -304,7 +288,6 @@ def _with_fixed(plan: OperationPlan) -> str:
 
 
 def _columns_of(task: Task, plan: OperationPlan) -> Columns:
-    """The columns of the fixed operations of a plan."""
     columns = task.no_columns
     for each in plan.operations:
         if each.axis is not None and each.angle is not None:
@@ -335,11 +318,9 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time,
         machine.acceleration,
     )  # fmt: skip
-    walls = Walls.of(probes, paths)
     where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
-    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing, walls), walls,
+    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing, Walls(probes, paths),
                 MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths), Seams.of(ready))  # fmt: skip
 
 
@@ -373,8 +354,10 @@ def _capped(task: Task, some: Task, name: str, columns: Columns, tell: Progress)
         return plan_with(task, name, columns)
     columns = _worth(task, name, _canonical(task, some, _worth(some, name, columns), tell))
     if name == "fewest":
-        return plan_with(task, name, accompanied(task, columns))
-    return plan_with(task, name, instead_of_motion(task, columns, lambda rows: _first(task, COARSE).and_(_stored(task, rows))))
+        return plan_with(task, name, choices.accompanied(task, columns))
+    return plan_with(
+        task, name, choices.instead_of_motion(task, columns, lambda rows: _first(task, choices.COARSE).and_(_stored(task, rows)))
+    )
 
 
 def _canonical(task: Task, some: Task, columns: Columns, tell: Progress) -> Columns:

@@ -29,14 +29,10 @@ class Probes:
     """
 
     def __init__(
-        self,
-        samples: SurfaceSamples,
-        cutters: Sequence[Cutter],
-        setups: Sequence[Conditions],
-        outside: Sequence[NDArray[np.bool_]],
-        barred: Mapping[int, NDArray[np.bool_]] | None = None,
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], setups: Sequence[Conditions],
+        outside: Sequence[NDArray[np.bool_]], barred: Mapping[int, NDArray[np.bool_]] | None = None,
         everywhere: Sequence[Mapping[Cutter, Verdicts]] = (),
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.barred, self.everywhere = barred or {}, everywhere
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
@@ -84,7 +80,3 @@ class Probes:
                 result[mine, k] = free[0]
                 self.made += made
         return result
-
-    def one(self, rows: Rows, columns: Columns, which: int) -> NDArray[np.bool_]:
-        """Where one column serves: (rows,)."""
-        return np.asarray(self.table(rows, columns.of(np.array([which])))[:, 0])

@@ -4,7 +4,8 @@ fewer samples, by which choices are compared.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,26 +29,17 @@ from plan_cutters.scene.preparation import Prepared
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
 _OTHER_FACE = 10.0
-#: Paces that are found at once.
+#: KnownPaces that are found at once.
 _AT_ONCE = 100_000
 
 
 def paces(
-    columns: Columns,
-    rows: Rows,
-    samples: SurfaceSamples,
-    cutters: Sequence[Cutter],
-    paths: Paths,
-    where: NDArray[np.bool_] | None = None,
+    columns: Columns, rows: Rows, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, where: NDArray[np.bool_]
 ) -> Floats:
-    """Find what a mm of path by the tip cuts (rows, columns), mm2, wherever a column serves; nan where it does not touch.
-
-    With `where` (rows, columns) it is nan elsewhere, too.
-    """
-    result = np.full((len(rows), len(columns)), np.nan)
-    wanted = np.ones(result.shape, bool) if where is None else where
+    """Find what a mm of path by the tip cuts (rows, columns), mm2; nan where it does not touch, or `where` is not set."""
+    result = np.full(where.shape, np.nan)
     for c, cutter in enumerate(cutters):
-        row, column = np.nonzero(wanted & (columns.cutter == c))
+        row, column = np.nonzero(where & (columns.cutter == c))
         for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
             i, k = row[part], column[part]
             at = rows[i]
@@ -79,39 +71,14 @@ def nearest(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> NDArray[np.i
     return np.asarray(cKDTree(place[rows]).query(place[all_rows])[1])
 
 
-class Problems:
-    """Say what samples cost with candidates, as both become more: paces that were found once are kept."""
+@dataclass(slots=True, eq=False)
+class KnownPaces:
+    """Areas cut by a mm of path (r, m) of samples with candidates, as far as they were found, by their numbers."""
 
-    def __init__(
-        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing, walls: Walls
-    ) -> None:
-        self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
-        self._walls = walls
-        self._rows: Rows = np.zeros(0, np.int64)
-        self._active: Rows = np.zeros(0, np.int64)
-        self._pace: Floats = np.zeros((0, 0))
-        self._known: NDArray[np.bool_] = np.zeros((0, 0), bool)
-
-    def of(self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs) -> Problem:
-        """Say what some samples, weighted by area, cost with columns.
-
-        `active` (m,) int64: their numbers, ascending: what had one keeps it. `table` (r, m) bool: where they serve. `rows` (r,)
-        int64: those of the time before come first. `area` (r,) float: that each of `rows` stands for, mm2.
-        """
-        pace, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
-        if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():
-            there = np.searchsorted(active, self._active)
-            pace[: len(self._rows), there], known[: len(self._rows), there] = self._pace, self._known
-        new = table & ~known
-        result = paces(columns, rows, self._samples, self._cutters, self._paths, new)
-        result = np.fmax(result, self._walls.paces(columns, rows, new))
-        pace[new] = result[new]
-        self._rows, self._active, self._pace, self._known = rows, active, pace, known | new
-        cost = costs_of(columns, pace, table, area, self._cutters, self._paths)
-        # What is served and nowhere timed is served by whatever serves it, in no time that is known.
-        untimed = ~np.isfinite(cost).any(axis=1)
-        cost[untimed] = np.where(table[untimed], 0.0, np.inf)
-        return Problem(cost, columns.cutter, columns.setup, costs, self._indexing.turning(columns))
+    rows: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
+    active: Rows = field(default_factory=lambda: np.zeros(0, np.int64))
+    pace: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    known: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 0), bool))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,13 +102,43 @@ class Task:
     probes: Probes
     paths: Paths
     indexing: Indexing
-    problems: Problems
     walls: Walls
     moving: MovingAxes
     seams: Seams
     symmetry: Symmetry | None = None
     copies: int = 1
     moved: NDArray[np.bool_] | None = None
+    known: KnownPaces = field(default_factory=KnownPaces)
+
+    def probed_by(self, probes: Probes, walls: Walls, **changes: Any) -> "Task":
+        """The same with other probes and walls: of paces nothing is known."""
+        return replace(self, probes=probes, walls=walls, known=KnownPaces(), **changes)
+
+    def problem(
+        self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs
+    ) -> Problem:
+        """Say what some samples, weighted by area, cost with columns, as both become more: paces found once are kept.
+
+        `active` (m,) int64: their numbers, ascending: what had one keeps it. `table` (r, m) bool: where they serve. `rows` (r,)
+        int64: those of the time before come first. `area` (r,) float: that each of `rows` stands for, mm2.
+        """
+        pace, known, before = np.full(table.shape, np.nan), np.zeros(table.shape, bool), self.known
+        if np.array_equal(rows[: len(before.rows)], before.rows) and np.isin(before.active, active).all():
+            there = np.searchsorted(active, before.active)
+            pace[: len(before.rows), there], known[: len(before.rows), there] = before.pace, before.known
+        new = table & ~known
+        pace[new] = self.paces(columns, rows, new)[new]
+        before.rows, before.active, before.pace, before.known = rows, active, pace, known | new
+        cost = costs_of(columns, pace, table, area, self.cutters, self.paths)
+        # What is served and nowhere timed is served by whatever serves it, in no time that is known.
+        untimed = ~np.isfinite(cost).any(axis=1)
+        cost[untimed] = np.where(table[untimed], 0.0, np.inf)
+        return Problem(cost, columns.cutter, columns.setup, costs, self.indexing.turning(columns))
+
+    def paces(self, columns: Columns, rows: Rows, where: NDArray[np.bool_]) -> Floats:
+        """Areas (r, k), mm2, that a mm of path cuts by the tip or along a wall, of columns at samples; nan outside `where`."""
+        by_tip = paces(columns, rows, self.ready.samples, self.cutters, self.paths, where)
+        return np.fmax(by_tip, self.walls.paces(columns, rows, where))
 
     def images(self, columns: Columns) -> Columns:
         """The columns that some stand for: each and its images, as many of each."""
@@ -173,6 +170,12 @@ class Task:
         return Costs(operation, options.change_time, options.setup_time, tuple(in_turn.index(each) for each in self.cutters))
 
     @property
+    def may_move(self) -> bool:
+        """Whether simultaneous motion may take the place of orientations: axes do not lock, no number of these was requested."""
+        options = self.ready.options
+        return self.moves and options.index_step is None and options.most_operations is None
+
+    @property
     def times(self) -> int:
         """How many columns each one stands for."""
         return 1 if self.symmetry is None else self.symmetry.order
@@ -200,8 +203,6 @@ def at_some(task: Task, rows: NDArray[np.int64]) -> Task:
     samples, stands_for = replace(ready.samples, area=area), np.full(len(area), -1, np.int64)
     stands_for[task.rows] = rows[nearest(ready.samples, task.rows, rows)] if len(rows) else -1
     probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred, task.everywhere)
-    walls = task.walls.of_probes(probes)
-    return replace(
-        task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls, seams=task.seams.among(stands_for),
-        problems=Problems(samples, task.cutters, task.paths, task.indexing, walls),
-    )  # fmt: skip
+    return task.probed_by(
+        probes, task.walls.of_probes(probes), ready=replace(ready, samples=samples), rows=rows, seams=task.seams.among(stands_for)
+    )

@@ -23,7 +23,6 @@ from plan_cutters.kernels.rows import Contacts
 from plan_cutters.operations.passes import NOTHING, PLANE, Cut, Paths, flank_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.fixed_axis import leaning
-from plan_cutters.scene.obstacles import Obstacles
 
 Rows = NDArray[np.int64]
 #: Share of the scallop height by which the floor may leave a flat tip, or a wall the flutes: rounding stays below it.
@@ -62,26 +61,22 @@ class Passes(Record):
 
 
 class Walls:
-    """The passes along walls.
+    """The passes along walls of a part as it stands in the first setup of some probes.
 
-    `obstacles`: with the triangles of the part. `paths`: an axis may be off the ruling by the accuracy of the rotary axes.
+    `paths`: an axis may be off the ruling by the accuracy of the rotary axes.
     """
 
-    def __init__(self, probes: Probes, obstacles: Obstacles, paths: Paths) -> None:
-        self._probes, self._obstacles, self._band = probes, obstacles, obstacles.triangles.chord_error + paths.scallop
+    def __init__(self, probes: Probes, paths: Paths) -> None:
+        self._probes, self._obstacles = probes, probes.setups[0].obstacles
+        self._band = self._obstacles.triangles.chord_error + paths.scallop
         self._paths, self._scallop, self._accuracy = paths, paths.scallop, paths.accuracy
         self._upright: dict[int, NDArray[np.bool_]] = {}
         #: By the key of a column the paces of all samples (n,); -inf: not looked at yet.
         self._known: dict[str, Floats] = {}
 
-    @classmethod
-    def of(cls, probes: Probes, paths: Paths) -> "Walls":
-        """Those of the part as it stands in the first setup."""
-        return cls(probes, probes.setups[0].obstacles, paths)
-
     def of_probes(self, probes: Probes) -> "Walls":
         """The same with probes of the same tools at the same samples: what was looked at is known already."""
-        same = Walls(probes, self._obstacles, self._paths)
+        same = Walls(probes, self._paths)
         same._upright, same._known = self._upright, self._known
         return same
 

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, SurfaceSamples, cross
+from cad_io.arrays import Floats, Ints, Record, SurfaceSamples, cross
 from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
@@ -126,6 +126,13 @@ def rotations_of(normal: Floats, direction_max: Floats, tilt_direction: Floats) 
     return np.asarray(np.remainder(np.arctan2(across, (tilt_direction * direction_max).sum(axis=-1)), 2.0 * np.pi))
 
 
+def tilt_directions(axis: Floats, normal: Floats, otherwise: Floats) -> Floats:
+    """Unit directions (n, 3) in which axes (n, 3) lean from normals; `otherwise` where they do not."""
+    f = axis - (axis * normal).sum(axis=1)[:, None] * normal
+    length = np.linalg.norm(f, axis=1)[:, None]
+    return np.asarray(np.where(length > 1e-12, f / np.maximum(length, 1e-300), otherwise))
+
+
 def rotary_of(kinematics: Kinematics | None) -> Rotary:
     """Rotary axes as kernels take them."""
     if kinematics is None:
@@ -198,18 +205,15 @@ def search_postures(
     from plan_cutters.kernels.search.search import search
 
     require_finite(contacts, rows)
-    conditions, tools = context.conditions, (context.outer, context.inner)
-    ranges, buffer = conditions.ranges._replace(strict=strict), verdict_arrays_of(verdicts)
-    possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
-
-    deep, distance = conditions.obstacles.depths(conditions.tolerance)[1], context.proved_at
-
-    def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, deep=deep, brief=brief, distance=distance))
-
-    looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
-    if work is not None:
-        work.add(looked)
+    conditions, deep = context.conditions, context.conditions.obstacles.depths(context.conditions.tolerance)[1]
+    arrays = (
+        contacts, conditions.ranges._replace(strict=strict), context.outer, context.inner, conditions.obstacles.solids,
+        conditions.surroundings.certain.solids, verdict_arrays_of(verdicts),
+    )  # fmt: skip
+    in_chunks(
+        lambda piece: search(piece, *arrays, deep=deep, brief=brief, distance=context.proved_at),
+        rows, conditions.jobs, progress, fixed=fixed, counted=work,
+    )  # fmt: skip
 
 
 def free_in_posture(
@@ -222,15 +226,23 @@ def free_in_posture(
     from plan_cutters.kernels.search.search import free
 
     conditions, stands = context.conditions, np.zeros(len(axis), bool)
-    point, normal, solids = contacts.point, contacts.normal, conditions.obstacles.solids
-
-    def tested(piece: NDArray[np.int64]) -> int:
-        return int(free(piece, point, normal, axis, tilt_direction, context.outer, solids, stands))
-
-    looked = in_chunks(tested, rows, conditions.jobs)
-    if work is not None:
-        work.add(looked)
+    arrays = contacts.point, contacts.normal, axis, tilt_direction, context.outer, conditions.obstacles.solids, stands
+    in_chunks(lambda piece: free(piece, *arrays), rows, conditions.jobs, counted=work)
     return stands
+
+
+def probed(
+    rows: NDArray[np.int64], point: Floats, normal: Floats, axis: Floats, tilt_direction: Floats, tool: Tool,
+    conditions: Conditions,
+) -> tuple[Ints, Ints]:  # fmt: skip
+    """Triangles (n,) that reach into a tool at postures of some rows, -1 for none, and into which of its pieces; -2 where it does
+    not touch at the tilt. Bodies are not looked at. `point`, `normal`, `axis`, `tilt_direction` (n, 3) float.
+    """
+    from plan_cutters.kernels.search.search import probe
+
+    tree, (triangle, which) = conditions.obstacles.tree, np.full((2, len(point)), -2, np.int32)
+    in_chunks(lambda some: probe(some, point, normal, axis, tilt_direction, tool, tree, triangle, which), rows, conditions.jobs)
+    return triangle, which
 
 
 def over_plane(context: Context, contacts: Contacts, postures: Verdicts | VerdictBuffer, above: float) -> NDArray[np.bool_]:

@@ -23,9 +23,8 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import relieved
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.kernels.codes import PART, SHANK
-from plan_cutters.scene.conditions import Conditions, laid_tool_of, tool_of
+from plan_cutters.scene.conditions import Conditions, laid_tool_of, probed, tool_of
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.work import in_chunks
 
 #: A face that leans so far against a tool axis at most is a wall: sine of 1 deg.
 _WALL = 0.0175
@@ -78,14 +77,13 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, cond
     rows = np.flatnonzero(verdicts.reached)
     if _unknown(cutter, conditions) or not len(rows):
         return result
-    triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
     free, not_reached = np.full(n, -1), np.full(n, len(steps))
     nearest, part = np.full(n, -1, np.int32), np.full(n, -1, np.int8)
     while len(open_rows := rows[not_reached[rows] - free[rows] > 1]):
         middle = (free[open_rows] + not_reached[open_rows]) // 2
         for rung in np.unique(middle).tolist():
             mine = open_rows[middle == rung]
-            made = _probed(samples, verdicts, mine, cutter, float(steps[rung]), conditions, triangle, which)
+            made, triangle, which = _put_down(samples, verdicts, mine, cutter, float(steps[rung]), conditions)
             clear = triangle[mine] == -1
             free[mine[clear]], not_reached[mine[~clear]] = rung, rung
             met = mine[triangle[mine] >= 0]
@@ -103,15 +101,13 @@ def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts,
 
     What keeps clear of something once is not looked at again while another posture does not.
     """
-    n, steps = len(samples), rungs(cutter)
-    reached = np.flatnonzero(verdicts.reached)
+    steps, reached = rungs(cutter), np.flatnonzero(verdicts.reached)
     if _unknown(cutter, conditions) or not len(reached):
         return float("nan")
-    triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
     free, not_free = -1, len(steps)
     while not_free - free > 1:
         middle = (free + not_free) // 2
-        _probed(samples, verdicts, reached, cutter, float(steps[middle]), conditions, triangle, which)
+        _, triangle, _ = _put_down(samples, verdicts, reached, cutter, float(steps[middle]), conditions)
         met = reached[triangle[reached] != -1]
         if len(met):
             reached, not_free = met, middle
@@ -134,8 +130,7 @@ def slid_along(
     if neck is None or not wider > max(conditions.tolerance, 0.5 * (cutter.radius - neck.necks[0].radius)):
         return [], 0.0
     steps, rows = rungs(cutter), np.flatnonzero(verdicts.reached)
-    triangle, which = np.full(len(samples), -1, np.int32), np.full(len(samples), -1, np.int32)
-    made = _probed(samples, verdicts, rows, cutter, float(steps[steps > clearance][0]), conditions, triangle, which)
+    made, triangle, which = _put_down(samples, verdicts, rows, cutter, float(steps[steps > clearance][0]), conditions)
     met = rows[triangle[rows] >= 0]
     near = conditions.obstacles.faces[triangle[met]]
     if not len(met) or near.min() <= 0 or (made.piece[0, which[met], PART] != SHANK).any():
@@ -150,22 +145,15 @@ def _unknown(cutter: Cutter, conditions: Conditions) -> bool:
     return conditions.surroundings.doubtful or not grown(cutter, 0.0).piece.shape[1]
 
 
-def _probed(
-    samples: SurfaceSamples, verdicts: Verdicts, rows: NDArray[np.int64], cutter: Cutter, distance: float,
-    conditions: Conditions, triangle: Ints, which: Ints,
-) -> Assembly:  # fmt: skip
-    """Put the cutter, grown by a distance, down at some samples: writes what (n,) it meets, -1 for none, and with which piece."""
-    from plan_cutters.kernels.search.search import probe
-
+def _put_down(
+    samples: SurfaceSamples, verdicts: Verdicts, rows: NDArray[np.int64], cutter: Cutter, distance: float, conditions: Conditions
+) -> tuple[Assembly, Ints, Ints]:
+    """The cutter grown by a distance, and what (n,) it meets at some samples, -1 for none, with which of its pieces."""
     made = grown(cutter, distance + conditions.obstacles.triangles.chord_error + _ROUNDING)
     # Arrays that may not be written are another type to the compiler: `probe` would be compiled once more for them.
-    postures = verdicts.contact(samples.point), samples.normal, verdicts.axis.copy(), verdicts.tilt_direction.copy()
-    in_chunks(
-        lambda piece: probe(piece, *postures, laid_tool_of(made), conditions.obstacles.tree, triangle, which),
-        rows,
-        conditions.jobs,
-    )
-    return made
+    axis, tilt_direction = verdicts.axis.copy(), verdicts.tilt_direction.copy()
+    contact = verdicts.contact(samples.point)
+    return made, *probed(rows, contact, samples.normal, axis, tilt_direction, laid_tool_of(made), conditions)
 
 
 #: Points along each side of the grids in which the deepest one is looked for, rounds, and how much finer each is than the last.

@@ -55,14 +55,9 @@ class Chosen:
 
 
 def choose(
-    part: "Part",
-    faces: Any,
-    ignored: Collection[int],
-    ignore: tuple[str, ...],
-    placed: Placement | None = None,
-    others: Sequence[Placement | None] = (),
-    repeated: Mapping[int, int] = MappingProxyType({}),
-) -> Chosen:
+    part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...], placed: Placement | None = None,
+    others: Sequence[Placement | None] = (), repeated: Mapping[int, int] = MappingProxyType({}),
+) -> Chosen:  # fmt: skip
     """Target and ignored faces of a part.
 
     `faces`: without it those picked on the host's object, else `DEFAULT`. `ignored`: faces to leave out; `ignore`: the words for
@@ -139,14 +134,9 @@ def face_numbers(part: "Part", value: Any) -> tuple[int, ...]:
 
 
 def select_faces(
-    faces: Sequence[FaceInfo],
-    text: str,
-    *,
-    tree: "Sequence[Node]" = (),
-    ignored: Iterable[int] = (),
-    blends: Collection[int] = (),
-    repeated: Mapping[int, int] = MappingProxyType({}),
-) -> tuple[int, ...]:
+    faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = (),
+    blends: Collection[int] = (), repeated: Mapping[int, int] = MappingProxyType({}),
+) -> tuple[int, ...]:  # fmt: skip
     """Numbers of the target faces, ascending.
 
     `text`: `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or

@@ -27,11 +27,6 @@ FLAT = 1e-4
 _BLOCK, _AT_ONCE = 4096, 20_000
 
 
-def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
-    """At which of some samples (m,) a cutter stands free with one axis (3,)."""
-    return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
-
-
 def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,) that the machine holds, touching the sample itself.
 
@@ -55,16 +50,9 @@ def served_by(
 
 
 def _tested(
-    rows: NDArray[np.int64],
-    axes: Floats,
-    samples: SurfaceSamples,
-    context: Context,
-    progress: Progress | None = None,
-    *,
-    directions: bool = False,
-    only_leaning: bool = False,
-    held: NDArray[np.int64] | None = None,
-) -> tuple[NDArray[np.int8], int, Floats]:
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, progress: Progress | None = None, *,
+    directions: bool = False, only_leaning: bool = False, held: NDArray[np.int64] | None = None,
+) -> tuple[NDArray[np.int8], int, Floats]:  # fmt: skip
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
     asked for, its tilt directions (k, m, 3). With `only_leaning` no other way is tried. `held`: the axes that the machine holds.
     """

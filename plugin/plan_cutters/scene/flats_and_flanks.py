@@ -19,7 +19,7 @@ from plan_cutters.domain.shapes import Flank
 from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer
 from plan_cutters.kernels.codes import BEYOND, PARALLEL
 from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import Conditions, Context, rotations_of, search_postures
+from plan_cutters.scene.conditions import Conditions, Context, rotations_of, search_postures, tilt_directions
 from plan_cutters.scene.work import Progress, Work, in_chunks
 
 Rows = NDArray[np.int64]
@@ -95,7 +95,7 @@ def _on_flat(contacts: Contacts, rows: Rows, at: float, context: Context, verdic
     free = rows[state[rows] == PLACED]
     normal, a = contacts.normal[free], axis[free]
     square = (along > 0.0) & (a == normal).all(axis=1)
-    f = np.where(square[:, None], way[free], _tilt_direction(a, normal, contacts.direction_max[free]))
+    f = np.where(square[:, None], way[free], tilt_directions(a, normal, contacts.direction_max[free]))
     _take(free, a, f, contacts, context, verdicts)
     verdicts.tilt[free[square]] = 0.0
     # Elsewhere the tilt direction is that of the axis: it is put down at the contact from which it stands in the place.
@@ -131,15 +131,9 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
 
 
 def _on_flank(
-    contacts: Contacts,
-    rows: Rows,
-    axis: Floats,
-    flank: Flank,
-    whole: bool,
-    context: Context,
-    verdicts: VerdictBuffer,
+    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer,
     hints: Rows,
-) -> None:
+) -> None:  # fmt: skip
     """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that.
 
     `hints` (2, n): triangles that were in the way at the axis before, or -1: of what surely is, and of what may be.
@@ -180,7 +174,7 @@ def _on_flank(
     state = tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, open_, hints[1])
     free = state == FREE
     at = rows[free]
-    f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])
+    f = tilt_directions(axis[free], contacts.normal[at], contacts.direction_max[at])
     _take(at, axis[free], f, contacts, context, verdicts)
     # It was put down in the mode of the flank's lower end: off its tilt, postures are in that of the other end.
     tool, normal, tilt = context.outer_tool, contacts.normal[at], verdicts.tilt[at, None]
@@ -314,7 +308,7 @@ def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions
     held = conditions.allows(axis) & (np.abs((axis * contacts.normal[rows]).sum(axis=1)) < math.cos(PARALLEL))
     if not conditions.postures.full_turn:
         first, last = conditions.postures.rotation
-        f = _tilt_direction(axis, contacts.normal[rows], contacts.direction_max[rows])
+        f = tilt_directions(axis, contacts.normal[rows], contacts.direction_max[rows])
         turn = rotations_of(contacts.normal[rows], contacts.direction_max[rows], f)
         held &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
     return rows[held], axis[held]
@@ -323,10 +317,3 @@ def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions
 def _between(axis: Floats, normal: Floats) -> Floats:
     """Angles (m,) of unit vectors (m, 3), rad."""
     return np.asarray(np.arctan2(np.linalg.norm(cross(axis, normal), axis=1), (axis * normal).sum(axis=1)))
-
-
-def _tilt_direction(axis: Floats, normal: Floats, otherwise: Floats) -> Floats:
-    """Unit directions (m, 3) in which axes lean from normals; `otherwise` where they do not."""
-    f = axis - (axis * normal).sum(axis=1)[:, None] * normal
-    length = np.linalg.norm(f, axis=1)[:, None]
-    return np.asarray(np.where(length > 1e-12, f / np.maximum(length, 1e-300), otherwise))

@@ -171,21 +171,10 @@ class Scene(Record):
             (orient(self.part, towards=setup, flip=self.flip).sign == self.orientation.sign).all()
         )
 
-    # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
-    @property
-    def around(self) -> Surroundings:
-        """As `surround` gives them."""
-        return self.surround()
-
     @property
     def tolerance(self) -> float:
         """The tolerance that can be kept, mm: `asked`, or what the triangles allow."""
         return self.surround().tolerance(self.asked)
-
-    @property
-    def turned(self) -> tuple[str, ...]:
-        """As `turned_faces` gives them."""
-        return self.turned_faces()
 
     @property
     def options(self) -> dict[str, Any]:

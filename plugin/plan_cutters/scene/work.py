@@ -70,18 +70,13 @@ def part_of(tell: Progress, part: int, parts: int) -> Progress:
 
 
 def in_chunks(
-    work: Callable[[NDArray[np.int64]], int | None],
-    rows: NDArray[np.int64],
-    jobs: int,
-    progress: Progress | None = None,
-    chunk: int = CHUNK,
-    *,
-    fixed: bool = False,
-) -> int:
+    work: Callable[[NDArray[np.int64]], int | None], rows: NDArray[np.int64], jobs: int, progress: Progress | None = None,
+    chunk: int = CHUNK, *, fixed: bool = False, counted: Work | None = None,
+) -> int:  # fmt: skip
     """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns, boxes.
 
     `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever
-    others are requested (`with_company`).
+    others are requested (`with_company`). `counted`: takes the boxes, too.
 
     An interrupt or an error drops the pieces that have not begun and is raised once those under way end.
     """
@@ -98,7 +93,8 @@ def in_chunks(
             except BaseException:
                 pool.shutdown(cancel_futures=True)
                 raise
-    METER.add(total)
+    for each in (METER, *([] if counted is None else [counted])):
+        each.add(total)
     return total
 
 

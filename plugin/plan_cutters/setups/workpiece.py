@@ -58,7 +58,7 @@ class Bearing:
         >>> Bearing.of(square, square, np.array([4.0, 4.0]), 30.0).firm
         False
         """
-        whole, below = _hull(outline), _hull(stood_on)
+        whole, below = hull(outline), hull(stood_on)
         footprint = 0.0 if whole is None else float(whole.volume)
         middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
         circle = math.pi * float(((outline - middle) ** 2).sum(axis=1).max())
@@ -108,8 +108,8 @@ def enclosed(vertex: Floats, normal: Floats) -> tuple[float, Floats]:
     return 0.0, np.asarray(size @ vertex.mean(axis=1) / max(1e-300, float(size.sum())))
 
 
-def _hull(points: Floats) -> ConvexHull | None:
-    """The convex hull of points (n, 2); None where they have no area."""
+def hull(points: Floats) -> ConvexHull | None:
+    """The convex hull of points (n, 2) or (n, 3); None where they have no area or volume."""
     if len(points) < 3:
         return None
     try:
@@ -134,16 +134,9 @@ class Workpiece(Record):
 
     @classmethod
     def of(
-        cls,
-        vertex: Floats,
-        face: Ints,
-        sign: Floats,
-        planes: Collection[int],
-        targets: Collection[int],
-        setup: Sequence[float],
-        bodies: Sequence[frozenset[int]] = (),
-        chord: float = 0.0,
-    ) -> "Workpiece":
+        cls, vertex: Floats, face: Ints, sign: Floats, planes: Collection[int], targets: Collection[int],
+        setup: Sequence[float], bodies: Sequence[frozenset[int]] = (), chord: float = 0.0,
+    ) -> "Workpiece":  # fmt: skip
         """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
 
         Without targets, all faces are. `chord`: the error of the triangles, mm; the lowest point may be off by it.
@@ -173,10 +166,8 @@ class Workpiece(Record):
     def outline(self) -> Floats:
         """The corners (k, 3) that are outermost seen from above, with z = 0."""
         corner = self.vertex.reshape(-1, 3) * [1.0, 1.0, 0.0]
-        try:
-            return np.asarray(corner[ConvexHull(corner[:, :2]).vertices])
-        except QhullError:
-            return corner
+        outer = hull(corner[:, :2])
+        return corner if outer is None else np.asarray(corner[outer.vertices])
 
     @cached_property
     def enclosed(self) -> tuple[float, Floats]:

@@ -5,13 +5,11 @@ A range of tilts is free if the body, widened by half the range times the distan
 the widened body is, the range is halved. Ranges narrower than `narrowest` stay undecided.
 """
 
-from collections import namedtuple
-
 import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.kernels.codes import OFFSET_OF
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame, Ranges
@@ -21,54 +19,6 @@ from plan_cutters.kernels.tool.arcs import ARCS, local_gouge
 from plan_cutters.kernels.tool.hit import scratch, tree_hit
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
-
-
-#: A workspace: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists for walks.
-Parts = namedtuple("Parts", "parts pending arcs body scratch")
-
-
-@entry
-def parts_workspace(most):
-    """Make a workspace for so many parts."""
-    return Parts(np.empty((most + 4, 3)), np.empty((most + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
-
-
-@kernel
-def divide(frame, low, high, tool, mode, narrowest, tree, work):
-    """`free_tilts` of a frame, its parts written into `work`; how many."""
-    parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
-    pending[0, 0], pending[0, 1] = low, high
-    top, done, hint, most = 1, 0, -1, len(parts) - 4
-    while top > 0:
-        top -= 1
-        first, last = pending[top, 0], pending[top, 1]
-        tilt, half = 0.5 * (first + last), 0.5 * (last - first)
-        put(body, frame, tilt, tool, mode)
-        # A hair more than half, so that a free range holds at its very ends.
-        triangle, which, height, px, py = tree_hit(tree, body, piece, half + 1e-12, hint, walk)
-        kind, cut_first, cut_last = OPEN, first, last
-        if triangle >= 0:
-            hint = triangle
-            kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
-            if triangle >= 0:
-                hint = triangle
-                arc_first, arc_last = arc_of(which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, work.arcs)
-                kind = FORBIDDEN
-                cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
-            if last - first <= narrowest or top + done + 3 > most:
-                kind, cut_first, cut_last = UNSURE, first, last
-        # What is cut out is settled; the rest, at most half on either side or narrower, is not.
-        parts[done, 0], parts[done, 1], parts[done, 2] = cut_first, cut_last, kind
-        if cut_last > cut_first:
-            done += 1
-        if cut_last < last:
-            pending[top, 0], pending[top, 1] = cut_last, last
-            top += 1
-        if cut_first > first:
-            pending[top, 0], pending[top, 1] = first, cut_first
-            top += 1
-    return done
 
 
 @entry
@@ -83,10 +33,42 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
     `most` (int): most parts that can be told apart.
     Returns `parts` (k, 3) float64: first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
-    t, work = np.empty(3), parts_workspace(most)
+    t, body, walk, piece = np.empty(3), np.empty(BODY), scratch(), tool.piece[mode]
+    parts, pending, arcs = np.empty((most + 4, 3)), np.empty((most + 4, 2)), np.empty((ARCS, 2))
     cross(n, f, t)
-    count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
-    return work.parts[:count]
+    frame = Frame(p, n, f, t)
+    pending[0, 0], pending[0, 1] = low, high
+    top, done, hint = 1, 0, -1
+    while top > 0:
+        top -= 1
+        first, last = pending[top, 0], pending[top, 1]
+        tilt, half = 0.5 * (first + last), 0.5 * (last - first)
+        put(body, frame, tilt, tool, mode)
+        # A hair more than half, so that a free range holds at its very ends.
+        triangle, which, height, px, py = tree_hit(tree, body, piece, half + 1e-12, hint, walk)
+        kind, cut_first, cut_last = OPEN, first, last
+        if triangle >= 0:
+            hint = triangle
+            kind, cut_first, cut_last = UNSURE, tilt, tilt
+            triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
+            if triangle >= 0:
+                hint = triangle
+                arc_first, arc_last = arc_of(which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, arcs)
+                kind = FORBIDDEN
+                cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
+            if last - first <= narrowest or top + done + 3 > most:
+                kind, cut_first, cut_last = UNSURE, first, last
+        # What is cut out is settled; the rest, at most half on either side or narrower, is not.
+        parts[done, 0], parts[done, 1], parts[done, 2] = cut_first, cut_last, kind
+        if cut_last > cut_first:
+            done += 1
+        if cut_last < last:
+            pending[top, 0], pending[top, 1] = cut_last, last
+            top += 1
+        if cut_first > first:
+            pending[top, 0], pending[top, 1] = first, cut_first
+            top += 1
+    return parts[:done]
 
 
 def local_gouge_range(kappa_max: float, kappa_min: float, rotation: float, offset: float, radius: float) -> tuple[float, float]:

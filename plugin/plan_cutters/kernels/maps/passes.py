@@ -23,7 +23,7 @@ _HAIR = 1e-9
 @kernel
 def _cuts(x, y, z, interval, count, tool):
     """Tell whether a point is in the body at some tilt of some interval: none of the sides of lemma M1 parts them."""
-    radius, shrunk, low, high, _ = tool
+    radius, shrunk, low, high = tool
     square = shrunk * shrunk - y * y
     if square <= 0.0 or z <= low:
         return False
@@ -250,7 +250,7 @@ def _never(polygon, count, radius, shrunk):
 @kernel
 def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
     """Test a polygon like `_boxes_pass`, if necessary in two parts: what the bottom sweeps over, and the rest (lemma M3)."""
-    radius, shrunk, low, high, _ = tool
+    radius, shrunk, low, high = tool
     middle = 0.0
     for k in range(count):
         middle += polygon[k, 1]
@@ -297,7 +297,7 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):
     contact, or above its top where the interval ends was so before. Each point must be one of these; the rest of the triangle
     is cut off in turn.
     """
-    radius, shrunk, low, high, _ = tool
+    radius, shrunk, low, high = tool
     if _plane_passes(corner, cf, sf, cl, sl, tool):
         return True
     count = _clip(corner, 3, first, sf, cf, low * min(1.0, cf * min(cf + sf, cl + sl)))
@@ -327,7 +327,7 @@ def _boxes_pass(view, block, cosine, sine, interval, count, tool, margin):
     the top where it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its
     side next to the axis.
     """
-    radius, shrunk, low, high, _ = tool
+    radius, shrunk, low, high = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
@@ -381,7 +381,7 @@ def _boxes_pass(view, block, cosine, sine, interval, count, tool, margin):
 @kernel
 def _triangles_pass(seen, cosine, sine, interval, count, tool, margin):
     """`_boxes_pass` for the triangles of a leaf."""
-    radius, shrunk, low, high, _ = tool
+    radius, shrunk, low, high = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):

@@ -118,7 +118,7 @@ def _bounds_of(piece, k, bound):
 def flutes(turning, k):
     """Piece k as the eight sides take it."""
     piece = turning.piece
-    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
+    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH])
 
 
 @maker
@@ -305,7 +305,6 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):
 
 @kernel
 def _all(clear):
-    """Whether all lanes are marked."""
     least = 1.0
     for lane in range(LANES):
         least = min(least, clear[lane])

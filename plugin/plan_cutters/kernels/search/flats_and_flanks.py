@@ -23,7 +23,7 @@ from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import attribute_of, inside, mode_at, next_tilt
 from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
 from plan_cutters.kernels.tool.arcs import remove
-from plan_cutters.kernels.tool.hit import deep_hit, everything, into_frame, scratch, stand, triangle_hit
+from plan_cutters.kernels.tool.hit import everything, into_frame, scratch, stand, tree_hit, triangle_hit
 from plan_cutters.kernels.tool.pieces import clipped, inset, shadow_area
 
 #: What a place is: none, none that could be (proved), or one where the tool was put down.
@@ -299,7 +299,7 @@ def find_place(p, axis, x, tool, mode, rise, most, solids, within, apart, flat, 
             body[A + k], body[X + k], body[Y + k] = axis[k], x[k], y[k]
         body[OFFSET], body[HALF] = 0.0, 0.0
         # Of what is in the way that which lies deep in the tool: it forbids most of the places about.
-        triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], flat.scratch)
+        triangle, which, height, px, py = tree_hit(solids.tree, body, tool.piece[mode], 0.0, -1, flat.scratch, True)
         if triangle < 0:
             if not inside(body, tool, mode, solids, within, flat.scratch):
                 place[0], place[1] = u, v
@@ -412,7 +412,7 @@ def _slid(frame, turn, length, tool, mode, solids, within, hint, body, intervals
             which, height, x, y = triangle_hit(vertex, row, body, piece, everything(piece), 0.0, scratch)
         if which < 0:
             hint = -1
-            triangle, which, height, x, y = deep_hit(solids.tree, body, piece, scratch)
+            triangle, which, height, x, y = tree_hit(solids.tree, body, piece, 0.0, -1, scratch, True)
         if triangle < 0:
             if not inside(body, tool, mode, solids, within, scratch):
                 return FREE, slide, NO_REASON, most

@@ -80,7 +80,6 @@ def shut_in(contacts, row, deep, solids, scratch):
 
 @kernel
 def _write(results, row, contacts, ranges, rotation, tilt):
-    """Write a posture."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
     turn_cos, turn_sin = turn_of(n, e1, ranges, rotation)
     cosine, sine = np.cos(tilt), np.sin(tilt)

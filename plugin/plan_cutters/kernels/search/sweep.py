@@ -18,7 +18,7 @@ from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search import place
-from plan_cutters.kernels.tool.hit import deep_hit
+from plan_cutters.kernels.tool.hit import tree_hit
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _CACHED, _POOL = 64, 128
@@ -149,7 +149,7 @@ def _rotation(contacts, row, ranges, rotation, mode, side, last, wish, frame, ob
         new = which < 0
         if new:
             place.put(body, frame, tilt, tool, mode)
-            triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], workspace.scratch)
+            triangle, which, height, px, py = tree_hit(solids.tree, body, tool.piece[mode], 0.0, -1, workspace.scratch, True)
             if triangle < 0:
                 if not place.inside(body, tool, mode, solids, within, workspace.scratch):
                     obstacle_cache.count[slots] = written

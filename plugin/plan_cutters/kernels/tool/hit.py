@@ -150,11 +150,26 @@ def everything(piece):
 
 
 @kernel
-def tree_hit(tree, body, piece, rate, hint, scratch):
+def _depth_of(box, i, body, piece, mask):
+    """How deep at least the centre of box i lies in the pieces of a mask; negative outside."""
+    dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
+    height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
+    across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2] + body[OFFSET]
+    sideways = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
+    square, best = across * across + sideways * sideways, -np.inf
+    for k in range(len(piece)):
+        if (mask >> k) & 1:
+            best = max(best, inset(piece, k, height, square))
+    return best
+
+
+@kernel
+def tree_hit(tree, body, piece, rate, hint, scratch, deep=False):
     """First triangle found that reaches into the tool, the piece, and with `rate` 0 its point.
 
     `body` (14,) float64. `piece` (k, COLUMNS) float64. `hint` (int): triangle to try first (the last one that was in the way), or
-    -1. `scratch` (Scratch): 64 pieces let a triangle be halved often enough where `rate` > 0. Returns `triangle`, `which` (int):
+    -1. `deep`: of two boxes the one that lies deeper comes first: where something is in the way, it is found sooner there.
+    `scratch` (Scratch): 64 pieces let a triangle be halved often enough where `rate` > 0. Returns `triangle`, `which` (int):
     -1 if none. `height`, `px`, `py` (float): its point, as `triangle_hit` gives it.
     """
     stack, masks, whole = scratch.stack, scratch.masks, everything(piece)
@@ -175,58 +190,17 @@ def tree_hit(tree, body, piece, rate, hint, scratch):
             if mask == 0:
                 continue
             if node < first:
-                stack[top], masks[top] = 2 * node + 2, mask
-                stack[top + 1], masks[top + 1] = 2 * node + 1, mask
+                left, right = 2 * node + 1, 2 * node + 2
+                if deep and _depth_of(box, left, body, piece, mask) < _depth_of(box, right, body, piece, mask):
+                    left, right = right, left
+                stack[top], masks[top] = right, mask
+                stack[top + 1], masks[top + 1] = left, mask
                 top += 2
                 continue
             leaf = node - first
             for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
                 which, height, px, py = triangle_hit(vertex, i, body, piece, mask, rate, scratch)
                 if which >= 0 and (rate == 0.0 or _swept_hit(vertex, i, body, piece, mask, rate, scratch)):
-                    return begin + i, which, height, px, py
-    return -1, -1, 0.0, 0.0, 0.0
-
-
-@kernel
-def _depth_of(box, i, body, piece, mask):
-    """How deep at least the centre of box i lies in the pieces of a mask; negative outside."""
-    dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
-    height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
-    across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2] + body[OFFSET]
-    sideways = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
-    square, best = across * across + sideways * sideways, -np.inf
-    for k in range(len(piece)):
-        if (mask >> k) & 1:
-            best = max(best, inset(piece, k, height, square))
-    return best
-
-
-@kernel
-def deep_hit(tree, body, piece, scratch):
-    """`tree_hit` with `rate` 0, of two boxes the one that lies deeper first: where something is in the way, sooner there."""
-    stack, masks = scratch.stack, scratch.masks
-    for k in range(2):
-        vertex, box, depth, begin = half(tree, k)
-        n, first, top = len(vertex), (1 << depth) - 1, 1 if len(vertex) else 0
-        stack[0], masks[0] = 0, everything(piece)
-        while top > 0:
-            top -= 1
-            node = stack[top]
-            scratch.looked[0] += 1
-            mask = alive(box, node, body, piece, masks[top], 0.0)
-            if mask == 0:
-                continue
-            if node < first:
-                deeper = _depth_of(box, 2 * node + 1, body, piece, mask) >= _depth_of(box, 2 * node + 2, body, piece, mask)
-                deeper_left = 1 if deeper else 0
-                stack[top], masks[top] = 2 * node + 1 + deeper_left, mask
-                stack[top + 1], masks[top + 1] = 2 * node + 2 - deeper_left, mask
-                top += 2
-                continue
-            leaf = node - first
-            for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-                which, height, px, py = triangle_hit(vertex, i, body, piece, mask, 0.0, scratch)
-                if which >= 0:
                     return begin + i, which, height, px, py
     return -1, -1, 0.0, 0.0, 0.0
 
