@@ -16,6 +16,7 @@ from plan_cutters.plan_file.words.process import process_story, with_process_wor
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, cone, cut, rod
 from tests.support.profiles import extruded
+from tests.support.serving import not_reached
 
 HOW = {"area_budget": 0, "jobs": 2, "faces": "all", "setup": (0, 0, 1), "machine": "tilt:90", "drill_below": 0}
 GOUGES = ("local_gouge", "rear_gouge", "collision")
@@ -48,7 +49,7 @@ def test_a_size_reaches_the_share_that_is_said(plate):
         rows = np.flatnonzero(plate.ready.finished & verdicts.not_reached & (verdicts.reason == REASONS.index(each.cause)))
         assert area[rows].sum() == pytest.approx(each.area_mm2, rel=1e-3)
         for fit in each.fits:
-            missed = Case(plate.ready, Cutter.parse(fit.cutter)).judged(rows)
+            missed = not_reached(Case(plate.ready, Cutter.parse(fit.cutter)), rows)
             share = 1.0 - area[missed].sum() / area[rows].sum()
             assert share == pytest.approx(fit.share, abs=0.03)
             said.append(fit.size)

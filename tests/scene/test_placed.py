@@ -53,7 +53,7 @@ def test_a_table_reaches_as_far_to_all_sides_of_the_part_and_is_drawn_a_tenth_of
         assert high[:2] == pytest.approx(corners.max(axis=0)[:2] + beyond, rel=1e-6, abs=1e-9)
         # Its shift comes on top, from the origin or from the part's lowest point.
         top = (-7.0 if ":" in word else corners[:, 2].min()) + float(frame[2] @ shift)
-        assert high[2] == pytest.approx(top, rel=1e-6, abs=1e-9)
+        assert high[2] == pytest.approx(top, rel=1e-6, abs=1e-6)
         assert low[2] <= min(corners[:, 2].min() - beyond, top - beyond) + 1e-6
     # Where the words do not say how high its top is, it is said.
     said = "from the part's origin along the setup axis" in " ".join(made.notes)

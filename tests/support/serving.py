@@ -11,9 +11,9 @@ def serves(rows, axis, samples, context):
     return served_by(rows, np.asarray(axis)[None], samples, context)[0][0]
 
 
-def not_reached(case):
-    """Samples of the finished surface that a case does not reach, as a plan finds them."""
-    rows = np.flatnonzero(case.ready.finished)
+def not_reached(case, rows=None):
+    """Samples of the finished surface, or of some rows of it, that a case does not reach, as a plan finds them."""
+    rows = np.flatnonzero(case.ready.finished) if rows is None else rows[case.ready.finished[rows]]
     for one in case.setups:
         if len(rows):
             rows = rows[~judge(one, case.cutter, rows).reached]

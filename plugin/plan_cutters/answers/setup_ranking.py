@@ -366,11 +366,11 @@ class Ranking:
         fixture, along = Fixture.parse(word), self.ready.conditions.machine.chuck_axis
         if fixture.kind != CHUCK or along is None:
             return [(fixture, None)]
-        axis, tall, asked = self.candidates.axis, self.candidates.tall, len(self.words) == 1
+        axis, tall, requested = self.candidates.axis, self.candidates.tall, len(self.words) == 1
         across = np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist()
         # Who asks for a chuck may lay a bar in it about a part that is not round, or a disk that would stand.
-        across = [j for j in across if self.candidates.bearing[j].round or (asked and self.stock is not None)]
-        least = max(0.0 if asked else tall[k], (1.0 - _EVEN) * max(tall[across], default=0.0))
+        across = [j for j in across if self.candidates.bearing[j].round or (requested and self.stock is not None)]
+        least = max(0.0 if requested else tall[k], (1.0 - _EVEN) * max(tall[across], default=0.0))
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in across if tall[j] >= least]
         return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]
 
