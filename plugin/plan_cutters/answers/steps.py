@@ -55,7 +55,7 @@ def option(
         if options.placement is not None or any(options.other_placements):
             return None
         only = "" if setups[0] == ready.scene.setup else ONLY
-        typed = [",".join(f"{each:.6g}" for each in axis) for axis in setups]
+        typed = [_typed(axis) for axis in setups]
         words += [word for each in (only + typed[0], *typed[1:]) for word in ("--setup", each)]
     if conditions is not None and conditions.machine != ready.conditions.machine:
         words += ["--machine", conditions.machine.name]
@@ -79,8 +79,12 @@ def one_more_setup(ready: Prepared, axis: Axis) -> list[str] | None:
     if proposed(ready) and not _files(ready):
         return None
     files = [place.file if place else "" for place in places(ready.options)]
-    typed = [file or ",".join(f"{x:.6g}" for x in own) for file, (own, _) in zip(files, ready.axes, strict=True)]
-    return [word for each in (*typed, ",".join(f"{x:.6g}" for x in axis)) for word in ("--setup", each)]
+    typed = [file or _typed(own) for file, (own, _) in zip(files, ready.axes, strict=True)]
+    return [word for each in (*typed, _typed(axis)) for word in ("--setup", each)]
+
+
+def _typed(axis: Axis) -> str:
+    return ",".join(f"{each:.6g}" for each in axis)
 
 
 def proposed(ready: Prepared) -> bool:

@@ -15,7 +15,6 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Columns
 from plan_cutters.operations.choices import Choice
 from plan_cutters.operations.fastest import cheap
-from plan_cutters.operations.labels import flowing_faces
 from plan_cutters.operations.plans import costs_with, moving_over, plan_with, worth_their_turn
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan
@@ -157,7 +156,7 @@ def _faces_tried(task: Task, plan: OperationPlan) -> Iterator[list[int]]:
 
     Other rounds and spheres are none: nobody turns while cutting for a fillet.
     """
-    samples, faces = task.ready.samples, flowing_faces(task.ready)
+    samples, faces = task.ready.samples, task.flowing
     rows = task.rows[np.isin(samples.face[task.rows], faces)]
     if not len(rows):
         return

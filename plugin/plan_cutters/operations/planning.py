@@ -19,7 +19,7 @@ from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.entries import operations_entry
 from plan_cutters.operations.fastest import against_bound, bounded
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
-from plan_cutters.operations.labels import WHOLE_FACE, Seams
+from plan_cutters.operations.labels import WHOLE_FACE, Seams, flowing_faces
 from plan_cutters.operations.motion import chosen_for_others, few_enough, flowing, recommended, with_moved
 from plan_cutters.operations.moving_axes import MovingAxes
 from plan_cutters.operations.orientations import STEP, Indexing, Orientations, apart, candidates
@@ -320,8 +320,11 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     )  # fmt: skip
     where = tuple(Orientations.of(conditions) for conditions in ready.setups)
     indexing = Indexing(where, options.index_time)
-    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing, Walls(probes, paths),
-                MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths), Seams.of(ready))  # fmt: skip
+    moving = MovingAxes(ready.samples, cutters, ready.setups, everywhere, paths)
+    return Task(
+        ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing, Walls(probes, paths),
+        moving, Seams.of(ready), flowing_faces(ready),
+    )  # fmt: skip
 
 
 def _first(task: Task, spacing: float = STEP) -> Columns:

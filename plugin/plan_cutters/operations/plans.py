@@ -19,7 +19,6 @@ from plan_cutters.operations.labels import (
     MINOR_SECONDS,
     MINOR_SHARE,
     Steps,
-    flowing_faces,
     in_one_step,
     joined,
     labelled,
@@ -322,7 +321,7 @@ def _fewer(task: Task, made: _Made, cost: Floats, pace: Floats, own: Reserved | 
     # The faces that axes may turn over and that several operations cut, the largest first.
     size, pairs = np.bincount(samples.face, area), np.unique(np.column_stack([samples.face, number])[number >= 0], axis=0)
     face, count = np.unique(pairs[:, 0], return_counts=True)
-    flowing = np.intersect1d(face[count > 1], flowing_faces(task.ready)).tolist()
+    flowing = np.intersect1d(face[count > 1], task.flowing).tolist()
     free_form = sorted(flowing, key=lambda each: -size[each])
     if len(free_form) and options.index_step is None and own is None and task.moves:
         there = {(each.cutter, each.setup) for each in operations if each.axis is None}

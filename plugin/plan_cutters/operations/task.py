@@ -29,7 +29,7 @@ from plan_cutters.scene.preparation import Prepared
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
 _OTHER_FACE = 10.0
-#: KnownPaces that are found at once.
+#: Paces that are found at once.
 _AT_ONCE = 100_000
 
 
@@ -89,6 +89,7 @@ class Task:
     `orientations`: of each setup.
     `everywhere`: of each setup, the verdicts by cutter.
     `rows` (r,) int64: samples that are reached by one of the cutters in one of the setups.
+    `flowing` (f,) int64: numbers of the faces that the machine cuts while its axes turn, ascending.
     `symmetry`: under which each column stands for itself and its images; None: for itself alone.
     `copies`: how many equal copies the samples stand for: their areas and times count so often.
     `moved` (n,) bool: samples that go with simultaneous motion whatever else serves them; None: none.
@@ -105,6 +106,7 @@ class Task:
     walls: Walls
     moving: MovingAxes
     seams: Seams
+    flowing: Rows
     symmetry: Symmetry | None = None
     copies: int = 1
     moved: NDArray[np.bool_] | None = None

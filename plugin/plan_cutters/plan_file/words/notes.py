@@ -332,15 +332,14 @@ def _raw(plan: Plan) -> Iterator[str]:
 
 def _into_solid(plan: Plan) -> Iterator[str]:
     """Steps of mills that go down to the bottoms of holes, which are solid until their drills have been there."""
-    behind = dict[int, set[int]]()
-    for k, step in enumerate(plan.process.steps, 1):
-        for number, bores in enumerate(plan.process.drilling, len(plan.process.steps) + 1):
-            floors = {face for each in bores.holes for face in plan.holes[each.hole].floor}
-            if bores.setup >= step.setup and floors.intersection(step.faces):
-                behind.setdefault(k, set()).add(number)
-    for k, drills in behind.items():
-        which = f"step{'s' * (len(drills) > 1)} {_runs(sorted(drills))}"
-        yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
+    steps, drilling = plan.process.steps, plan.process.drilling
+    floors = [{face for each in bores.holes for face in plan.holes[each.hole].floor} for bores in drilling]
+    drilled = list(enumerate(zip(drilling, floors, strict=True), len(steps) + 1))
+    for k, step in enumerate(steps, 1):
+        drills = [number for number, (bores, own) in drilled if bores.setup >= step.setup and own.intersection(step.faces)]
+        if drills:
+            which = f"step{'s' * (len(drills) > 1)} {_runs(drills)}"
+            yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
 def _across(plan: Plan) -> Iterator[str]:
