@@ -3,7 +3,7 @@
 import datetime
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,6 +134,15 @@ class JudgedPart:
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
         return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
 
+    @cached_property
+    def grounds(self) -> list[bytes]:
+        """Checksums of the grounds of all setups, and of what no cutter has to reach; none where nothing is kept."""
+        ready = self.ready
+        if ready.cache is NO_CACHE:
+            return []
+        each = [GroundDigests().of(ready.there(k)) for k in range(len(ready.setups))]
+        return [*each, ready.not_required.tobytes(), ready.samples.area.tobytes()]
+
     @property
     def here(self) -> dict[Cutter, Verdicts]:
         """The verdicts in the first setup by cutter."""
@@ -179,7 +188,7 @@ class JudgedPart:
             judged = self.cutters[cutter]
             return {cutter.id: ready.cache.cached(
                 "area",
-                (_grounds(ready), ready.scene.part.key, replace(cutter, name=""), judged.verdicts, judged.which, budget, most),
+                (self.grounds, ready.scene.part.key, replace(cutter, name=""), judged.verdicts, judged.which, budget, most),
                 partial(_area, ready, cutter, judged, budget, most, tell),
             )}  # fmt: skip
 
@@ -208,7 +217,7 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
-                           partial(_fitting, ready))  # fmt: skip
+                           partial(_fitting, part))  # fmt: skip
         if ready.holes:
             done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
             made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))
@@ -252,19 +261,12 @@ def _inside_edges(ready: Prepared) -> tuple[InsideEdge, ...]:
     return ready.cache.cached("inside_edges", key, lambda: inside_edges(part, orientation, doubles))
 
 
-def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:
-    follows_from = _grounds(ready), ready.scene.part.key, replace(cutter, name=""), rows, area[rows]
+def _fitting(part: JudgedPart, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:
+    ready = part.ready
+    follows_from = part.grounds, ready.scene.part.key, replace(cutter, name=""), rows, area[rows]
     # A name says whether it was given in inches.
     inches = notation(cutter.name).inches
     return ready.cache.cached("fits", (*follows_from, inches), partial(fitting, ready, cutter, rows, area))
-
-
-def _grounds(ready: Prepared) -> list[bytes]:
-    """Checksums of the grounds of all setups, and of what no cutter has to reach; none where nothing is kept."""
-    if ready.cache is NO_CACHE:
-        return []
-    each = [GroundDigests().of(ready.there(k)) for k in range(len(ready.setups))]
-    return [*each, ready.not_required.tobytes(), ready.samples.area.tobytes()]
 
 
 def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, most: float, tell: Progress) -> AreaEntry:

@@ -19,7 +19,7 @@ from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.setups import solids
 from plan_cutters.setups.clamping import held as placed_by
 from plan_cutters.setups.places import chuck_places, vise_places
-from plan_cutters.setups.workpiece import Workpiece, at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
+from plan_cutters.setups.workpiece import PartMesh, Workpiece, at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import said_by
 from tests.support.vises import stands_in
@@ -90,7 +90,7 @@ def test_places_of_vises_and_chucks(name, keeps):
     bodies = material_bodies(around.bodies, side)
     said = {"bodies": bodies}
     for axis, targets in ((UP, ()), (ASIDE, (1, 2)), (DOWN, (3,))):
-        piece = Workpiece.of(triangles.vertex, triangles.face, side, planes, targets, axis, bodies)
+        piece = Workpiece.of(PartMesh.of(triangles.vertex, triangles.face, side), planes, targets, axis, bodies)
         said[str(axis)] = {
             "piece": {
                 each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")
@@ -122,7 +122,7 @@ def test_places_that_are_searched(keeps):
     bodies = [frozenset(range(1 + 6 * k, 7 + 6 * k)) for k in range(5)]
     said = {}
     for few, first, second in ((5, 0, 0), (5, 3, 2), (5, 0, 99), (5, 99, 0), (2, 0, 0), (0, 0, 12), (0, 0, 13), (0, 4, 11)):
-        piece = Workpiece.of(np.concatenate(ribs), face, np.ones(30), range(1, 31), (2, 9), UP, bodies[:few])
+        piece = Workpiece.of(PartMesh.of(np.concatenate(ribs), face, np.ones(30)), range(1, 31), (2, 9), UP, bodies[:few])
         for word in ("vise", "vise:46x25x65:2"):
             asked = []
             found = said_by(placed_by, Fixture.parse(word), piece, so_often(first, asked, 0), so_often(second, asked, 1), 0.01)

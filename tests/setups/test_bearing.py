@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.setups import solids
-from plan_cutters.setups.workpiece import Bearing, Workpiece, enclosed
+from plan_cutters.setups.workpiece import Bearing, PartMesh, Workpiece, enclosed
 
 UP = (0.0, 0.0, 1.0)
 SIZE = st.floats(1.0, 100.0)
@@ -20,7 +20,7 @@ def boxes(*each):
     face = np.tile(np.arange(1, 7, dtype=np.int32), 2)
     faces = np.concatenate([face + 6 * k for k in range(len(each))]).astype(np.int32)
     count = 6 * len(each)
-    return Workpiece.of(vertex, faces, np.ones(count), range(1, count + 1), (), UP)
+    return Workpiece.of(PartMesh.of(vertex, faces, np.ones(count)), range(1, count + 1), (), UP)
 
 
 @settings(max_examples=60, deadline=None)

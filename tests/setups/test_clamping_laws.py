@@ -17,7 +17,7 @@ from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.setups import solids
 from plan_cutters.setups.clamping import NothingToGripError, held
 from plan_cutters.setups.places import vise_places
-from plan_cutters.setups.workpiece import PARALLEL, Workpiece
+from plan_cutters.setups.workpiece import PARALLEL, PartMesh, Workpiece
 
 TOLERANCE, UP = 0.01, np.array([0.0, 0.0, 1.0])
 
@@ -36,7 +36,7 @@ def placed(boxes, turn, word="vise:46x25x65"):
     face, count = faces_of(vertex), 6 * len(boxes)
     vertex = vertex @ turn.T
     part = Obstacles(Triangles(vertex, face, 0.0, ()), np.ones(len(vertex), np.int8))
-    piece = Workpiece.of(vertex, face, np.ones(count), range(1, count + 1), (), tuple(turn @ UP))
+    piece = Workpiece.of(PartMesh.of(vertex, face, np.ones(count)), range(1, count + 1), (), tuple(turn @ UP))
 
     def plainly(fixture, clamping):
         return entered(part, fixture, clamping, TOLERANCE)
@@ -101,7 +101,7 @@ def test_what_is_gripped_is_off_its_jaw_by_no_more_than_faces_may_be_off_each_ot
     face = faces_of(vertex)
     ends = np.array([0.0, 40.0]) + vertex[..., 1:2] * run + vertex[..., 2:] * stand
     vertex[..., 0] = (1.0 - vertex[..., 0]) * ends[..., 0] + vertex[..., 0] * ends[..., 1]
-    part = Workpiece.of(vertex, face, np.ones(6), range(1, 7), (), tuple(UP))
+    part = Workpiece.of(PartMesh.of(vertex, face, np.ones(6)), range(1, 7), (), tuple(UP))
     found, _ = vise_places(part, requested("vise", f"46x25x65:{grip}", 1.0, "vise"))
     places = [each for each in found if set(each.grips) == {1, 2}]
     if abs(one - other) > 2.0 + 1e-6 or max(abs(lean), abs(back)) > 1.0 + 1e-6:

@@ -13,10 +13,12 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
 from plan_cutters import Scene
 from plan_cutters.domain.clamping import requested
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.stock import Stock, StockBody
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups import solids
+from plan_cutters.setups.clamping import held_stock
 from plan_cutters.setups.places import _degrees_of, vise_places
-from plan_cutters.setups.workpiece import Workpiece, clipped
+from plan_cutters.setups.workpiece import PartMesh, Workpiece, clipped, faces_in_jaws
 from tests.support.cad_parts import box, rod
 from tests.support.vises import hold_of
 
@@ -31,7 +33,7 @@ def workpiece(*boxes, setup=UP, targets=()):
     high = normal[np.arange(len(side)), side] > 0
     face = (1 + 2 * side + high + 6 * np.repeat(np.arange(len(boxes)), 12)).astype(np.int32)
     count = 6 * len(boxes)
-    return Workpiece.of(vertex, face, np.ones(count), range(1, count + 1), targets, setup)
+    return Workpiece.of(PartMesh.of(vertex, face, np.ones(count)), range(1, count + 1), targets, setup)
 
 
 def shared(one, other):
@@ -220,6 +222,35 @@ def test_a_shaft_that_lies_is_held_across_its_diameter_in_soft_jaws(radius, slen
     assert "in soft jaws bored to it" in hold.words
     long = min(vise.width, 2.0 * radius * slender)
     assert hold.hidden == pytest.approx(long * radius * (math.pi + 2.0 * math.asin(1.5 / radius)), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("thick", "turned", "web", "soft"),
+    [(1.5, True, False, True), (1.5, False, False, False), (8.0, True, False, False), (1.5, True, True, False)],
+)
+def test_jaws_do_not_press_on_walls_that_they_would_bend(thick, turned, web, soft):
+    """A U of 60 x 80 x 40 mm on the ends of its walls: those of 1.5 mm bend, but for a web between them."""
+    part = cq.Workplane().box(60, 80, 40).faces(">Z").workplane().rect(60 - 2 * thick, 80).cutBlind(-36)
+    part = part.union(cq.Workplane().box(60, 4, 40)) if web else part
+    hold = hold_of(part.val().wrapped, "vise", (0.0, 0.0, -1.0 if turned else 1.0))
+    assert hold.fixture.clamping.gap == pytest.approx(60.0)
+    assert ("would bend walls 1.5 mm thick" in hold.soft) == soft
+
+
+@pytest.mark.parametrize(("tall", "grips"), [(15.0, 3.0), (79.0, 8.0), (399.0, 20.0)])
+def test_jaws_grip_tall_stock_deeper(tall, grips):
+    """A tenth of the stock over the part's foot, and 2 mm below the part stay free."""
+    stock = next(iter(Stock.of("usual").choices(tall, round_=False)))
+    assert stock.below == grips + 2.0
+    body = StockBody.about(stock, np.array([[0.0, 0.0, 0.0], [300.0, 100.0, tall]]))
+    assert held_stock(Fixture("vise"), body, UP, 8).fixture.clamping.grip == pytest.approx(grips)
+
+
+@pytest.mark.parametrize(("low", "grips"), [(3.0, False), (2.995, False), (2.9, True)])
+def test_a_face_that_begins_at_the_upper_edge_of_a_jaw_is_not_gripped(low, grips):
+    vise = requested("vise", "46x25x65:3:40", 1.0, "vise").clamping
+    vertex = solids.box(np.array([-20.0, -10.0, low]), np.array([20.0, 10.0, 30.0]))
+    assert bool(faces_in_jaws(vise, vertex, np.ones(len(vertex), np.int32), 0.0)) == grips
 
 
 def test_a_shaft_that_lies_on_its_collar_needs_a_nest():

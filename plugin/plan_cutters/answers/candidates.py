@@ -11,7 +11,7 @@ from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.workpiece import Bearing, enclosed, hull
+from plan_cutters.setups.workpiece import Bearing
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
@@ -37,22 +37,19 @@ class Candidates(Record):
     def of(cls, ready: Prepared) -> "Candidates":
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
         triangles, planar = _of_part(ready)
-        vertex, sign = triangles.vertex, ready.scene.orientation.sign[triangles.face - 1]
+        mesh = ready.scene.mesh(triangles)
         # From where drills of the libraries come, if there are any.
         holes = [way * hole.axis for hole in ready.holes if made_of(ready.options.libraries) for way in (1.0, -1.0)]
         normals = _normals(triangles.vertex, triangles.face, planar)
         axis = distinct(np.concatenate([cube(), normals, fibonacci(_SPREAD), np.array(holes).reshape(-1, 3)]))
         heights = _Heights.of(ready, axis)
         stands_on, tall = heights.stood_on(planar), heights.high.max(axis=0) - heights.lowest
-        corner, rows = vertex.reshape(-1, 3), rows_by_face(triangles.face)
-        _, centre = enclosed(vertex, sign[:, None] * np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]))
-        outer = hull(corner)
-        outline = corner if outer is None else corner[outer.vertices]
+        rows, (_, centre) = rows_by_face(mesh.face), mesh.enclosed
         bearing = []
         for k, faces in enumerate(stands_on):
             across = frame_of(axis[k])[:2].T
-            below = np.concatenate([np.zeros((0, 3)), *(vertex[rows[n]].reshape(-1, 3) for n in faces)])
-            bearing.append(Bearing.of(outline @ across, below @ across, centre @ across, float(tall[k])))
+            below = np.concatenate([np.zeros((0, 3)), *(mesh.vertex[rows[n]].reshape(-1, 3) for n in faces)])
+            bearing.append(Bearing.of(mesh.outer @ across, below @ across, centre @ across, float(tall[k])))
         return cls(axis, stands_on, heights.lowest, tall, tuple(bearing))
 
     def preferred(self, every: Sequence[int]) -> list[int]:

@@ -257,7 +257,8 @@ class Ranking:
         """
         assert self.stock is not None, "without stock the part is gripped"
         most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
-        for stock in self.stock.choices(round_=self.candidates.bearing[k].round or bool(self.lying(k))):
+        tall, round_ = float(self.candidates.tall[k]), self.candidates.bearing[k].round or bool(self.lying(k))
+        for stock in self.stock.choices(tall, round_=round_):
             for word in [each for each in self.words if each != TABLE]:
                 with suppress(NothingToGripError):
                     # Beside what stands below the part a tool may be lower than it.
@@ -553,7 +554,7 @@ def _reached(
             search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
             good = verdicts.reached
             if above is not None:
-                good &= over_plane(context, contacts_of(ready.samples), verdicts, above)
+                good &= over_plane(context, contacts_of(ready.samples), verdicts.freeze(), above)
             reached |= good
             open_rows = open_rows[~good[open_rows]]
     return reached

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from cad_io.arrays import Floats, Triangles
+from cad_io.arrays import Floats
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import STOCK, TABLE, Fixture
 from plan_cutters.domain.verdicts import CHORD_REQUESTED
@@ -14,7 +14,7 @@ from plan_cutters.plan_file.operations import ProcessSetup, StockEntry
 from plan_cutters.scene.fixtures import stock_body
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
-from plan_cutters.setups.workpiece import Workpiece, faces_in_jaws, on_ledges
+from plan_cutters.setups.workpiece import PartMesh, Workpiece, faces_in_jaws, on_ledges
 
 #: Of the height of jaws, faces before them have nearly all.
 _NEARLY = 0.9
@@ -28,18 +28,19 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
     planes = [face.number for face in ready.scene.part.faces if face.shape == "plane"]
     for number, conditions in enumerate(ready.setups, 1):
         surroundings = conditions.surroundings
-        every = (surroundings.alone or surroundings).certain.triangles
-        triangles = every.take(every.face > 0) if (every.face <= 0).any() else every
+        triangles = (surroundings.alone or surroundings).certain.triangles
         up = vector(conditions.setup)
         blank = next((each.fixture for each in surroundings.fixtures if each.fixture.kind == STOCK), None)
         gripping = next((each for each in surroundings.fixtures if each.fixture.clamping is not None), None)
         along = up if gripping is None else gripping.fixture.stands_along(up)
-        sign, chord = ready.scene.orientation.sign, triangles.chord_error
-        part = Workpiece.of(triangles.vertex, triangles.face, sign, planes, (), along, chord=chord)
+        part = Workpiece.of(ready.scene.mesh(triangles), planes, (), along, chord=triangles.chord_error)
         on: list[str] | Literal["stock"] | None = "stock"
         if blank is None:
-            on = _named(part.face[part.level(0.0)].tolist()) if gripping is None else _rests_on(part, gripping.fixture, triangles)
-        held = _gripped(gripping, triangles, stock=blank is not None) if gripping else _stood(part, surroundings.fixtures)
+            on = _named(part.face[part.level(0.0)].tolist()) if gripping is None else _rests_on(part, gripping.fixture)
+        if gripping is None:
+            held = _stood(part, surroundings.fixtures)
+        else:
+            held = _gripped(gripping, part.mesh, triangles.chord_error, stock=blank is not None)
         setups.append(ProcessSetup(number=number, up=up, stands_on=on or None, **held))
         if blank is not None and number == 1:
             stock = _stock(ready, surroundings, blank, vector(along), part.enclosed[0])
@@ -69,15 +70,15 @@ def _stood(part: Workpiece, fixtures: Collection[PlacedFixture]) -> dict[str, An
             "soft": "" if part.bearing(0.0).firm else "what it stands on does not carry it"}  # fmt: skip
 
 
-def _gripped(gripping: PlacedFixture, triangles: Triangles, *, stock: bool) -> dict[str, Any]:
+def _gripped(gripping: PlacedFixture, mesh: PartMesh, chord: float, *, stock: bool) -> dict[str, Any]:
     """A setup in a vise or chuck that is in its place; jaws on stock touch no face."""
     fixture, clamping = gripping.fixture, gripping.fixture.clamping
     assert clamping is not None, "a vise or chuck grips"
-    own = (triangles.vertex - fixture.shift) @ fixture.rotation
-    grips = frozenset[int]() if stock else faces_in_jaws(clamping, own, triangles.face, triangles.chord_error)
+    own = (mesh.vertex - fixture.shift) @ fixture.rotation
+    grips = frozenset[int]() if stock else faces_in_jaws(clamping, own, mesh.face, chord)
     return {
         "held": fixture.kind, "grips": _named(grips), "apart_mm": clamping.numbers[-1], "grip_mm": clamping.grip,
-        "contact_mm": _contact(clamping, own[np.isin(triangles.face, list(grips))]),
+        "contact_mm": _contact(clamping, own[np.isin(mesh.face, list(grips))]),
         "clamping": fixture.text, "soft": "" if gripping.hold is None else gripping.hold.soft,
     }  # fmt: skip
 
@@ -95,12 +96,12 @@ def _contact(clamping: Clamping, vertex: Floats) -> float | None:
     return None if least >= _NEARLY * clamping.grip else max(0.0, least)
 
 
-def _rests_on(part: Workpiece, fixture: Fixture, triangles: Triangles) -> list[str]:
+def _rests_on(part: Workpiece, fixture: Fixture) -> list[str]:
     """Planar faces with which a part rests on the ledges of a vise or chuck in its place."""
     assert fixture.clamping is not None, "a vise or chuck grips"
     level = part.level(float(fixture.shift @ part.frame[2]) - part.lowest)
-    own = (triangles.vertex[level] - fixture.shift) @ fixture.rotation
-    return _named(on_ledges(fixture.clamping, own, triangles.face[level], part.flat))
+    own = (part.mesh.vertex[level] - fixture.shift) @ fixture.rotation
+    return _named(on_ledges(fixture.clamping, own, part.face[level], part.flat))
 
 
 def _named(faces: Iterable[int]) -> list[str]:

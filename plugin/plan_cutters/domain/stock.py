@@ -14,6 +14,8 @@ from plan_cutters.errors import OptionError
 
 #: Margins unless they are given: on each side, and below, mm; lengths beyond the second number are rather a mistake.
 _SIDES, _BELOW, _FARTHEST = 1.0, 5.0, 1e4
+#: Jaws grip stock so deep: this share of its height, and between these, mm; and so far below the part at least.
+_DEEP, _LEAST, _MOST, _FREE = 0.1, 3.0, 20.0, 2.0
 _FORM = "box[:X,Y,Z], cylinder[:R,Z] (margins in mm), FILE (STEP or a mesh) or part"
 PART, BOX, CYLINDER, USUAL = "part", "box", "cylinder", "usual"
 _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER}|{USUAL})(?::(.*))?", re.IGNORECASE | re.DOTALL)
@@ -22,6 +24,15 @@ _WORD = re.compile(rf"({PART}|{BOX}|{CYLINDER}|{USUAL})(?::(.*))?", re.IGNORECAS
 LONG = 2.17
 #: A bar, and stock that is proposed where a tool does not come low enough beside less, reaches so far below the part, mm.
 _DEEPER = 25.0
+
+
+def deep_in(tall: float, foot: float = math.inf) -> float:
+    """How deep jaws grip stock that stands so high over a part's foot, and reaches so far below that, mm.
+
+    >>> deep_in(20.0), deep_in(80.0), deep_in(80.0, 5.0), deep_in(900.0)
+    (3.0, 8.0, 3.0, 20.0)
+    """
+    return max(_LEAST, min(_DEEP * tall, _MOST, foot - _FREE))
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +74,15 @@ class Stock:
         """Whether there is more than the part."""
         return self.kind != PART
 
-    def choices(self, *, round_: bool) -> tuple["Stock", ...]:
-        """A setup tries these, the first that serves: a bar for a part that is round there, else a box; then more below."""
+    def choices(self, tall: float, *, round_: bool) -> tuple["Stock", ...]:
+        """A setup tries these, the first that serves, about a part that is so high, mm: a bar where it is round, else a box that
+        jaws grip deep enough; then more below.
+        """
         if self.kind != USUAL:
             return (self,)
-        box = Stock.of(BOX)
-        return (*[Stock.of(CYLINDER)] * round_, box, replace(box, margins=(*box.margins[:-1], _DEEPER)))
+        box, more = Stock.of(BOX), math.ceil(deep_in(tall) - _LEAST)
+        boxes = (replace(box, margins=(*box.margins[:-1], below + more)) for below in (_BELOW, _DEEPER))
+        return (*[Stock.of(CYLINDER)] * round_, *boxes)
 
     @property
     def below(self) -> float:

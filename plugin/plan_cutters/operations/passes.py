@@ -24,6 +24,7 @@ from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.kernels.linear.strips import NOTHING, PLANE, Laid, cuts
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.work import in_chunks
 
 Rows = NDArray[np.int64]
 #: Directions in which a face is measured at a sample, over half a turn from that of the larger curvature.
@@ -38,15 +39,15 @@ _GOES_ON = math.cos(math.radians(30.0))
 class Extents:
     """Lengths of faces through samples, measured when they are requested first.
 
-    `samples`: n of them. `obstacles`: with the triangles of the part.
+    `samples`: n of them. `obstacles`: with the triangles of the part. `jobs`: threads.
 
     Notes
     -----
     What was measured belongs to this object alone, and is read and written by one thread.
     """
 
-    def __init__(self, samples: SurfaceSamples, obstacles: Obstacles) -> None:
-        self._samples, self._obstacles = samples, obstacles
+    def __init__(self, samples: SurfaceSamples, obstacles: Obstacles, jobs: int = 1) -> None:
+        self._samples, self._obstacles, self._jobs = samples, obstacles, jobs
         self._length = np.full((3, len(samples), DIRECTIONS), np.nan)
         self._measured = np.zeros(len(samples), bool)
         pair = samples.face[samples.neighbours]
@@ -84,9 +85,7 @@ class Extents:
     def _measure(self, rows: Rows) -> None:
         from scipy.spatial import cKDTree
 
-        from plan_cutters.kernels.linear.sections import sections
-
-        samples, triangles, face = self._samples, self._obstacles.triangles, self._samples.face
+        samples, face = self._samples, self._samples.face
         for number in np.unique(face[rows[~self._measured[rows]]]).tolist():
             every = np.flatnonzero(face == number)
             self._measured[every] = True
@@ -96,24 +95,34 @@ class Extents:
                 continue
             smooth = self._pairs[(self._pairs == number).any(axis=1)]
             all_of = np.concatenate([own, self._obstacles.rows_of(smooth[smooth != number].tolist())])
-            vertex, unit = triangles.vertex[all_of], self._unit[all_of]
-            most = min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(vertex)))
-            some = known[:: 1 + len(known) // most]
-            first, second = self._frame(some)
-            point, normal = np.ascontiguousarray(samples.point[some]), np.ascontiguousarray(samples.normal[some])
-            near = 2.0 * triangles.chord_error + 1e-6
-            nearest = cKDTree(point).query(samples.point[known])[1]
-            for k in range(DIRECTIONS):
-                turn = k * math.pi / DIRECTIONS
-                along = np.ascontiguousarray(math.cos(turn) * first + math.sin(turn) * second)
-                lengths = np.empty((3, len(some)))
-                sections(point, along, normal, vertex, unit, len(own), _GOES_ON, near, near, *lengths)
-                self._length[:, known, k] = lengths[:, nearest]
+            some = known[:: 1 + len(known) // min(_OF_A_FACE, max(_AT_LEAST, _TOGETHER // len(all_of)))]
+            nearest = cKDTree(samples.point[some]).query(samples.point[known])[1]
+            self._length[:, known] = np.moveaxis(self._sections(some, all_of, len(own))[:, :, nearest], 1, 2)
             # A sample has its area there: what the triangles about a border say is no less than that allows.
             longest = np.nan_to_num(self._length[0, known]).max(axis=1)
             with np.errstate(divide="ignore", invalid="ignore"):
                 least = np.nan_to_num(samples.area[known] / longest, posinf=0.0)
             self._length[:, known] = np.maximum(self._length[:, known], least[:, None])
+
+    def _sections(self, rows: Rows, all_of: Rows, own: int) -> Floats:
+        """Lengths (3, directions, m) of a face through some of its samples (m,), of the triangles of the face, the first `own` of
+        some, and of those onto which it goes on smoothly.
+        """
+        from plan_cutters.kernels.linear.sections import sections
+
+        triangles, (first, second), m = self._obstacles.triangles, self._frame(rows), len(rows)
+        vertex, unit, near = triangles.vertex[all_of], self._unit[all_of], 2.0 * triangles.chord_error + 1e-6
+        turn = np.arange(DIRECTIONS)[:, None, None] * (math.pi / DIRECTIONS)
+        along = (np.cos(turn) * first + np.sin(turn) * second).reshape(-1, 3)
+        point, normal = (np.tile(each[rows], (DIRECTIONS, 1)) for each in (self._samples.point, self._samples.normal))
+        lengths = np.empty((3, DIRECTIONS * m))
+
+        def measured(piece: Rows) -> None:
+            its = slice(int(piece[0]), int(piece[-1]) + 1)
+            sections(point[its], along[its], normal[its], vertex, unit, own, _GOES_ON, near, near, *lengths[:, its])
+
+        in_chunks(measured, np.arange(DIRECTIONS * m), self._jobs, chunk=max(1, m))
+        return lengths.reshape(3, DIRECTIONS, m)
 
 
 @dataclass(frozen=True, slots=True)

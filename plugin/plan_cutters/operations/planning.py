@@ -312,7 +312,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere)
-    extents = Extents(ready.samples, ready.conditions.obstacles)
+    extents = Extents(ready.samples, ready.conditions.obstacles, ready.conditions.jobs)
     machine = ready.conditions.machine
     paths = Paths(
         options.scallop, options.stepover, feeds(options, cutters), options.accuracy, extents, options.link_time,

@@ -24,7 +24,7 @@ _SAME, _END = 1e-6, 1e-9
 #: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
 FLAT = 1e-4
 #: Rows of one axis that are tested together, and tests that a thread makes in one go.
-_BLOCK, _AT_ONCE = 4096, 20_000
+_BLOCK, _AT_ONCE = 1024, 2048
 
 
 def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:

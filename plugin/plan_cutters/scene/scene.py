@@ -7,7 +7,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from cad_io import Orientation, Part, read_part
-from cad_io.arrays import Record
+from cad_io.arrays import Record, Triangles
 from cad_io.part.bodies import orient
 from cad_io.part.patterns import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
@@ -24,8 +24,8 @@ from plan_cutters.options import Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
-from plan_cutters.setups.clamping import Hold, Workpiece, held
-from plan_cutters.setups.workpiece import material_bodies
+from plan_cutters.setups.clamping import Hold, held
+from plan_cutters.setups.workpiece import PartMesh, Workpiece, material_bodies
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
@@ -40,6 +40,7 @@ class _Memory:
     alone: Surroundings | None = None
     around: Surroundings | None = None
     holds: dict[Any, Hold] = field(default_factory=dict)
+    mesh: tuple[Triangles, PartMesh] | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,7 +185,7 @@ class Scene(Record):
     def __getstate__(self) -> dict[str, Any]:
         # Files of fixtures are read again where they are needed.
         fixtures = tuple(packable(each, self._memory.sources) for each in self.fixtures)
-        return self.__dict__ | {"fixtures": fixtures, "_memory": replace(self._memory, sources={})}
+        return self.__dict__ | {"fixtures": fixtures, "_memory": replace(self._memory, sources={}, mesh=None)}
 
     def read_fixtures(self, timeout: float) -> None:
         """Read the fixtures' files, before any work is done; `timeout`: the most seconds that a faulty one may take."""
@@ -285,11 +286,8 @@ class Scene(Record):
             assert alone is not None, "a part is tessellated before it is clamped"
             triangles, tolerance = alone.certain.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
-            of_part = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
-            piece = Workpiece.of(
-                of_part.vertex, of_part.face, self.orientation.sign, planes, self.targets, tuple(setup),
-                material_bodies(alone.bodies, self.orientation.sign),
-            )  # fmt: skip
+            bodies = material_bodies(alone.bodies, self.orientation.sign)
+            piece = Workpiece.of(self.mesh(triangles), planes, self.targets, tuple(setup), bodies)
             chord = CHORD_REQUESTED * self.asked
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
@@ -301,6 +299,14 @@ class Scene(Record):
 
             memory.holds[key] = held(fixture, piece, plainly, searched, triangles.chord_error)
         return memory.holds[key]
+
+    def mesh(self, triangles: Triangles) -> PartMesh:
+        """The part as it is clamped, of its triangles, which may have others among them; of those that came last it is kept."""
+        memory = self._memory
+        if memory.mesh is None or memory.mesh[0] is not triangles:
+            own = triangles.take(triangles.face > 0) if (triangles.face <= 0).any() else triangles
+            memory.mesh = triangles, PartMesh.of(own.vertex, own.face, self.orientation.sign)
+        return memory.mesh[1]
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""

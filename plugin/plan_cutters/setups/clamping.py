@@ -15,11 +15,11 @@ from plan_cutters.domain.clamping import GRIP, VISE, Clamping, Requested, Vise, 
 from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
-from plan_cutters.domain.stock import StockBody
+from plan_cutters.domain.stock import StockBody, deep_in
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups.places import chuck_places, ungripped, vise_places
 from plan_cutters.setups.solids import box, cylinder
-from plan_cutters.setups.workpiece import Place, Refused, Workpiece, held_bodies, on_ledges
+from plan_cutters.setups.workpiece import PartMesh, Place, Refused, Workpiece, held_bodies, on_ledges, thin_between
 
 
 class NothingToGripError(FixtureError):
@@ -80,8 +80,10 @@ def held(
                           int((each.hidden - least) / step), -round(each.firm, 6),
                           each.above, round(each.off, 6), -round(each.size, 6), each.apart, each.grips)
     )  # fmt: skip
-    searched = Counter[tuple[int, ...]]()
+    searched, bending = Counter[tuple[int, ...]](), list[Place]()
     for place in places:
+        if place.soft and bending:
+            break
         placed, names = _fixture(fixture, part, place), listed([f"F{n}" for n in place.grips], 4)
         many = searched.total() == _TRIED or searched[place.grips] == _OF_ONE
         if many or plainly(placed, place.clamping):
@@ -91,9 +93,15 @@ def held(
             refused.append(Refused(place.rank, f"{names} are of bodies with a gap between them"))
             continue
         if not overlaps(placed, place.clamping):
-            return _hold(requested, placed, part, place)
+            thick = thin_between(part, place) if isinstance(place.clamping, Vise) and not place.bored else 0.0
+            if not thick:
+                return _hold(requested, placed, part, place)
+            bending.append(replace(place, soft=f"its jaws would bend walls {mm(thick)} thick"))
+            continue
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched[place.grips] += 1
+    if bending:
+        return _hold(requested, _fixture(fixture, part, bending[0]), part, bending[0])
     raise _nothing(fixture, requested, part.frame[2].tolist(), min(refused, key=lambda each: each.rank).why)
 
 
@@ -133,9 +141,11 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
         long = float(body.high[body.along] - body.low[body.along])
         vertex = np.roll(cylinder(body.radius, long, sides), body.along + 1, axis=-1) + start
         face, planes = np.repeat(np.array([1, 1, 2, 3], np.int32), sides), range(2, 4)
-    piece = Workpiece.of(vertex @ across, face, np.ones(6), planes, (), setup)
+    piece = Workpiece.of(PartMesh.of(vertex @ across, face, np.ones(6)), planes, (), setup)
     # A bar that stands is gripped deep, and some of it stays free below the part.
-    deep = None if body.radius is None or body.lying else max(GRIP, _OF_A_BAR * foot)
+    deep = None if body.lying else max(GRIP, _OF_A_BAR * foot)
+    if body.radius is None:
+        deep = deep_in(float(body.high[2]) - body.part_low, foot)
     hold = held(fixture, piece, lambda placed, clamping: False, lambda placed, clamping: False, deep=deep)
     clamping = hold.fixture.clamping
     assert clamping is not None, "what was placed is in its place"

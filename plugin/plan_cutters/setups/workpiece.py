@@ -89,8 +89,8 @@ class Bearing:
 def enclosed(vertex: Floats, normal: Floats) -> tuple[float, Floats]:
     """Find what triangles (n, 3, 3) with outward normals (n, 3) enclose: volume, mm3, and centre of mass (3,), mm.
 
-    Of a surface that is no closed skin the volume is 0, and the centre that of the surface. `normal`: of any length, for it tells
-    the side alone.
+    Of a surface that is no closed shell the volume is 0, and the centre that of the surface. `normal`: of any length, for it
+    tells the side alone.
     """
     turned = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
     outward = np.where((turned * normal).sum(axis=1) < 0.0, -1.0, 1.0)
@@ -119,9 +119,42 @@ def hull(points: Floats) -> ConvexHull | None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PartMesh(Record):
+    """The triangles of a part, with what is the same of them in every setup."""
+
+    vertex: Floats  #: (n, 3, 3) float: corners, mm.
+    face: Ints  #: (n,) int: face numbers of them.
+    normal: Floats  #: (n, 3) float: outward normals of them, as long as twice their area.
+
+    @classmethod
+    def of(cls, vertex: Floats, face: Ints, sign: Floats) -> "PartMesh":
+        """Triangles (n, 3, 3) of faces (n,); `sign` (faces,): side of each face that is out of the material."""
+        turned = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+        return cls(vertex, face, turned * sign[face - 1][:, None])
+
+    @cached_property
+    def outer(self) -> Floats:
+        """The corners (k, 3) that are outermost."""
+        corner = self.vertex.reshape(-1, 3)
+        outer = hull(corner)
+        return corner if outer is None else np.asarray(corner[outer.vertices])
+
+    @cached_property
+    def enclosed(self) -> tuple[float, Floats]:
+        """The volume, mm3, 0 where the faces enclose none, and the centre of mass (3,)."""
+        return enclosed(self.vertex, self.normal)
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Of the box, mm."""
+        return float(np.linalg.norm(np.ptp(self.outer, axis=0)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Workpiece(Record):
     """A part as it stands in a setup, as far as clamping it matters."""
 
+    mesh: PartMesh
     frame: Floats  #: (3, 3) float: the setup's x, y and z in part coordinates, as rows.
     lowest: float  #: Height of the part's lowest point along z, mm.
     vertex: Floats  #: (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
@@ -134,21 +167,20 @@ class Workpiece(Record):
 
     @classmethod
     def of(
-        cls, vertex: Floats, face: Ints, sign: Floats, planes: Collection[int], targets: Collection[int],
-        setup: Sequence[float], bodies: Sequence[frozenset[int]] = (), chord: float = 0.0,
+        cls, mesh: PartMesh, planes: Collection[int], targets: Collection[int], setup: Sequence[float],
+        bodies: Sequence[frozenset[int]] = (), chord: float = 0.0,
     ) -> "Workpiece":  # fmt: skip
-        """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
+        """A part in a setup; without targets, all faces are.
 
-        Without targets, all faces are. `chord`: the error of the triangles, mm; the lowest point may be off by it.
-        """  # fmt: skip
+        `chord`: the error of the triangles, mm; the lowest point may be off by it.
+        """
         frame = frame_of(np.asarray(setup, float))
-        local = vertex @ frame.T
-        lowest = float(local[..., 2].min())
+        local = mesh.vertex @ frame.T
+        lowest = float((mesh.outer @ frame[2]).min())
         local[..., 2] -= lowest
-        normal = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) * sign[face - 1][:, None]
-        flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6 + chord
-        wanted = frozenset(targets) or frozenset(np.unique(face).tolist())
-        return cls(frame, lowest, local, normal, face, frozenset(planes), wanted, flat, tuple(bodies))
+        flat = 1e-6 * mesh.diagonal + 1e-6 + chord
+        wanted = frozenset(targets) or frozenset(np.unique(mesh.face).tolist())
+        return cls(mesh, frame, lowest, local, mesh.normal @ frame.T, mesh.face, frozenset(planes), wanted, flat, tuple(bodies))
 
     @property
     def area(self) -> float:
@@ -165,19 +197,20 @@ class Workpiece(Record):
     @cached_property
     def outline(self) -> Floats:
         """The corners (k, 3) that are outermost seen from above, with z = 0."""
-        corner = self.vertex.reshape(-1, 3) * [1.0, 1.0, 0.0]
+        corner = self.mesh.outer @ self.frame.T * [1.0, 1.0, 0.0]
         outer = hull(corner[:, :2])
         return corner if outer is None else np.asarray(corner[outer.vertices])
 
     @cached_property
     def enclosed(self) -> tuple[float, Floats]:
         """Its volume, mm3, 0 where its faces enclose none, and its centre of mass (3,)."""
-        return enclosed(self.vertex, self.normal)
+        volume, centre = self.mesh.enclosed
+        return volume, self.frame @ centre - [0.0, 0.0, self.lowest]
 
     @cached_property
     def tall(self) -> float:
         """Its height along the setup axis, mm."""
-        return float(self.vertex[..., 2].max())
+        return float((self.mesh.outer @ self.frame[2]).max()) - self.lowest
 
     @property
     def section(self) -> float:
@@ -272,6 +305,55 @@ class Place:
     def firm(self) -> float:
         """How well it holds, by what its jaws touch: half as much where something of the part hangs below them."""
         return self.touched if self.above == 0.0 else 0.5 * self.touched
+
+
+#: Rays across the jaws of a vise, and heights at which they go; a wall holds what is behind so many times its thickness as a
+#: solid does, and is thin below this share of how far that is away.
+_RAYS, _LEVELS, _BACKED, _THIN = 5, 24, 3.0, 0.1
+
+
+def thin_between(part: Workpiece, place: Place) -> float:
+    """How thick the walls are that the jaws of a vise would bend, mm; 0 where they press on what does not give.
+
+    Walls do where no material goes from jaw to jaw anywhere between them, nor does it near above or below.
+    """
+    half = 0.5 * (place.apart + TOGETHER)
+    vertex = place.own(part.vertex)
+    across = np.linspace(-0.5, 0.5, _RAYS + 2)[1:-1] * 2.0 * place.clamping.half_width
+
+    def thickness(height: float) -> float:
+        """Of the thinner wall, where both are thickest; infinite where material goes from jaw to jaw, 0 where there is none."""
+        near = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)]
+        thickest = 0.0
+        for y in across:
+            x = _crossings(near, float(y), height)
+            x = x[np.abs(x) <= half]
+            if len(x) == 2:
+                return math.inf
+            if len(x) > 2 and len(x) % 2 == 0:
+                thickest = max(thickest, float(min(x[1] - x[0], x[-1] - x[-2])))
+        return thickest
+
+    grip = place.clamping.grip
+    thick = thickness(0.5 * grip)
+    if not 0.0 < thick < math.inf:
+        return 0.0
+    low, high = -place.above, part.tall - place.above
+    steps = low + (high - low) * (np.arange(_LEVELS) + 0.5) / _LEVELS
+    away = [max(z - grip, -z, 0.0) for z in steps.tolist() if thickness(z) >= _BACKED * thick]
+    return thick if thick < _THIN * min(away, default=high - low) else 0.0
+
+
+def _crossings(vertex: Floats, y: float, z: float) -> Floats:
+    """Where the line along x at y and z goes through triangles (n, 3, 3), ascending."""
+    a, b, c = (vertex[:, k, 1:] - [y, z] for k in range(3))
+    weights = np.stack([b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0], c[:, 0] * a[:, 1] - c[:, 1] * a[:, 0],
+                        a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]], axis=1)  # fmt: skip
+    area = weights.sum(axis=1)
+    through = (((weights >= 0.0).all(axis=1)) | ((weights <= 0.0).all(axis=1))) & (area != 0.0)
+    x = (weights[through] * vertex[through, :, 0]).sum(axis=1) / area[through]
+    # On an edge of two triangles it goes through once.
+    return np.unique(np.round(x, 6))
 
 
 class Refused(NamedTuple):
@@ -370,7 +452,8 @@ def faces_in_jaws(clamping: Clamping, vertex: Floats, face: Ints, slack: float) 
         facing = np.abs(normal[:, 0]) >= _FACING * np.linalg.norm(normal, axis=1)
         vertex, face = vertex[facing], face[facing]
     inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
-    each = at_jaws(clamping, vertex, face, 0.0, clamping.grip)
+    # What ends at the edge of a jaw, or begins there, is not in it.
+    each = at_jaws(clamping, vertex, face, TOGETHER, clamping.grip - TOGETHER)
     return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach >= inner]))
 
 

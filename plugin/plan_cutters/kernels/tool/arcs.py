@@ -219,15 +219,17 @@ def forbidden(height, px, py, tilt, offset, piece, k, out):
     `out` (ARCS, 2) float64, written: first and last tilts of arcs, rad; what lies beyond 0 to pi may be missing.
     """
     kind, radius, low, high = piece[k, KIND], piece[k, RADIUS], piece[k, LOW], piece[k, HIGH]
+    back, wide, far = offset - px, max(radius, piece[k, WIDE]), max(abs(piece[k, BOTTOM]), abs(piece[k, TOP]))
+    square = back * back + height * height
+    # What turns past the piece beside it, or farther out than all of it, is out of reach at every tilt.
+    if abs(py) >= wide or square > (abs(offset) + wide) * (abs(offset) + wide) + far * far:
+        return 0
     if kind == CYLINDER and low >= 0.0 and radius <= offset:
         out[0, 0], out[0, 1] = point_arc(height, px, py, tilt, offset, radius, low, high)
         return 1 if out[0, 0] <= out[0, 1] else 0
-    back = offset - px
-    d = np.sqrt(back * back + height * height)
-    if d == 0.0:
-        return 0
-    # What turns no nearer to the piece than this is out of reach at every tilt.
-    if d <= piece[k, BOTTOM] or d <= -piece[k, TOP]:
+    d = np.sqrt(square)
+    # What turns no nearer to the piece than this is so, too.
+    if d == 0.0 or d <= piece[k, BOTTOM] or d <= -piece[k, TOP]:
         return 0
     zero = tilt + np.arctan2(height, back)
     if kind == CYLINDER:
