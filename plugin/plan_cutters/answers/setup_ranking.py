@@ -256,9 +256,8 @@ class Ranking:
         person named, wherever jaws can.
         """
         assert self.stock is not None, "without stock the part is gripped"
-        most, best, best_share = float(self.share(self.served(k)[:, None])[0]), None, 0.0
-        tall, round_ = float(self.candidates.tall[k]), self.candidates.bearing[k].round or bool(self.lying(k))
-        for stock in self.stock.choices(tall, round_=round_):
+        tall, most, best, best_share = self.candidates.tall[k], float(self.share(self.served(k)[:, None])[0]), None, 0.0
+        for stock in self.stock.choices(tall, round_=self.candidates.bearing[k].round or bool(self.lying(k))):
             for word in [each for each in self.words if each != TABLE]:
                 with suppress(NothingToGripError):
                     # Beside what stands below the part a tool may be lower than it.
