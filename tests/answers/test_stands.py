@@ -299,6 +299,33 @@ def test_on_a_fourth_axis_a_bar_lies_along_it_in_a_chuck_and_is_turned_round_the
     assert [Fixture.parse(each.fixtures[-1]).clamping.grip for each in setups] == [20.0, 20.0]
 
 
+def test_a_journal_with_a_flat_is_gripped_and_a_tailstock_named_for_what_stands_far_out():
+    """Triangles of the journal beside its flat lean from their cylinder by more than planes that are parallel."""
+    shaft = cq.Workplane("YZ").circle(20).extrude(30).faces(">X").workplane().circle(14).extrude(50)
+    shaft = shaft.faces(">X").workplane().circle(10).extrude(30).union(cq.Workplane("YZ").circle(12).extrude(-25))
+    shaft = shaft.cut(cq.Workplane().box(30, 40, 20).translate((-20, 0, 18)))
+    plain = cq.Workplane("YZ").circle(12).extrude(40).val().wrapped
+    how = {**HOW, "machine": "4-axis-a", "cutters": "D8L60F30S8", "setup": "auto"}
+    made = plan(shaft.val().wrapped, **how).plan
+    assert [each.clamping for each in made.setup_proposal.setups] == ["chuck", "chuck"]
+    assert [each.soft for each in made.process.setups] == ["", ""]
+    # The stock of 42 mm and its margin beyond the part; then what is beside 17 mm of the journal of 24 mm.
+    assert [each.out_mm for each in made.process.setups] == pytest.approx([136.0 + 5.0 - 1.0, 135.0 - 50.0 / 3.0], abs=0.7)
+    (said,) = [each for each in made.process.doubts if "tailstock:" in each]
+    assert "on 42 mm in setup 1" in said
+    assert "on 24 mm in setup 2" in said
+    assert all(each.out_mm is None for each in plan(plain, **how).plan.process.setups)
+
+
+@pytest.mark.parametrize(("long", "chucks"), [(120.0, True), (20.0, False)])
+def test_a_long_part_that_is_not_round_lies_in_a_chuck_as_a_bar(long, chucks):
+    """A camshaft: nothing is round along it, and its stock is."""
+    lobe = cq.Workplane("YZ").rect(14, 30).extrude(0.2 * long).translate((0.4 * long, 0, 0))
+    cam = cq.Workplane("YZ").circle(8).extrude(long).union(lobe)
+    first = plan(cam.val().wrapped, **{**HOW, "machine": "4-axis-a", "cutters": "D8L60F30S8", "setup": "auto"}).plan
+    assert (first.setup_proposal.setups[0].clamping == "chuck") == chucks
+
+
 @pytest.mark.parametrize(
     ("wide", "long", "deep"),
     [(20.0, 60.0, 20.0), (12.0, 60.0, 12.0), (40.0, 60.0, 20.0), (40.0, 24.0, 16.0), (40.0, 18.0, 40.0 / 3.0), (40.0, 13.0, 3.0)],

@@ -19,7 +19,16 @@ from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.setups import solids
 from plan_cutters.setups.clamping import held as placed_by
 from plan_cutters.setups.places import chuck_places, vise_places
-from plan_cutters.setups.workpiece import PartMesh, Workpiece, at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
+from plan_cutters.setups.workpiece import (
+    PartMesh,
+    Workpiece,
+    at_jaws,
+    held_bodies,
+    material_bodies,
+    on_ledges,
+    rods_of,
+    unheld_bodies,
+)
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import said_by
 from tests.support.vises import stands_in
@@ -90,7 +99,8 @@ def test_places_of_vises_and_chucks(name, keeps):
     bodies = material_bodies(around.bodies, side)
     said = {"bodies": bodies}
     for axis, targets in ((UP, ()), (ASIDE, (1, 2)), (DOWN, (3,))):
-        piece = Workpiece.of(PartMesh.of(triangles.vertex, triangles.face, side), planes, targets, axis, bodies)
+        mesh = PartMesh.of(triangles.vertex, triangles.face, side)
+        piece = Workpiece.of(mesh, planes, targets, axis, bodies, rods=rods_of(made.faces))
         said[str(axis)] = {
             "piece": {
                 each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")

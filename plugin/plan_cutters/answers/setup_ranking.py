@@ -29,7 +29,7 @@ from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.posture import direction_of
 from plan_cutters.domain.preference import group_of
-from plan_cutters.domain.stock import USUAL, Stock
+from plan_cutters.domain.stock import LONG, USUAL, Stock
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import GroundDigests
@@ -360,16 +360,16 @@ class Ranking:
     def _fixtures(self, k: int, word: str) -> list[tuple[Fixture, Axis | None]]:
         """What a word may be in a direction, each with the part's direction along the machine's X; None: any.
 
-        A chuck stands along a rotary axis that lies across the spindle: where the part is round across the direction and longest,
-        it lies along that, one way or the other.
+        Along a rotary axis across the spindle the part lies in a chuck, one way or the other, where it is round and longest.
         """
         fixture, along = Fixture.parse(word), self.ready.conditions.machine.chuck_axis
         if fixture.kind != CHUCK or along is None:
             return [(fixture, None)]
         axis, tall, requested = self.candidates.axis, self.candidates.tall, len(self.words) == 1
         across = np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist()
-        # Who asks for a chuck may lay a bar in it about a part that is not round, or a disk that would stand.
-        across = [j for j in across if self.candidates.bearing[j].round or (requested and self.stock is not None)]
+        # A bar in it may be about a long part that is not round, as a camshaft; who asks for a chuck lays any part in it so.
+        bearing, stock = self.candidates.bearing, self.stock is not None
+        across = [j for j in across if bearing[j].round or (stock and (requested or bearing[j].slender >= LONG))]
         least = max(0.0 if requested else tall[k], (1.0 - _EVEN) * max(tall[across], default=0.0))
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in across if tall[j] >= least]
         return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]

@@ -14,7 +14,7 @@ from plan_cutters.plan_file.operations import ProcessSetup, StockEntry
 from plan_cutters.scene.fixtures import stock_body
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
-from plan_cutters.setups.workpiece import PartMesh, Workpiece, faces_in_jaws, on_ledges
+from plan_cutters.setups.workpiece import TALL, PartMesh, Workpiece, faces_in_jaws, on_ledges
 
 #: Of the height of jaws, faces before them have nearly all.
 _NEARLY = 0.9
@@ -40,7 +40,7 @@ def setups_and_stock(ready: Prepared) -> tuple[list[ProcessSetup], StockEntry | 
         if gripping is None:
             held = _stood(part, surroundings.fixtures)
         else:
-            held = _gripped(gripping, part.mesh, triangles.chord_error, stock=blank is not None)
+            held = _gripped(gripping, part.mesh, triangles.chord_error, stock=blank is not None, lying=along != up)
         setups.append(ProcessSetup(number=number, up=up, stands_on=on or None, **held))
         if blank is not None and number == 1:
             stock = _stock(ready, surroundings, blank, vector(along), part.enclosed[0])
@@ -70,14 +70,16 @@ def _stood(part: Workpiece, fixtures: Collection[PlacedFixture]) -> dict[str, An
             "soft": "" if part.bearing(0.0).firm else "what it stands on does not carry it"}  # fmt: skip
 
 
-def _gripped(gripping: PlacedFixture, mesh: PartMesh, chord: float, *, stock: bool) -> dict[str, Any]:
-    """A setup in a vise or chuck that is in its place; jaws on stock touch no face."""
+def _gripped(gripping: PlacedFixture, mesh: PartMesh, chord: float, *, stock: bool, lying: bool) -> dict[str, Any]:
+    """A setup in a vise or chuck that is in its place, or in a chuck that lies; jaws on stock touch no face."""
     fixture, clamping = gripping.fixture, gripping.fixture.clamping
     assert clamping is not None, "a vise or chuck grips"
     own = (mesh.vertex - fixture.shift) @ fixture.rotation
     grips = frozenset[int]() if stock else faces_in_jaws(clamping, own, mesh.face, chord)
+    out, wide = float(own[..., 2].max()) - clamping.grip, clamping.numbers[-1]
     return {
-        "held": fixture.kind, "grips": _named(grips), "apart_mm": clamping.numbers[-1], "grip_mm": clamping.grip,
+        "out_mm": out if lying and out > TALL * wide else None,
+        "held": fixture.kind, "grips": _named(grips), "apart_mm": wide, "grip_mm": clamping.grip,
         "contact_mm": _contact(clamping, own[np.isin(mesh.face, list(grips))]),
         "clamping": fixture.text, "soft": "" if gripping.hold is None else gripping.hold.soft,
     }  # fmt: skip

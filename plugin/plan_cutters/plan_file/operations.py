@@ -439,6 +439,11 @@ class ProcessSetup(Frozen):
         exclude_if=lambda each: each is None,
         description="how much of that the faces that jaws touch have, where it is less",
     )
+    out_mm: float | None = Field(
+        default=None,
+        exclude_if=lambda each: each is None,
+        description="how far the part stands out of a chuck along a rotary axis, where that is more than it carries alone",
+    )
     clamping: str | None = Field(default=None, description="what holds it, as --fixture takes it")
     soft: str = Field(default="", description="why soft jaws or a nest are needed; empty: the part is held as it is")
     text: str = ""

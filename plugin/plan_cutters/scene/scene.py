@@ -25,7 +25,7 @@ from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, entered, joined, overlaps, packable, read, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 from plan_cutters.setups.clamping import Hold, held
-from plan_cutters.setups.workpiece import PartMesh, Workpiece, material_bodies
+from plan_cutters.setups.workpiece import PartMesh, Workpiece, material_bodies, rods_of
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 #: The options of a plan that are a scene's.
@@ -287,7 +287,7 @@ class Scene(Record):
             triangles, tolerance = alone.certain.triangles, alone.tolerance(self.asked)
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
             bodies = material_bodies(alone.bodies, self.orientation.sign)
-            piece = Workpiece.of(self.mesh(triangles), planes, self.targets, tuple(setup), bodies)
+            piece = Workpiece.of(self.mesh(triangles), planes, self.targets, tuple(setup), bodies, rods=rods_of(self.part.faces))
             chord = CHORD_REQUESTED * self.asked
 
             def plainly(placed: Fixture, clamping: Clamping) -> bool:

@@ -141,7 +141,8 @@ def held_stock(fixture: Fixture, body: StockBody, setup: Sequence[float], sides:
         long = float(body.high[body.along] - body.low[body.along])
         vertex = np.roll(cylinder(body.radius, long, sides), body.along + 1, axis=-1) + start
         face, planes = np.repeat(np.array([1, 1, 2, 3], np.int32), sides), range(2, 4)
-    piece = Workpiece.of(PartMesh.of(vertex @ across, face, np.ones(6)), planes, (), setup)
+    rods = {} if body.radius is None else {1: across[body.along].tolist()}
+    piece = Workpiece.of(PartMesh.of(vertex @ across, face, np.ones(6)), planes, (), setup, rods=rods)
     # A bar that stands is gripped deep, and some of it stays free below the part.
     deep = None if body.lying else max(GRIP, _OF_A_BAR * foot)
     if body.radius is None:

@@ -35,6 +35,8 @@ _ARC, _LOWEST = 20, 0.1
 #: Of a cylinder that is gripped deep, so much at most; a bar that lies is gripped so deep, mm, and by this share of its diameter
 #: at least, if it is there.
 _DEEP, _LIES, _THIRD = 2.0 / 3.0, 20.0, 1.0 / 3.0
+#: A bar that lies stands so many times as far out of a chuck as it is wide there, at most, if a tailstock supports it.
+_OUT_OF_A_CHUCK = 10.0
 _X, _Y, _Z = np.eye(3)
 #: Jaws are higher than they grip by more than numbers are rounded, mm.
 _HAIR = 1e-6
@@ -45,7 +47,7 @@ def chuck_places(part: Workpiece, requested: Requested, *, lying: bool = False) 
     freely."""
     places, refused = list[Place](), list[Refused]()
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
-    for wall, centre, radius in _cylinders(part, part.vertex, part.normal):
+    for wall, centre, radius in _cylinders(part, np.eye(3)):
         result, why = list[Place](), short
         grips = [requested.grip]
         if requested.sizes is None and requested.grip == GRIP and part.targets.isdisjoint(wall.faces):
@@ -60,7 +62,7 @@ def chuck_places(part: Workpiece, requested: Requested, *, lying: bool = False) 
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
             if reach < chuck.height and above <= chuck.height - reach:
-                result += _about(part, chuck, wall, centre, above)
+                result += _about(part, chuck, wall, centre, above, _OUT_OF_A_CHUCK if lying else TALL)
         places += result
         if not result:
             refused.append(Refused((wall.low > 0.5 * requested.grip, -area_of(wall.vertex)), why))
@@ -73,17 +75,16 @@ def _lies(radius: float, long: float) -> float:
     return deep if deep >= least else least if least < long else 0.0
 
 
-def _cylinders(part: Workpiece, vertices: Floats, normals: Floats) -> list[tuple[Wall, Floats, float]]:
-    """Outside cylinders of a part along the z of a frame, the faces of one together: each with its centre (3,) and the largest
-    radius, mm. `vertices`, `normals`: of its triangles in that frame.
+def _cylinders(part: Workpiece, frame: Floats) -> list[tuple[Wall, Floats, float]]:
+    """Outside cylinders of a part along the z of a frame (3, 3), its axes as rows, the faces of one together: each with its
+    centre (3,) and the largest radius, mm.
     """
     cylinders: list[tuple[Wall, Floats, float]] = []
     for number, rows in rows_by_face(part.face).items():
-        if number in part.planes:
+        direction = part.rods.get(number)
+        if direction is None or np.linalg.norm(np.cross(direction, frame[2])) > PARALLEL:
             continue
-        vertex, normal = vertices[rows], normals[rows]
-        if (np.abs(normal[:, 2]) > PARALLEL * np.linalg.norm(normal, axis=1)).any():
-            continue
+        vertex, normal = part.vertex[rows] @ frame.T, part.normal[rows] @ frame.T
         circle = _circle(vertex, normal)
         if circle is None:
             continue
@@ -121,8 +122,9 @@ def _circle(vertex: Floats, normal: Floats) -> tuple[Floats, float] | None:
     return np.array([*(middle + solved[:2]), 0.0]), radius
 
 
-def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: float) -> Iterator[Place]:
-    """Places of a chuck on a cylinder: its jaws turned to all sides where each of them touches."""
+def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: float, most: float) -> Iterator[Place]:
+    """Places of a chuck on a cylinder: its jaws turned to all sides where each of them touches; of what stands out of it no more
+    than `most` times its width is held."""
     vertex, face = clipped(wall.vertex, wall.face, np.array([0.0, 0.0, 1.0]), above, above + chuck.grip)
     if not len(vertex) or chuck.diameter is None:
         return
@@ -145,7 +147,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
             area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
-            _too_tall(tall, chuck.diameter) if free > TALL * chuck.diameter else "",
+            _too_tall(tall, chuck.diameter) if free > most * chuck.diameter else "",
         )  # fmt: skip
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
@@ -250,7 +252,7 @@ def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
     for direction in _lying_directions(part):
         x = np.array([direction[1], -direction[0], 0.0])
         own, length = np.stack([_Z, x, direction]), float(np.ptp(part.outline @ direction))
-        for wall, centre, radius in _cylinders(part, part.vertex @ own.T, part.normal @ own.T):
+        for wall, centre, radius in _cylinders(part, own):
             radius = round(radius, 4)
             reach = radius + 0.5 * grip
             vise, _ = _vise(replace(requested, grip=reach), 2.0 * radius, length, 0.0)
@@ -283,14 +285,10 @@ def _lying(part: Workpiece, requested: Requested) -> Iterator[Place]:
 
 
 def _lying_directions(part: Workpiece) -> list[Floats]:
-    """Directions across the setup axis along which cylinders may lie: all normals of a face are across one of them."""
+    """Directions across the setup axis along which cylinders lie."""
     directions = list[Floats]()
-    for number, rows in rows_by_face(part.face).items():
-        if number in part.planes:
-            continue
-        normal = part.normal[rows] / np.maximum(1e-300, np.linalg.norm(part.normal[rows], axis=1))[:, None]
-        axis = np.linalg.eigh(normal.T @ normal)[1][:, 0]
-        if np.abs(normal @ axis).max() > PARALLEL or abs(axis[2]) > PARALLEL:
+    for _, axis in sorted(part.rods.items()):
+        if abs(axis[2]) > PARALLEL:
             continue
         flat = np.round([axis[0], axis[1], 0.0], 6)
         flat = flat / np.linalg.norm(flat)

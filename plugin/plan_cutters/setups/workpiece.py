@@ -7,16 +7,17 @@ All is looked at in a frame of the setup: z along the setup axis, counted from t
 """
 
 import math
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from cad_io.arrays import Floats, Ints, Record, Triangles, cross
+from cad_io.arrays import FaceInfo, Floats, Ints, Record, Triangles, cross
 from cad_io.part.bodies import Body
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
@@ -150,6 +151,12 @@ class PartMesh(Record):
         return float(np.linalg.norm(np.ptp(self.outer, axis=0)))
 
 
+def rods_of(faces: Sequence[FaceInfo]) -> dict[int, tuple[float, float, float]]:
+    """Unit directions of cylindrical faces, as far as they are known, by their numbers."""
+    cylinders = ((face.number, face.carrier) for face in faces if face.shape == "cylinder")
+    return {number: known.direction for number, known in cylinders if known is not None and known.direction is not None}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Workpiece(Record):
     """A part as it stands in a setup, as far as clamping it matters."""
@@ -164,15 +171,18 @@ class Workpiece(Record):
     targets: frozenset[int]  #: Faces to machine.
     flat: float  #: Heights that differ by less are one, mm.
     bodies: tuple[frozenset[int], ...] = ()  #: The faces of each body that is material.
+    rods: Mapping[int, Floats] = field(
+        default_factory=dict
+    )  #: The cylinders: unit directions (3,) in the frame by their numbers.
 
     @classmethod
     def of(
         cls, mesh: PartMesh, planes: Collection[int], targets: Collection[int], setup: Sequence[float],
-        bodies: Sequence[frozenset[int]] = (), chord: float = 0.0,
+        bodies: Sequence[frozenset[int]] = (), chord: float = 0.0, rods: Mapping[int, Sequence[float]] = MappingProxyType({}),
     ) -> "Workpiece":  # fmt: skip
         """A part in a setup; without targets, all faces are.
 
-        `chord`: the error of the triangles, mm; the lowest point may be off by it.
+        `chord`: the error of the triangles, mm; the lowest point may be off by it. `rods`: directions of cylinders, in the part.
         """
         frame = frame_of(np.asarray(setup, float))
         local = mesh.vertex @ frame.T
@@ -180,7 +190,10 @@ class Workpiece(Record):
         local[..., 2] -= lowest
         flat = 1e-6 * mesh.diagonal + 1e-6 + chord
         wanted = frozenset(targets) or frozenset(np.unique(mesh.face).tolist())
-        return cls(mesh, frame, lowest, local, mesh.normal @ frame.T, mesh.face, frozenset(planes), wanted, flat, tuple(bodies))
+        return cls(
+            mesh, frame, lowest, local, mesh.normal @ frame.T, mesh.face, frozenset(planes), wanted, flat, tuple(bodies),
+            {number: frame @ np.array(direction, float) for number, direction in rods.items()},
+        )  # fmt: skip
 
     @property
     def area(self) -> float:

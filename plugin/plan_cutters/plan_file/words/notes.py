@@ -359,8 +359,12 @@ def _across(plan: Plan) -> Iterator[str]:
             f"In setup{'s' if len(numbers) > 1 else ''} {listed(numbers)} the chuck stands along the spindle, on a plate that "
             f"{rotary[0].name} turns: `--setup auto` lays a bar along {rotary[0].name}."
         )
-    if lying := [str(each.number) for each, _ in chucks if each not in upright]:
-        where = f"setup{'s' if len(lying) > 1 else ''} {listed(lying)}"
+    lying = [each for each, _ in chucks if each not in upright]
+    out = [f"{mm(each.out_mm)} on {mm(each.apart_mm)} in setup {each.number}" for each in lying if each.out_mm and each.apart_mm]
+    if out:
+        yield f"Support the far end with a tailstock: the part stands out of the chuck {listed(out)}."
+    if lying:
+        where = f"setup{'s' if len(lying) > 1 else ''} {listed([str(each.number) for each in lying])}"
         yield (
             f"What carries the chuck on {rotary[0].name} in {where}, and a tailstock, are no obstacles unless you give them: "
             "`--fixture FILE`."
