@@ -358,6 +358,18 @@ def test_what_no_chuck_grips_does_not_lie_in_one():
     assert not setups[0].soft, "what a first setup leaves may need a nest"
 
 
+def test_the_underside_of_what_nothing_grips_is_turned_over_into_a_nest():
+    """A knob, narrower below, with a domed top: a twelfth of the area is what was cut from the bar."""
+    knob = cq.Workplane("XZ").moveTo(0, 0).lineTo(10, 0).lineTo(13, 40).threePointArc((7, 43.8), (0, 45)).close()
+    part = knob.revolve(360, (0, 0, 0), (0, 1, 0)).val().wrapped
+    made = plan(part, setup="auto", **{**HOW, "cutters": "D8L60F30S8"}).plan
+    first, second = made.setup_proposal.setups
+    assert np.allclose([first.axis, second.axis], [[0, 0, 1], [0, 0, -1]])
+    assert not first.soft
+    assert "it stands on 0 mm" in second.soft
+    assert made.process.finished_share > 0.99
+
+
 def test_a_further_setup_that_needs_a_nest_is_proposed_for_much_of_the_area():
     """A thin disk with a domed top: turned over it stands on nothing, and its underside has two fifths of the area."""
     disk = cq.Workplane("XZ").moveTo(0, 0).lineTo(30, 0).lineTo(30, 2).threePointArc((15, 4.2), (0, 5)).close()

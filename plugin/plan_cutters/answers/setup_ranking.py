@@ -57,7 +57,7 @@ _STOOD, _TURNED_FOR = 2, 0.02
 _UPRIGHT = float(np.radians(60.0))
 #: A setup in which the part does not stand by itself counts so much in a search; one that needs a nest is taken where the others
 #: serve less than this share of what it serves, or leave so much of the area to it.
-_UNSTEADY, _SOFT, _NEST_FOR = 0.75, 0.5, 0.1
+_UNSTEADY, _SOFT, _NEST_FOR = 0.75, 0.5, 0.02
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
 #: Directions at right angles: cosine at most.
@@ -274,11 +274,11 @@ class Ranking:
 
     def completed(self, chosen: tuple[int, ...], most: int) -> tuple[int, ...]:
         """Chosen directions, held as they are by now, and those that serve more of what these do not."""
-        failed = frozenset[int]()
-        over = self.opposite(chosen[0]) if self._turned(chosen) else None
+        failed, over = frozenset[int](), self.opposite(chosen[0]) if chosen else None
         if over is not None:
             self._searched(over)
-            self._settle(over, ~self.served(chosen[0]))
+            if self._turned(chosen):
+                self._settle(over, ~self.served(chosen[0]))
         while 0 < len(chosen) < most:
             open_rows = ~np.logical_or.reduce([self.served(k) for k in chosen])
             others = [k for k in self.candidates.preferred(list(self.held)) if k not in (*chosen, *failed)]

@@ -32,7 +32,7 @@ def deep_in(tall: float, foot: float = math.inf) -> float:
     >>> deep_in(20.0), deep_in(80.0), deep_in(80.0, 5.0), deep_in(900.0)
     (3.0, 8.0, 3.0, 20.0)
     """
-    return max(_LEAST, min(_DEEP * tall, _MOST, foot - _FREE))
+    return max(_LEAST, min(float(round(_DEEP * tall)), _MOST, foot - _FREE))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Stock:
         """
         if self.kind != USUAL:
             return (self,)
-        box, more = Stock.of(BOX), math.ceil(deep_in(tall) - _LEAST)
+        box, more = Stock.of(BOX), deep_in(tall) - _LEAST
         boxes = (replace(box, margins=(*box.margins[:-1], below + more)) for below in (_BELOW, _DEEPER))
         return (*[Stock.of(CYLINDER)] * round_, *boxes)
 
