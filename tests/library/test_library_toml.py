@@ -227,6 +227,7 @@ def test_every_shape_by_hand(tmp_path, text, cutter):
         ("DC = 12", "DC = 0x" + "f" * 9000, "DC is a number of thousands of digits"),
         ("DC = 12", "DC = 12\nnumber = 0x" + "f" * 9000, "number is a number of thousands of digits"),
         ("DC = 12", "dc = 12", "DC is written so"),
+        ("DC = 12", "DC = 12\nSFDM = 12", "'SFDM' is unknown here; DMM says that"),
         ('"R12:15L20+R15L30"', '""', "neither none"),
     ],
 )

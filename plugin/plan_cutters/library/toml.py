@@ -48,7 +48,7 @@ class ToolTable(BaseModel):
     model_config = ConfigDict(extra="forbid")
     number: Annotated[int, Field(strict=True)] | None = None
     name: str = ""
-    type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"] | Kind
+    type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form", Kind]
     unit: str | None = None
     DC: Number | None = None
     RE: Number = 0.0
@@ -121,6 +121,14 @@ def read_toml(content: Content) -> LibraryContent:
     return library
 
 
+#: What other programs and ISO 13399 call what a key here says.
+_ELSEWHERE = {
+    "DC": ("diameter", "DCX"), "RE": ("corner_radius", "radius"), "LCF": ("APMX", "LH", "flute_length", "flutes"),
+    "LPR": ("LB", "LU", "stickout", "stick_out", "length"), "DMM": ("SFDM", "DCONMS", "shank_diameter", "shank"),
+    "OAL": ("overall_length",), "SIG": ("point_angle",), "TP": ("pitch",), "type": ("shape", "kind"),
+}  # fmt: skip
+
+
 def _why(error: Exception) -> str:
     if not isinstance(error, ValidationError):
         return cause_of(error) if isinstance(error, CutterError) else str(error)
@@ -132,6 +140,7 @@ def _why(error: Exception) -> str:
     if first["type"] == "extra_forbidden":
         unknown, keys = first["loc"][-1], (*ToolTable.model_fields, *HolderTable.model_fields)
         meant = next((f"; {key} is written so" for key in keys if key.lower() == str(unknown).lower()), "")
+        meant = meant or next((f"; {key} says that" for key, words in _ELSEWHERE.items() if unknown in words), "")
         return f"{shown(unknown)} is unknown here{meant}"
     if not first["loc"]:
         return f"it is {shown(first['input'])}, not a table"
