@@ -12,7 +12,8 @@ from plan_cutters import Cutter, Options, plan
 from plan_cutters.answers import setup_ranking
 from plan_cutters.answers.candidates import Candidates, cube, distinct, fibonacci
 from plan_cutters.answers.least_set import cover
-from plan_cutters.answers.setup_ranking import holdable, ranked
+from plan_cutters.answers.serving import holdable
+from plan_cutters.answers.setup_ranking import ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.fixture import Fixture

@@ -17,25 +17,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.arrays import Floats
 from plan_cutters.answers.candidates import SAME, Candidates
 from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by
 from plan_cutters.answers.hole_setups import for_holes
 from plan_cutters.answers.least_set import cover
-from plan_cutters.domain.clamping import CHUCK
-from plan_cutters.domain.cutter import Cutter
+from plan_cutters.answers.serving import bound_of, reached_by, usual_of
+from plan_cutters.domain.clamping import CHUCK, VISE
 from plan_cutters.domain.figures import area
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.posture import direction_of
-from plan_cutters.domain.preference import group_of
-from plan_cutters.domain.stock import LONG, USUAL, Stock
-from plan_cutters.domain.verdicts import blank
+from plan_cutters.domain.stock import LONG, USUAL, Stock, deep_in
 from plan_cutters.errors import OptionError
 from plan_cutters.judging.judge import GroundDigests
-from plan_cutters.judging.limits import within_limits
-from plan_cutters.scene.conditions import Conditions, Context, contacts_of, over_plane
-from plan_cutters.scene.flats_and_flanks import search
+from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
@@ -48,8 +44,8 @@ Table = NDArray[np.bool_]
 
 #: Samples on which directions are compared, at most; directions that are searched, for the first setup and for each more.
 COMPARED, _FIRST, _MORE = 400, 10, 6
-#: Heights over the table are told apart in so many steps; shares nearer than the second are equal.
-_HEIGHTS, _EVEN = 12, 0.002
+#: Shares nearer than this are equal.
+_EVEN = 0.002
 #: Directions in which one would stand the part are searched, too, at most so many; and another one is taken for this share of the
 #: area and more.
 _STOOD, _TURNED_FOR = 2, 0.02
@@ -62,36 +58,6 @@ _UNSTEADY, _SOFT, _NEST_FOR = 0.75, 0.5, 0.02
 _CLAMPED_FOR = 0.005
 #: Directions at right angles: cosine at most.
 _ACROSS = 1e-6
-
-
-def holdable(
-    samples: SurfaceSamples, cutters: Sequence[Cutter], conditions: Conditions, axis: Floats, table: float | None = None,
-    rows: Rows | None = None,
-) -> NDArray[np.bool_]:  # fmt: skip
-    """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
-
-    `conditions`: machine and posture range. `axis` (3,) float: unit direction of the part along the spindle. `table`: height
-    along `axis` below which nothing of a tool may be, mm: axes are left out at which the upper end of every cutter would be
-    there. None: no table. `rows` (m,) int64: the samples to look at, all by default.
-    """
-    setup: Axis = (float(axis[0]), float(axis[1]), float(axis[2]))
-    if table is None:
-        return within_limits(samples, cutters, conditions, setup, rows)
-    height = np.maximum(0.0, samples.point @ axis - table)
-    steps = np.linspace(0.0, float(np.nanmax(height, initial=0.0)), _HEIGHTS + 1)[1:]
-    level, held = np.minimum(np.searchsorted(steps, height), _HEIGHTS - 1), np.zeros(len(samples), bool)
-    rows, machine = np.arange(len(samples)) if rows is None else rows, conditions.machine
-    for k, high in enumerate(steps):
-        mine = rows[level[rows] == k]
-        if not len(mine):
-            continue
-        # The end of the axis lies the length from the tip, and the tip a diameter from the contact at most.
-        tilt = max(min(1.0, (float(high) + 2.0 * cutter.radius) / cutter.length) for cutter in cutters)
-        cap = float(np.arccos(-tilt))
-        limit = cap if machine.tilt_limit is None else min(cap, machine.tilt_limit)
-        over = replace(conditions, machine=replace(machine, tilt_limit=limit), setup=np.array(setup), x=None)
-        held |= within_limits(samples, cutters, over, rows=mine)
-    return held
 
 
 def _untold(done: int, total: int) -> None:
@@ -138,7 +104,7 @@ class Ranking:
         few = ready.conditions
         bound = np.zeros((len(rows), len(candidates.axis)), bool)
         for k in range(len(candidates.axis)):
-            bound[:, k] = _bound(ready, candidates, rows, k, words[0])
+            bound[:, k] = bound_of(ready, candidates, rows, k, words[0])
         if not bound.any():
             low, high = np.degrees(few.postures.tilt)
             raise OptionError(
@@ -147,9 +113,9 @@ class Ranking:
             )
         surroundings = few.surroundings.alone or few.surroundings
         bare = replace(few.without_machine(), surroundings=surroundings)
-        free = usual = _reached(ready, rows, bare, usual=True)
-        if len(_usual(ready.cutters)) < len(ready.cutters):
-            free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
+        free = usual = reached_by(ready, rows, bare, usual=True)
+        if len(usual_of(ready.cutters)) < len(ready.cutters):
+            free = usual | reached_by(ready, rows[~usual[rows]], bare, usual=False)
         every = free[rows] if free.any() else np.ones(len(rows), bool)
         ranking = cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words, stock=stock)
         for k in range(len(candidates.axis)):
@@ -232,8 +198,10 @@ class Ranking:
             self.settled.discard(k)
         if chosen and self.stock is not None and chosen[0] not in self.stocked:
             self._settle_stock(chosen[0])
-        for k in chosen:
-            self._settle(k)
+        done = np.zeros(len(self.rows), bool)
+        for number, k in enumerate(chosen):
+            self._settle(k, ~done if number else None)
+            done |= self.served(k)
 
     def _settle(self, k: int, open_rows: NDArray[np.bool_] | None = None) -> None:
         """Try in a direction whatever may hold the part, unless that was done before; `open_rows` as for `_held_by`."""
@@ -245,7 +213,7 @@ class Ranking:
         tried, refused = [held for held in [self.held[k]] if held is not None and not self.over_table], {}
         for word in words:
             try:
-                bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                bound = self.free & bound_of(self.ready, self.candidates, self.rows, k, word)
                 tried.append(self._held_by(k, word, bound, open_rows=open_rows))
             except NothingToGripError as error:
                 refused[word] = error.why
@@ -261,7 +229,7 @@ class Ranking:
             for word in [each for each in self.words if each != TABLE]:
                 with suppress(NothingToGripError):
                     # Beside what stands below the part a tool may be lower than it.
-                    bound = self.free & _bound(self.ready, self.candidates, self.rows, k, word)
+                    bound = self.free & bound_of(self.ready, self.candidates, self.rows, k, word)
                     held = self._held_by(k, word, bound, stock)
                     share = float(self.share(held.served[:, None])[0])
                     if not held.soft and share >= best_share + _TURNED_FOR:
@@ -323,7 +291,7 @@ class Ranking:
         """Where a cutter has a posture under some conditions, of some rows (r,), and nothing of it is below a height, mm."""
         reached = np.zeros(len(self.ready.samples), bool)
         for usual in (True, False):
-            reached |= _reached(self.ready, self.rows[open_rows & (self.usual == usual)], conditions, usual=usual, above=above)
+            reached |= reached_by(self.ready, self.rows[open_rows & (self.usual == usual)], conditions, usual=usual, above=above)
         return reached[self.rows]
 
     def _ends(self, fixture: Fixture) -> tuple[int, ...]:
@@ -355,7 +323,14 @@ class Ranking:
                 error = refused
         if not ways:
             raise error
-        return max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
+        best = max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
+        if word == VISE and stock is None and open_rows is not None and not best.soft:
+            # What an earlier setup has finished is gripped as deep as stock is, if that hides nothing that is left.
+            with suppress(NothingToGripError):
+                deep = self._held_in(k, Fixture.parse(f"{VISE}:{deep_in(self.candidates.tall[k]):g}"), None, bound, None)
+                if not deep.soft and float(wanted @ deep.served) >= float(wanted @ best.served) - _EVEN * float(self.area.sum()):
+                    return deep
+        return best
 
     def _fixtures(self, k: int, word: str) -> list[tuple[Fixture, Axis | None]]:
         """What a word may be in a direction, each with the part's direction along the machine's X; None: any.
@@ -523,40 +498,6 @@ class Ranking:
 
 #: What is kept of a ranking for the next question.
 _STORED = tuple(each.name for each in fields(Ranking) if each.name not in ("ready", "progress"))
-
-
-def _bound(ready: Prepared, candidates: Candidates, rows: Rows, k: int, word: str) -> NDArray[np.bool_]:
-    """Rows (r,) where the machine holds an axis at all in a direction, in what holds the part; not on what it stands on."""
-    # A vise or chuck stands on a riser: beside it a tool may be lower than the part.
-    table = float(candidates.lowest[k]) if word == TABLE else None
-    conditions = replace(ready.conditions, setup=np.array([0.0, 0.0, 1.0]), x=None)
-    held = holdable(ready.samples, ready.cutters, conditions, candidates.axis[k], table, rows)
-    return np.asarray(held[rows] & ~np.isin(ready.samples.face[rows], candidates.stands_on[k]))
-
-
-def _usual(cutters: Sequence[Cutter]) -> list[Cutter]:
-    """The cutters that finish surfaces: without engraving, chamfer and form cutters, unless there are no others."""
-    return [each for each in cutters if group_of(each) != "last"] or list(cutters)
-
-
-def _reached(
-    ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool, above: float | None = None
-) -> NDArray[np.bool_]:
-    """The samples (n,) of some rows at which any of the cutters, or of the usual ones, has a posture under some conditions, and
-    nothing of it is below a height along the setup axis, mm."""
-    reached, open_rows = np.zeros(len(ready.samples), bool), rows
-    # The smallest reaches most.
-    for cutter in sorted(_usual(ready.cutters) if usual else ready.cutters, key=lambda each: each.radius):
-        if len(open_rows) and conditions.judges(cutter):
-            verdicts = blank(len(reached))
-            context = Context.of(cutter, conditions)
-            search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
-            good = verdicts.reached
-            if above is not None:
-                good &= over_plane(context, contacts_of(ready.samples), verdicts.freeze(), above)
-            reached |= good
-            open_rows = open_rows[~good[open_rows]]
-    return reached
 
 
 def proposed(

@@ -122,7 +122,7 @@ def read_toml(content: Content) -> LibraryContent:
 
 
 #: What other programs and ISO 13399 call what a key here says.
-_ELSEWHERE = {
+_IN_OTHER_PROGRAMS = {
     "DC": ("diameter", "DCX"), "RE": ("corner_radius", "radius"), "LCF": ("APMX", "LH", "flute_length", "flutes"),
     "LPR": ("LB", "LU", "stickout", "stick_out", "length"), "DMM": ("SFDM", "DCONMS", "shank_diameter", "shank"),
     "OAL": ("overall_length",), "SIG": ("point_angle",), "TP": ("pitch",), "type": ("shape", "kind"),
@@ -140,7 +140,7 @@ def _why(error: Exception) -> str:
     if first["type"] == "extra_forbidden":
         unknown, keys = first["loc"][-1], (*ToolTable.model_fields, *HolderTable.model_fields)
         meant = next((f"; {key} is written so" for key in keys if key.lower() == str(unknown).lower()), "")
-        meant = meant or next((f"; {key} says that" for key, words in _ELSEWHERE.items() if unknown in words), "")
+        meant = meant or next((f"; {key} says that" for key, words in _IN_OTHER_PROGRAMS.items() if unknown in words), "")
         return f"{shown(unknown)} is unknown here{meant}"
     if not first["loc"]:
         return f"it is {shown(first['input'])}, not a table"
