@@ -358,6 +358,15 @@ def test_what_no_chuck_grips_does_not_lie_in_one():
     assert not setups[0].soft, "what a first setup leaves may need a nest"
 
 
+def test_stock_does_not_stand_aslant_for_what_is_turned_over_as_well():
+    """A thin dish: flat below, and standing on nothing when it is turned over."""
+    (file,) = real("brlcad_NIST_MBE_PMI_11.stp")
+    made = plan(file, setup="auto", **{**HOW, "cutters": ["D16L60F32S16", "D8L40F20S8"]}).plan
+    assert np.allclose([each.axis for each in made.setup_proposal.setups], [[0, 0, 1], [0, 0, -1]])
+    assert made.process.stock.word.startswith("cylinder")
+    assert made.process.finished_share > 0.99
+
+
 def test_the_underside_of_what_nothing_grips_is_turned_over_into_a_nest():
     """A knob, narrower below, with a domed top: a twelfth of the area is what was cut from the bar."""
     knob = cq.Workplane("XZ").moveTo(0, 0).lineTo(10, 0).lineTo(13, 40).threePointArc((7, 43.8), (0, 45)).close()

@@ -117,6 +117,19 @@ def test_of_many_steps_the_largest_are_told():
     story = process_story(many, {})
     assert [row.number for row in story.rows] == ["2", "5", "6", "7", "8", "9", "10", "11", "12"]
     assert story.more.startswith("and 3 smaller steps for 1.4 %")
+    assert story.unlisted == {0}
+
+
+@pytest.mark.parametrize(("hidden", "says"), [(True, "Setup 2: -Z up"), (False, "Setup 2: -Z up. No step.")])
+def test_a_setup_whose_steps_are_not_listed_has_some(hidden, says):
+    part, how = CASES["two cutters"]
+    done = plan(part, **how).plan
+    step, (stand, *_) = done.process.steps[0], done.process.setups
+    steps = [step.model_copy(update={"share": 0.05}) for _ in range(11)]
+    steps += [step.model_copy(update={"share": 0.01, "setup": 1})] * hidden
+    setups = [stand, stand.model_copy(update={"number": 2, "text": "Setup 2: -Z up" if hidden else "Setup 2: -Z up."})]
+    many = done.model_copy(update={"process": done.process.model_copy(update={"steps": steps, "setups": setups})})
+    assert says in [line.strip() for line in process_story(many, {}).table()]
 
 
 @pytest.mark.slow("looks for what would help in two pockets")

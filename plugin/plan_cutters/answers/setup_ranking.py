@@ -324,10 +324,10 @@ class Ranking:
         if not ways:
             raise error
         best = max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
-        if word == VISE and stock is None and open_rows is not None and not best.soft:
+        if word in (VISE, CHUCK) and stock is None and open_rows is not None and best.x is None and not best.soft:
             # What an earlier setup has finished is gripped as deep as stock is, if that hides nothing that is left.
             with suppress(NothingToGripError):
-                deep = self._held_in(k, Fixture.parse(f"{VISE}:{deep_in(self.candidates.tall[k]):g}"), None, bound, None)
+                deep = self._held_in(k, Fixture.parse(f"{word}:{deep_in(self.candidates.tall[k]):g}"), None, bound, None)
                 if not deep.soft and float(wanted @ deep.served) >= float(wanted @ best.served) - _EVEN * float(self.area.sum()):
                     return deep
         return best
@@ -445,6 +445,12 @@ class Ranking:
         firm, free = self._chosen(steady, most), self._chosen(every, most)
         best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)
         chosen, least = list(self._worth(best)), self._together(best) - _TURNED_FOR
+        if among is every and firm and self.stock is not None:
+            # Nobody stands stock aslant for what he reaches as well when he turns over a part that stands.
+            self._settle_stock(firm[0])
+            pair = max(((firm[0], k) for k in every if k != firm[0]), key=self._together)
+            if self._together(pair) >= least:
+                return pair
         for k in among[: 1 + min(map(among.index, chosen))] if len(chosen) > 1 else ():
             over = self.opposite(k)
             # A pair that is chosen may still go over to better stands, one after the other.

@@ -79,9 +79,9 @@ class Stays(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps, how the part stands in each setup, how many more steps there are, and the time between
-    steps (`besides`); sentences on the planner's own steps and on what is left, next steps, and clearance. The first `much` of
-    those on what is left are of more than a little.
+    """A process in words: rows of steps, how the part stands in each setup, how many more steps there are, in which setups from 0
+    (`unlisted`), and the time between steps (`besides`); sentences on the planner's own steps and on what is left, next steps,
+    and clearance. The first `much` of those on what is left are of more than a little.
     """
 
     rows: tuple[StepRow, ...]
@@ -94,6 +94,7 @@ class ProcessStory:
     much: int
     next: tuple[str, ...]
     clearance: str
+    unlisted: frozenset[int] = frozenset()
 
     def table(self) -> list[str]:
         """Rows in lines of at most 80 columns, as many faces in each as fit into a width; how the part stands before the steps of
@@ -115,7 +116,8 @@ class ProcessStory:
             ]
             line = "  " + "  ".join(cells)
             lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
-        idle = wrapped([f"{text} No step." for text in stands.values()], 2) if self.rows or len(stands) > 1 else []
+        without = [text if at in self.unlisted else f"{text} No step." for at, text in stands.items()]
+        idle = wrapped(without, 2) if self.rows or len(stands) > 1 else []
         if unshown:
             lines.append(f"  and {count(len(unshown), 'more step')} that drill: the review page and plan.json list them.")
         lines += [f"  {text}" for text in (self.more, self.besides) if text]
@@ -146,6 +148,7 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
         besides=_besides(process), own=tuple(own_steps(process)), remaining=tuple(_remaining(process, plan)),
         much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]), clearance=_clearance(plan, steps),
+        unlisted=frozenset(steps[k].setup for k in steps if k not in largest),
     )  # fmt: skip
 
 
