@@ -317,10 +317,10 @@ def test_a_journal_with_a_flat_is_gripped_and_a_tailstock_named_for_what_stands_
     assert all(each.out_mm is None for each in plan(plain, **how).plan.process.setups)
 
 
-@pytest.mark.parametrize(("long", "chucks"), [(120.0, True), (20.0, False)])
-def test_a_long_part_that_is_not_round_lies_in_a_chuck_as_a_bar(long, chucks):
-    """A camshaft: nothing is round along it, and its stock is."""
-    lobe = cq.Workplane("YZ").rect(14, 30).extrude(0.2 * long).translate((0.4 * long, 0, 0))
+@pytest.mark.parametrize(("long", "high", "chucks"), [(120.0, 30.0, True), (20.0, 30.0, False), (120.0, 90.0, False)])
+def test_a_long_part_that_is_not_round_lies_in_a_chuck_as_a_bar(long, high, chucks):
+    """A camshaft: nothing is round along it, and its stock is; what is as high as it is long is a plate."""
+    lobe = cq.Workplane("YZ").rect(14, high).extrude(0.2 * long).translate((0.4 * long, 0, 0))
     cam = cq.Workplane("YZ").circle(8).extrude(long).union(lobe)
     first = plan(cam.val().wrapped, **{**HOW, "machine": "4-axis-a", "cutters": "D8L60F30S8", "setup": "auto"}).plan
     assert (first.setup_proposal.setups[0].clamping == "chuck") == chucks

@@ -50,6 +50,7 @@ class Bearing:
     inside: float  #: How far the centre of mass is inside the first hull, mm; negative outside.
     tall: float  #: How high the part is along the axis, mm.
     round: bool = False  #: Whether the part fills a circle about it, seen so.
+    wide: float = math.inf  #: Diameter of that circle, mm.
 
     @classmethod
     def of(cls, outline: Floats, stood_on: Floats, centre: Floats, tall: float) -> "Bearing":
@@ -62,14 +63,14 @@ class Bearing:
         whole, below = hull(outline), hull(stood_on)
         footprint = 0.0 if whole is None else float(whole.volume)
         middle = 0.5 * (outline.min(axis=0) + outline.max(axis=0))
-        circle = math.pi * float(((outline - middle) ** 2).sum(axis=1).max())
-        round_ = footprint >= _ROUND * circle
+        radius = math.sqrt(float(((outline - middle) ** 2).sum(axis=1).max()))
+        round_ = footprint >= _ROUND * math.pi * radius**2
         if below is None:
-            return cls(0.0, footprint, 0.0, -math.inf, tall, round_)
+            return cls(0.0, footprint, 0.0, -math.inf, tall, round_, 2.0 * radius)
         normal, off = below.equations[:, :2], below.equations[:, 2]
         height = stood_on[below.vertices] @ normal.T + off
         narrowest, inside = float(-height.min(axis=0).max()), float(-(normal @ centre + off).max())
-        return cls(float(below.volume), footprint, narrowest, inside, tall, round_)
+        return cls(float(below.volume), footprint, narrowest, inside, tall, round_, 2.0 * radius)
 
     @property
     def broad(self) -> bool:
