@@ -121,11 +121,10 @@ def read_toml(content: Content) -> LibraryContent:
     return library
 
 
-#: What other programs and ISO 13399 call what a key here says.
+#: What a key here is called by Fusion, by ISO 13399, or in full.
 _IN_OTHER_PROGRAMS = {
-    "DC": ("diameter", "DCX"), "RE": ("corner_radius", "radius"), "LCF": ("APMX", "LH", "flute_length", "flutes"),
-    "LPR": ("LB", "LU", "stickout", "stick_out", "length"), "DMM": ("SFDM", "DCONMS", "shank_diameter", "shank"),
-    "OAL": ("overall_length",), "SIG": ("point_angle",), "TP": ("pitch",), "type": ("shape", "kind"),
+    "DC": ("diameter",), "RE": ("corner_radius",), "LCF": ("APMX", "flute_length"), "LPR": ("LB", "stickout", "stick_out"),
+    "DMM": ("SFDM", "DCONMS", "shank_diameter"), "OAL": ("overall_length",), "SIG": ("point_angle",), "type": ("shape", "kind"),
 }  # fmt: skip
 
 
