@@ -67,6 +67,20 @@ def test_each_tool_makes_what_is_its_own(planned):
     assert reamed.tool.startswith("reamer")
 
 
+@pytest.mark.parametrize(("leans", "steep"), [(0.0, False), (5.0, False), (20.0, True)])
+def test_a_drill_that_begins_on_a_slope_is_a_doubt(leans, steep):
+    """A bore square to the bottom of a block whose top leans; and one across a rod, whose mouth is as high on both sides."""
+    top = cq.Workplane("XZ").rect(100, 30).extrude(60, both=True).rotate((0, 0, 0), (0, 1, 0), leans).translate((0, 0, 27))
+    part = cq.Workplane().box(60, 40, 20).translate((0, 0, 10)).cut(top).cut(cq.Workplane().circle(2.5).extrude(40)).val()
+    made = made_with(drill(5.0), shape=part, machine="3-axis", setup="+z")
+    (step,) = made.process.drilling
+    assert [each.slope_deg for each in step.holes] == ([pytest.approx(leans, abs=0.3)] if steep else [None])
+    assert any("begins on a slope of 20" in each for each in made.process.doubts) == steep
+    rod = cq.Workplane("YZ").circle(8).extrude(60).cut(cq.Workplane().center(30, 0).circle(2.5).extrude(20, both=True)).val()
+    assert [each.slope_deg for step in made_with(drill(5.0), shape=rod, machine="3-axis", setup="+z").process.drilling
+            for each in step.holes] == [None]  # fmt: skip
+
+
 def test_their_seconds_are_in_those_of_the_process(planned):
     process, assumed = planned.process, planned.operations.assumed
     assert process.seconds == pytest.approx(math.fsum([process.cutting_seconds, process.link_seconds, process.index_seconds,

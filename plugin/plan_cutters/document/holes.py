@@ -14,13 +14,16 @@ from plan_cutters.plan_file import holes as schema
 from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.operations import ProcessEntry
 from plan_cutters.scene.fixed_axis import tilted_plane
-from plan_cutters.scene.holes import groups
+from plan_cutters.scene.holes import groups, slope_of
 from plan_cutters.scene.preparation import Prepared, places
+from plan_cutters.setups.workpiece import PartMesh
 
 #: Decimals of lengths and angles: behind them there is noise alone.
 _DIGITS = 6
 #: Angles that differ by less are one, deg.
 _SAME = 0.01
+#: A drill wanders where what it enters leans by more than this, deg.
+_STEEP = 7.0
 #: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
 #: Tools in the order in which they come in a setup.
@@ -66,6 +69,8 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
             key = use.setup, _IN_TURN.index(use.drill.kind), use.drill.diameter, use.drill.id, _rounded(use.axis), size
             same.setdefault(key, []).append((place, use))
     threads = [thread_in(hole.sizes, hole.diameter) for hole in ready.holes]
+    surroundings = ready.conditions.surroundings
+    mesh = ready.scene.mesh((surroundings.alone or surroundings).certain.triangles)
     steps, turned = list[schema.DrillingStep](), dict[tuple[int, str], list[tuple[float, ...]]]()
     for key in sorted(same):
         use, feed = same[key][0][1], feeds.get(same[key][0][1].drill.id, options.feed)
@@ -73,7 +78,13 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
         thread = threads[in_order[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
-        strokes = [schema.StrokeEntry(hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip)) for k, each in same[key]]
+        first = [each is made[in_order[k]].uses[0] for k, each in same[key]]
+        strokes = [
+            schema.StrokeEntry(
+                hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip),
+                slope_deg=_slope(mesh, ready.holes[in_order[k]], each.axis) if begins_it else None,
+            ) for (k, each), begins_it in zip(same[key], first, strict=True)
+        ]  # fmt: skip
         steps.append(
             schema.DrillingStep(
                 kind=use.drill.kind, tool=use.drill.id, name=use.drill.body.name,
@@ -89,6 +100,11 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
     for step in steps:
         together.setdefault((step.setup, step.tool), []).append(step)
     return [step for group in together.values() for step in _indexed(ready, group, index_times)]
+
+
+def _slope(mesh: PartMesh, hole: Hole, axis: Floats) -> float | None:
+    leans = _degrees(slope_of(mesh, hole, axis))
+    return leans if leans > _STEEP else None
 
 
 def _indexed(ready: Prepared, steps: Sequence[schema.DrillingStep], index_times: IndexTimes) -> list[schema.DrillingStep]:

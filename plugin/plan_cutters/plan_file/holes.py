@@ -108,6 +108,9 @@ class StrokeEntry(Frozen):
     tip_mm: Vector = Field(
         description="where its tip stands at the deepest; a point of an angle that is not stated is one of 90 deg"
     )
+    slope_deg: float | None = Field(
+        default=None, exclude_if=_none, description="by which the mouth leans, where it is no place for a drill to begin"
+    )
 
 
 class DrillingStep(Frozen):

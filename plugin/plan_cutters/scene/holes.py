@@ -5,11 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from cad_io.arrays import Floats
 from cad_io.part.holes import Hole, holes
 from plan_cutters.domain.drill import Drill
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.thread import thread_in, tolerance_in
 from plan_cutters.library.raw_tool import Library
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.setups.workpiece import PartMesh
 
 
 def with_holes(ready: Prepared) -> Prepared:
@@ -91,3 +94,23 @@ def alike(one: Hole, other: Hole) -> bool:
 
 def _near(one: float | None, other: float | None, most: float) -> bool:
     return one is other if one is None or other is None else abs(one - other) <= most
+
+
+#: Sides of a hole about its axis, of each of which the corner that is farthest out tells where the mouth lies.
+_SIDES = 12
+
+
+def slope_of(mesh: PartMesh, hole: Hole, axis: Floats) -> float:
+    """How far what a tool enters a hole through leans from being square to its axis (3,), out of the hole, rad; 0 where the
+    corners of the mouth do not tell.
+    """
+    vertex = mesh.vertex[np.isin(mesh.face, hole.faces)].reshape(-1, 3) - hole.place
+    if not len(vertex):
+        return 0.0
+    x, y, height = frame_of(axis) @ vertex.T
+    side = np.floor((np.arctan2(y, x) / (2.0 * np.pi) + 0.5) * _SIDES).astype(int) % _SIDES
+    rim = [rows[height[rows].argmax()] for rows in (np.flatnonzero(side == k) for k in range(_SIDES)) if len(rows)]
+    if len(rim) < _SIDES // 2:
+        return 0.0
+    leans = np.linalg.lstsq(np.column_stack([x[rim], y[rim], np.ones(len(rim))]), height[rim], rcond=None)[0]
+    return float(np.arctan(np.hypot(leans[0], leans[1])))

@@ -262,7 +262,9 @@ def doubts(plan: Plan) -> list[str]:
     noted = [*zip(plan.note_codes, plan.notes, strict=False)]
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
     lines += [
-        text for doubt in (_unit, _travel, _into_solid, _raw, _held, _across, _moving, _unheld, _side) for text in doubt(plan)
+        text
+        for doubt in (_unit, _travel, _into_solid, _aslant, _raw, _held, _across, _moving, _unheld, _side)
+        for text in doubt(plan)
     ]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
     if requested is not None and met > _RAISED * requested:
@@ -340,6 +342,18 @@ def _into_solid(plan: Plan) -> Iterator[str]:
         if drills:
             which = f"step{'s' * (len(drills) > 1)} {_runs(drills)}"
             yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
+
+
+def _aslant(plan: Plan) -> Iterator[str]:
+    """Steps that drill into what leans from being square to them."""
+    steps, steep = list[int](), 0.0
+    for number, bores in enumerate(plan.process.drilling, len(plan.process.steps) + 1):
+        if slopes := [each.slope_deg for each in bores.holes if each.slope_deg is not None]:
+            steps.append(number)
+            steep = max(steep, *slopes)
+    if steps:
+        begins = f"step {_runs(steps)} begins" if len(steps) == 1 else f"steps {_runs(steps)} begin"
+        yield f"A drill wanders where {begins} on a slope of {angle(steep)}: mill a flat there first."
 
 
 def _across(plan: Plan) -> Iterator[str]:
