@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.words.process import process_story
 from plan_cutters.plan_file.words.text import MOST, text_of
 from tests.support.drills import drill, library_of
 from tests.support.plates import block, drilled
@@ -113,3 +114,4 @@ def test_a_doubt_names_steps_of_mills_that_go_to_the_bottoms_of_holes_before_the
     drills = len(found.process.steps) + len(found.process.drilling)
     lines = [each for each in found.process.doubts if "behind" in each]
     assert lines == [f"Run step {k} behind step {drills}: it goes to the bottoms of holes that are drilled there." for k in deep]
+    assert [row.number for row in process_story(found, {}).rows][-len(deep) :] == [str(k) for k in deep]

@@ -116,3 +116,17 @@ def drilled_share(plan: Plan) -> float | None:
     whole = sum(sizes[name] * (1.0 - each.inside_share) for name, each in faces.items())
     mine = sum(sizes[name] * each.drilled_share for name, each in faces.items())
     return mine / whole if whole > 0.0 else None
+
+
+def behind_drills(plan: Plan) -> dict[int, list[int]]:
+    """Of steps of mills that go down to the bottoms of holes, by their numbers, those of the steps that drill these before: they
+    are solid until their drills have been there.
+    """
+    steps, drilling = plan.process.steps, plan.process.drilling
+    floors = [{face for each in bores.holes for face in plan.holes[each.hole].floor} for bores in drilling]
+    drilled = list(enumerate(zip(drilling, floors, strict=True), len(steps) + 1))
+    behind = {
+        k: [number for number, (bores, own) in drilled if bores.setup >= step.setup and own.intersection(step.faces)]
+        for k, step in enumerate(steps, 1)
+    }
+    return {k: drills for k, drills in behind.items() if drills}

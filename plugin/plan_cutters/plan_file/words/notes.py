@@ -25,6 +25,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.words.headline import shown_cutter
+from plan_cutters.plan_file.words.holes import behind_drills
 from plan_cutters.plan_file.words.names import Line, named
 from plan_cutters.plan_file.words.operations import of_process
 
@@ -334,14 +335,9 @@ def _raw(plan: Plan) -> Iterator[str]:
 
 def _into_solid(plan: Plan) -> Iterator[str]:
     """Steps of mills that go down to the bottoms of holes, which are solid until their drills have been there."""
-    steps, drilling = plan.process.steps, plan.process.drilling
-    floors = [{face for each in bores.holes for face in plan.holes[each.hole].floor} for bores in drilling]
-    drilled = list(enumerate(zip(drilling, floors, strict=True), len(steps) + 1))
-    for k, step in enumerate(steps, 1):
-        drills = [number for number, (bores, own) in drilled if bores.setup >= step.setup and own.intersection(step.faces)]
-        if drills:
-            which = f"step{'s' * (len(drills) > 1)} {_runs(drills)}"
-            yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
+    for k, drills in behind_drills(plan).items():
+        which = f"step{'s' * (len(drills) > 1)} {_runs(drills)}"
+        yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
 def _aslant(plan: Plan) -> Iterator[str]:

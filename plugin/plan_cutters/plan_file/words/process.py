@@ -6,7 +6,7 @@ import shlex
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, groupby
 from typing import NamedTuple
 
 from plan_cutters.domain.answer_kinds import WORTH
@@ -20,7 +20,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.reasons import CLOSED_VOID, reason
 from plan_cutters.plan_file.words.answers import is_excluded, more_setup, needs
 from plan_cutters.plan_file.words.headline import shown_cutter
-from plan_cutters.plan_file.words.holes import drilling_words
+from plan_cutters.plan_file.words.holes import behind_drills, drilling_words
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.operations import angles_text, each_time
@@ -139,6 +139,10 @@ def process_story(plan: Plan, names: Mapping[str, str], most: int = _STEPS) -> P
     for k, bores in enumerate(process.drilling, len(steps) + 1):
         after = max((i for i, row in enumerate(rows, 1) if row.at <= bores.setup), default=0)
         rows.insert(after, _drilling_row(k, bores, setups=setups, fixed=fixed or not steps))
+    # What goes to the bottoms of holes is run behind their drills.
+    late = {str(k) for k in behind_drills(plan)}
+    runs = (sorted(run, key=lambda row: row.number in late) for _, run in groupby(rows, key=lambda row: row.at))
+    rows = [*chain.from_iterable(runs)]
     more = ""
     if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
