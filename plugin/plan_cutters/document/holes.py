@@ -22,7 +22,7 @@ from plan_cutters.setups.workpiece import PartMesh
 _DIGITS = 6
 #: Angles that differ by less are one, deg.
 _SAME = 0.01
-#: A drill wanders where what it enters leans by more than this, deg.
+#: A drill wanders where what it enters steepness by more than this, deg.
 _STEEP = 7.0
 #: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
@@ -103,8 +103,8 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
 
 
 def _slope(mesh: PartMesh, hole: Hole, axis: Floats) -> float | None:
-    leans = _degrees(slope_of(mesh, hole, axis))
-    return leans if leans > _STEEP else None
+    steepness = _degrees(slope_of(mesh, hole, axis))
+    return steepness if steepness > _STEEP else None
 
 
 def _indexed(ready: Prepared, steps: Sequence[schema.DrillingStep], index_times: IndexTimes) -> list[schema.DrillingStep]:

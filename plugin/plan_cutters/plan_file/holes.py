@@ -109,7 +109,7 @@ class StrokeEntry(Frozen):
         description="where its tip stands at the deepest; a point of an angle that is not stated is one of 90 deg"
     )
     slope_deg: float | None = Field(
-        default=None, exclude_if=_none, description="by which the mouth leans, where it is no place for a drill to begin"
+        default=None, exclude_if=_none, description="of the mouth, where it is too steep for a drill to begin"
     )
 
 

@@ -112,5 +112,5 @@ def slope_of(mesh: PartMesh, hole: Hole, axis: Floats) -> float:
     rim = [rows[height[rows].argmax()] for rows in (np.flatnonzero(side == k) for k in range(_SIDES)) if len(rows)]
     if len(rim) < _SIDES // 2:
         return 0.0
-    leans = np.linalg.lstsq(np.column_stack([x[rim], y[rim], np.ones(len(rim))]), height[rim], rcond=None)[0]
-    return float(np.arctan(np.hypot(leans[0], leans[1])))
+    slope = np.linalg.lstsq(np.column_stack([x[rim], y[rim], np.ones(len(rim))]), height[rim], rcond=None)[0]
+    return float(np.arctan(np.hypot(slope[0], slope[1])))
