@@ -379,6 +379,12 @@ def test_the_underside_of_what_nothing_grips_is_turned_over_into_a_nest():
     assert made.process.finished_share > 0.99
 
 
+def test_a_wide_disk_is_gripped_deep_on_its_hub():
+    disk = cq.Workplane().circle(40).extrude(4).union(cq.Workplane().circle(12).extrude(18)).val().wrapped
+    second = plan(disk, setup="auto", **{**HOW, "machine": "3-axis", "cutters": "D12L40"}).plan.process.setups[1]
+    assert (second.held, second.apart_mm, second.grip_mm) == ("chuck", pytest.approx(24.0, abs=0.01), 12.0)
+
+
 def test_a_further_setup_that_needs_a_nest_is_proposed_for_much_of_the_area():
     """A thin disk with a domed top: turned over it stands on nothing, and its underside has two fifths of the area."""
     disk = cq.Workplane("XZ").moveTo(0, 0).lineTo(30, 0).lineTo(30, 2).threePointArc((15, 4.2), (0, 5)).close()

@@ -5,7 +5,8 @@ import re
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.operations import HelpEntry
+from plan_cutters.plan_file.operations import HelpEntry, StockEntry
+from plan_cutters.plan_file.words.notes import doubts
 from plan_cutters.plan_file.words.process import with_process_words
 from plan_cutters.plan_file.words.text import process_lines, story_of, with_text
 from tests.support.cad_parts import box
@@ -46,3 +47,12 @@ def test_the_next_step_is_about_what_is_left_most_and_a_little_is_named_too(plan
     assert (found.process.next[0].argv == ["--sharp-edges", "left"]) == (sharp > 0.005)
     assert ["--sharp-edges", "left"] in [each.argv for each in found.process.next]
     assert any(line.startswith("Left, 0.") for line in process_lines(found, story_of(found), most=14))
+
+
+@pytest.mark.parametrize(("up", "cut"), [((0.0, 0.0, -1.0), False), ((1.0, 0.0, 0.0), True)])
+def test_the_foot_of_the_stock_is_cut_off_before_a_setup_that_does_not_turn_the_part_over(planned, up, cut):
+    process, (first, *_) = planned.process, planned.process.setups
+    stock = StockEntry(word="box:1,1,5", size_mm=(42.0, 32.0, 26.0), volume_mm3=3e4, remove_mm3=1e4, seconds=None)
+    setups = [first, first.model_copy(update={"number": 2, "up": up})]
+    made = planned.model_copy(update={"process": process.model_copy(update={"stock": stock, "setups": setups})})
+    assert any("Cut off what is left of the stock" in each for each in doubts(made)) == cut

@@ -231,10 +231,27 @@ def test_a_shaft_that_lies_is_held_across_its_diameter_in_soft_jaws(radius, slen
 def test_jaws_do_not_press_on_walls_that_they_would_bend(thick, turned, web, soft):
     """A U of 60 x 80 x 40 mm on the ends of its walls: those of 1.5 mm bend, but for a web between them."""
     part = cq.Workplane().box(60, 80, 40).faces(">Z").workplane().rect(60 - 2 * thick, 80).cutBlind(-36)
-    part = part.union(cq.Workplane().box(60, 4, 40)) if web else part
+    part = part.union(cq.Workplane().box(60, 30, 40)) if web else part
     hold = hold_of(part.val().wrapped, "vise", (0.0, 0.0, -1.0 if turned else 1.0))
     assert hold.fixture.clamping.gap == pytest.approx(60.0)
     assert ("would bend walls 1.5 mm thick" in hold.soft) == soft
+
+
+@pytest.mark.parametrize(("thick", "bottom", "soft"), [(1.5, 5.0, True), (1.5, 47.0, False), (6.0, 5.0, False)])
+def test_a_chuck_does_not_press_on_a_thin_ring(thick, bottom, soft):
+    """A cup of 60 mm on its rim: a wall of 1.5 mm gives, but near its bottom."""
+    cup = cq.Workplane().circle(30).extrude(50).faces("<Z").workplane().circle(30 - thick).cutBlind(bottom - 50)
+    hold = hold_of(cup.val().wrapped, "chuck")
+    assert ("would bend walls" in hold.soft) == soft
+    assert len(hold.grips) == 1
+
+
+def test_what_a_vise_would_bend_is_not_gripped_beside_its_middle():
+    """A box of 3 mm walls with a boss in each corner, which ends below the rim on which it stands."""
+    part = cq.Workplane().box(120, 80, 40).faces("<Z").workplane().rect(114, 74).cutBlind(-36)
+    bosses = cq.Workplane().rect(98, 58, forConstruction=True).vertices().rect(16, 16).extrude(37.9).translate((0, 0, -17.9))
+    for shape in (part, part.union(bosses)):
+        assert "would bend walls 3 mm thick" in hold_of(shape.val().wrapped, "vise").soft
 
 
 @pytest.mark.parametrize(("tall", "grips"), [(15.0, 3.0), (79.0, 8.0), (399.0, 20.0)])

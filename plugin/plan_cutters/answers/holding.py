@@ -13,6 +13,7 @@ from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.stock import Stock
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups.workpiece import BENDS
 
 #: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
 GRIPPED_FOR = 0.9
@@ -73,9 +74,11 @@ def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Hel
     best = max(gripping or able, key=lambda each: share[each.kind])
     if any(each.kind == TABLE for each in able) and share[best.kind] < GRIPPED_FOR * share[TABLE]:
         best = next(each for each in able if each.kind == TABLE)
+    # What stands on thin walls is clamped no better from above.
+    bending = next((each.soft for each in tried if BENDS in each.soft and best.kind == TABLE), "")
     served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
     served[0] += " of the samples' area"
     nothing = [f"a {each.kind} needs soft jaws or a nest ({each.soft})" for each in tried if each.soft]
     nothing += [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
     left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
-    return replace(best, why=f"{', '.join([*served, *nothing])}{left}")
+    return replace(best, soft=best.soft or bending, why=f"{', '.join([*served, *nothing])}{left}")

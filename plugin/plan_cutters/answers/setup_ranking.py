@@ -37,6 +37,7 @@ from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.work import Progress, evenly
 from plan_cutters.setups.clamping import NothingToGripError
+from plan_cutters.setups.places import LIES
 from plan_cutters.setups.requested import MOST_PROPOSED
 
 Rows = NDArray[np.int64]
@@ -325,11 +326,16 @@ class Ranking:
             raise error
         best = max(ways, key=lambda each: (not each.soft, float(wanted @ each.served)))
         if word in (VISE, CHUCK) and stock is None and open_rows is not None and best.x is None and not best.soft:
-            # What an earlier setup has finished is gripped as deep as stock is, if that hides nothing that is left.
-            with suppress(NothingToGripError):
-                deep = self._held_in(k, Fixture.parse(f"{word}:{deep_in(self.candidates.tall[k]):g}"), None, bound, None)
-                if not deep.soft and float(wanted @ deep.served) >= float(wanted @ best.served) - _EVEN * float(self.area.sum()):
-                    return deep
+            # What an earlier setup has finished is gripped as deep as stock is, a hub half its diameter, if that hides nothing
+            # that is left.
+            clamping, deep = best.fixture.clamping, deep_in(self.candidates.tall[k])
+            hub = min(0.5 * clamping.numbers[-1], LIES) if word == CHUCK and clamping is not None else 0.0
+            least = float(wanted @ best.served) - _EVEN * float(self.area.sum())
+            for grip in sorted({deep, max(deep, hub)}, reverse=True):
+                with suppress(NothingToGripError):
+                    deeper = self._held_in(k, Fixture.parse(f"{word}:{grip:g}"), None, bound, None)
+                    if not deeper.soft and deeper.grips == best.grips and float(wanted @ deeper.served) >= least:
+                        return deeper
         return best
 
     def _fixtures(self, k: int, word: str) -> list[tuple[Fixture, Axis | None]]:
@@ -385,7 +391,10 @@ class Ranking:
                 break
             chosen = fewer
         # What a later setup grips and stands on is finished before, if any order of them does that.
-        chosen = min(((*chosen[:1], *rest) for rest in permutations(chosen[1:])), key=self._raw)
+        # The part is turned over first: until then the foot of its stock is there.
+        over = self.opposite(chosen[0]) if chosen else None
+        orders = ((*chosen[:1], *rest) for rest in permutations(chosen[1:]))
+        chosen = min(orders, key=lambda order: (self._raw(order), order.index(over) if over in order else 0))
         return self._with_holes(chosen, most, without)
 
     def _with_holes(self, chosen: tuple[int, ...], most: int, without: frozenset[int]) -> tuple[int, ...]:

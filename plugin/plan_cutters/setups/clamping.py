@@ -19,7 +19,7 @@ from plan_cutters.domain.stock import StockBody, deep_in
 from plan_cutters.errors import FixtureError
 from plan_cutters.setups.places import chuck_places, ungripped, vise_places
 from plan_cutters.setups.solids import box, cylinder
-from plan_cutters.setups.workpiece import PartMesh, Place, Refused, Workpiece, held_bodies, on_ledges, thin_between
+from plan_cutters.setups.workpiece import BENDS, PartMesh, Place, Refused, Workpiece, held_bodies, on_ledges, thin_between
 
 
 class NothingToGripError(FixtureError):
@@ -93,10 +93,10 @@ def held(
             refused.append(Refused(place.rank, f"{names} are of bodies with a gap between them"))
             continue
         if not overlaps(placed, place.clamping):
-            thick = thin_between(part, place) if isinstance(place.clamping, Vise) and not place.bored else 0.0
+            thick = 0.0 if place.bored else thin_between(part, place)
             if not thick:
                 return _hold(requested, placed, part, place)
-            bending.append(replace(place, soft=f"its jaws would bend walls {mm(thick)} thick"))
+            bending.append(replace(place, soft=f"its jaws {BENDS} {mm(thick)} thick"))
             continue
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched[place.grips] += 1

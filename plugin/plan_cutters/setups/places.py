@@ -34,9 +34,9 @@ _TURN, _BINS = 5, 360
 _ARC, _LOWEST = 20, 0.1
 #: Of a cylinder that is gripped deep, so much at most; a bar that lies is gripped so deep, mm, and by this share of its diameter
 #: at least, if it is there.
-_DEEP, _LIES, _THIRD = 2.0 / 3.0, 20.0, 1.0 / 3.0
+_DEEP, LIES, _THIRD = 2.0 / 3.0, 20.0, 1.0 / 3.0
 #: A bar that lies stands so many times as far out of a chuck as it is wide there, at most, if a tailstock supports it.
-_OUT_OF_A_CHUCK = 10.0
+_OUT_OF_A_CHUCK = 30.0
 _X, _Y, _Z = np.eye(3)
 #: Jaws are higher than they grip by more than numbers are rounded, mm.
 _HAIR = 1e-6
@@ -57,11 +57,13 @@ def chuck_places(part: Workpiece, requested: Requested, *, lying: bool = False) 
             grips += [each for each in [_lies(radius, wall.high - wall.low)] if each > GRIP]
         if 2.0 * radius > largest_gripped():
             why, grips = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}", []
-        for above, reach in [each for grip in grips for each in stands(wall.low, grip)]:
+        for grip, (above, reach) in [(deep, each) for deep in grips for each in stands(wall.low, deep)]:
             chuck = chuck_about(2.0 * radius, reach)
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
-            if reach < chuck.height and above <= chuck.height - reach:
+            # Jaws do not stand far over what they grip.
+            there = min(wall.high, above + reach) - max(wall.low, above)
+            if reach < chuck.height and above <= chuck.height - reach and there >= 0.5 * grip:
                 result += _about(part, chuck, wall, centre, above, _OUT_OF_A_CHUCK if lying else TALL)
         places += result
         if not result:
@@ -71,7 +73,7 @@ def chuck_places(part: Workpiece, requested: Requested, *, lying: bool = False) 
 
 def _lies(radius: float, long: float) -> float:
     """How deep a cylinder of a bar that lies is gripped, mm; 0 where not even the least of it is there."""
-    deep, least = min(_LIES, 2.0 * radius, _DEEP * long), 2.0 * radius * _THIRD
+    deep, least = min(LIES, 2.0 * radius, _DEEP * long), 2.0 * radius * _THIRD
     return deep if deep >= least else least if least < long else 0.0
 
 

@@ -321,41 +321,50 @@ class Place:
         return self.touched if self.above == 0.0 else 0.5 * self.touched
 
 
-#: Rays across the jaws of a vise, and heights at which they go; a wall holds what is behind so many times its thickness as a
-#: solid does, and is thin below this share of how far that is away.
-_RAYS, _LEVELS, _BACKED, _THIN = 5, 24, 3.0, 0.1
+#: Rays across jaws, and heights at which they go; what is behind a wall holds it as a solid does where that is so many times as
+#: thick, at this share of the rays.
+_RAYS, _LEVELS, _BACKED, _HELD = 9, 24, 3.0, 0.5
+#: Walls are thin below this share of how far what holds them is away; rings below this share of their diameter, where that is
+#: farther away than a share of it.
+_THIN, _RING, _CLOSED = 0.1, 0.04, 0.25
+#: In the words of why a part needs a nest.
+BENDS = "would bend walls"
 
 
 def thin_between(part: Workpiece, place: Place) -> float:
-    """How thick the walls are that the jaws of a vise would bend, mm; 0 where they press on what does not give.
+    """How thick the walls are that jaws would bend, mm; 0 where they press on what does not give.
 
-    Walls do where no material goes from jaw to jaw anywhere between them, nor does it near above or below.
+    Walls do where no material goes from jaw to jaw between most of them, nor does it near above or below.
     """
-    half = 0.5 * (place.apart + TOGETHER)
-    vertex = place.own(part.vertex)
-    across = np.linspace(-0.5, 0.5, _RAYS + 2)[1:-1] * 2.0 * place.clamping.half_width
+    clamping, vertex, wide, grip = place.clamping, place.own(part.vertex), place.apart, place.clamping.grip
+    half, vise = 0.5 * (wide + TOGETHER), isinstance(clamping, Vise)
+    across = np.linspace(-0.5, 0.5, _RAYS + 2)[1:-1] * 2.0 * clamping.half_width
+    rays = [(0.0, float(y)) for y in across] if vise else [(turn, 0.0) for turn in clamping.turns]
 
     def thickness(height: float) -> float:
-        """Of the thinner wall, where both are thickest; infinite where material goes from jaw to jaw, 0 where there is none."""
-        near = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)]
-        thickest = 0.0
-        for y in across:
-            x = _crossings(near, float(y), height)
+        """Find what the thinner wall has at a share of the rays at least; infinite where material goes from jaw to jaw there, 0 where
+        there is none.
+        """
+        near, each = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)], list[float]()
+        for turn, y in rays:
+            cosine, sine = math.cos(turn), math.sin(turn)
+            x = _crossings(near @ np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]), y, height)
             x = x[np.abs(x) <= half]
-            if len(x) == 2:
-                return math.inf
-            if len(x) > 2 and len(x) % 2 == 0:
-                thickest = max(thickest, float(min(x[1] - x[0], x[-1] - x[-2])))
-        return thickest
+            if not vise:
+                # Outwards from the axis: mirrored, so that one wall is told as two are.
+                x = np.concatenate([-x[x > 0.0][::-1], x[x > 0.0]])
+            if len(x) >= 2 and len(x) % 2 == 0:
+                each.append(math.inf if len(x) == 2 else float(min(x[1] - x[0], x[-1] - x[-2])))
+        return sorted(each, reverse=True)[math.ceil(_HELD * len(each)) - 1] if each else 0.0
 
-    grip = place.clamping.grip
     thick = thickness(0.5 * grip)
     if not 0.0 < thick < math.inf:
         return 0.0
     low, high = -place.above, part.tall - place.above
     steps = low + (high - low) * (np.arange(_LEVELS) + 0.5) / _LEVELS
-    away = [max(z - grip, -z, 0.0) for z in steps.tolist() if thickness(z) >= _BACKED * thick]
-    return thick if thick < _THIN * min(away, default=high - low) else 0.0
+    away = min((max(z - grip, -z, 0.0) for z in steps.tolist() if thickness(z) >= _BACKED * thick), default=high - low)
+    thin = thick < _THIN * away if vise else thick < _RING * wide and away > _CLOSED * wide
+    return thick if thin else 0.0
 
 
 def _crossings(vertex: Floats, y: float, z: float) -> Floats:
@@ -423,7 +432,9 @@ def clipped(vertex: Floats, face: Ints, direction: Floats, low: float, high: flo
 _UP = np.array([0.0, 0.0, 1.0])
 
 
-def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: float) -> Iterator[tuple[Ints, Floats]]:
+def at_jaws(
+    clamping: Clamping, vertex: Floats, face: Ints, low: float, high: float, inset: float = 0.0
+) -> Iterator[tuple[Ints, Floats]]:  # fmt: skip
     """Cut triangles to what lies between the jaws, before each of them and between two heights: their faces, and how far each of
     them reaches towards it.
 
@@ -431,13 +442,13 @@ def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: fl
     at most: in a vise across the jaws, in a chuck from its axis; mm. Jaws grip at `0.5 * gap` or `0.5 * diameter`.
 
     `clamping`: in its place. `vertex` (n, 3, 3) float: triangles in its own frame, mm. `face` (n,) int: face numbers of them.
-    `low`, `high`: mm.
+    `low`, `high`: mm. `inset`: by how much a jaw is taken to be narrower on each side, mm.
     """
     vertex, face = clipped(vertex, face, _UP, low, high)
     for turn in clamping.turns:
         towards = np.array([np.cos(turn), np.sin(turn), 0.0])
         along = np.array([-towards[1], towards[0], 0.0])
-        piece, mine = clipped(vertex, face, along, -clamping.half_width, clamping.half_width)
+        piece, mine = clipped(vertex, face, along, inset - clamping.half_width, clamping.half_width - inset)
         piece, mine = clipped(piece, mine, towards, 0.0, 0.5 * clamping.numbers[-1] + TOGETHER)
         away = piece @ towards if isinstance(clamping, Vise) else np.linalg.norm(piece[..., :2], axis=-1)
         yield mine, away.max(axis=1, initial=-np.inf)
@@ -461,13 +472,15 @@ def faces_in_jaws(clamping: Clamping, vertex: Floats, face: Ints, slack: float) 
 
     `clamping`, `vertex`, `face`: as for `at_jaws`. `slack`: how far triangles may be off, mm.
     """
-    if isinstance(clamping, Vise):
-        normal = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
-        facing = np.abs(normal[:, 0]) >= _FACING * np.linalg.norm(normal, axis=1)
-        vertex, face = vertex[facing], face[facing]
+    normal = cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
+    towards = np.broadcast_to([1.0, 0.0, 0.0], normal.shape)
+    if not isinstance(clamping, Vise):
+        towards = vertex.mean(axis=1) * [1.0, 1.0, 0.0]
+        towards = towards / np.maximum(1e-300, np.linalg.norm(towards, axis=1))[:, None]
+    facing = np.abs((normal * towards).sum(axis=1)) >= _FACING * np.linalg.norm(normal, axis=1)
     inner = 0.5 * clamping.numbers[-1] - TOGETHER - slack
     # What ends at the edge of a jaw, or begins there, is not in it.
-    each = at_jaws(clamping, vertex, face, TOGETHER, clamping.grip - TOGETHER)
+    each = at_jaws(clamping, vertex[facing], face[facing], TOGETHER, clamping.grip - TOGETHER, inset=TOGETHER)
     return frozenset(int(n) for mine, reach in each for n in np.unique(mine[reach >= inner]))
 
 

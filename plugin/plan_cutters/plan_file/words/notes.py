@@ -264,7 +264,7 @@ def doubts(plan: Plan) -> list[str]:
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
     lines += [
         text
-        for doubt in (_unit, _travel, _into_solid, _aslant, _raw, _held, _across, _moving, _unheld, _side)
+        for doubt in (_unit, _travel, _into_solid, _aslant, _foot, _raw, _held, _across, _moving, _unheld, _side)
         for text in doubt(plan)
     ]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
@@ -340,6 +340,17 @@ def _into_solid(plan: Plan) -> Iterator[str]:
         yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
+def _foot(plan: Plan) -> Iterator[str]:
+    """What a first setup gripped of the stock is still below the part where the next one does not turn this over."""
+    setups, stock = plan.process.setups, plan.process.stock
+    if stock is None or len(setups) < 2 or setups[1].held is None:
+        return
+    (first, second), chuck = setups[:2], Fixture.parse(setups[0].clamping or "table")
+    lying = first.clamping is not None and chuck.stands_along(first.up) != first.up
+    if not lying and sum(one * other for one, other in zip(first.up, second.up, strict=True)) > -_ALONG:
+        yield "Cut off what is left of the stock below the part before setup 2, which does not turn the part over."
+
+
 def _aslant(plan: Plan) -> Iterator[str]:
     """Steps that drill into what leans from being square to them."""
     steps, steep = list[int](), 0.0
@@ -372,7 +383,7 @@ def _across(plan: Plan) -> Iterator[str]:
     lying = [each for each, _ in chucks if each not in upright]
     out = [f"{mm(each.out_mm)} on {mm(each.apart_mm)} in setup {each.number}" for each in lying if each.out_mm and each.apart_mm]
     if out:
-        yield f"Support the far end with a tailstock: the part stands out of the chuck {listed(out)}."
+        yield f"Support the far end with a tailstock, once faced and centred: the part stands out of the chuck {listed(out)}."
     if lying:
         where = f"setup{'s' if len(lying) > 1 else ''} {listed([str(each.number) for each in lying])}"
         yield (

@@ -108,6 +108,8 @@ class ProcessStory:
         for row, texts in zip(shown, rows, strict=True):
             if row.at != setup:
                 setup = row.at
+                for other in sorted(at for at in stands if at < setup and at in self.unlisted):
+                    lines += wrapped([stands.pop(other)], 2)
                 lines += wrapped([stands.pop(setup, f"Setup {setup + 1} again:")], 2)
             cells = [
                 f"{text:>{width}}" if k in (0, 3, 4) else f"{text:<{width}}"
