@@ -311,7 +311,7 @@ def test_a_journal_with_a_flat_is_gripped_and_a_tailstock_named_for_what_stands_
     assert [each.soft for each in made.process.setups] == ["", ""]
     # The stock of 42 mm and its margin beyond the part; then what is beside 17 mm of the journal of 24 mm.
     assert [each.out_mm for each in made.process.setups] == pytest.approx([136.0 + 5.0 - 1.0, 135.0 - 50.0 / 3.0], abs=0.7)
-    (said,) = [each for each in made.process.doubts if "tailstock:" in each]
+    (said,) = [each for each in made.process.doubts if "tailstock, once" in each]
     assert "on 42 mm in setup 1" in said
     assert "on 24 mm in setup 2" in said
     assert all(each.out_mm is None for each in plan(plain, **how).plan.process.setups)

@@ -342,8 +342,8 @@ def thin_between(part: Workpiece, place: Place) -> float:
     rays = [(0.0, float(y)) for y in across] if vise else [(turn, 0.0) for turn in clamping.turns]
 
     def thickness(height: float) -> float:
-        """Find what the thinner wall has at a share of the rays at least; infinite where material goes from jaw to jaw there, 0 where
-        there is none.
+        """Find what the thinner wall has at a share of the rays at least; infinite where material goes from jaw to jaw there,
+        0 where there is none.
         """
         near, each = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)], list[float]()
         for turn, y in rays:
