@@ -83,7 +83,7 @@ def reached_by(
             search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
             good = verdicts.reached
             if above is not None:
-                good &= over_plane(context, contacts_of(ready.samples), verdicts.freeze(), above)
+                good &= over_plane(context, contacts_of(ready.samples), verdicts, above)
             reached |= good
             open_rows = open_rows[~good[open_rows]]
     return reached

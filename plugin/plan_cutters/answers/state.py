@@ -91,7 +91,7 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool, above: fl
     within, held = ready.shut[rows] >= 0, ready.clamped[rows]
     search(contacts, ready.samples.face[rows], np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
     if above is not None:
-        below = verdicts.reached & ~over_plane(context, contacts, verdicts.freeze(), above)
+        below = verdicts.reached & ~over_plane(context, contacts, verdicts, above)
         verdicts.verdict[below], verdicts.reason[below] = INACCESSIBLE, FIXTURE
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
     return verdicts.freeze()

@@ -77,6 +77,10 @@ class _Columns(Record):
     shift: Floats
     reason: Bytes
 
+    def of(self, rows: NDArray[np.int64]) -> "Verdicts":
+        """Take the verdicts of some samples."""
+        return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
+
     @property
     def reached(self) -> NDArray[np.bool_]:
         """Samples (n,) at which a posture is known."""
@@ -128,10 +132,6 @@ class Verdicts(_Columns):
     def __reduce__(self) -> tuple[Any, ...]:
         # Unpacked arrays can be written: they are made read-only again.
         return Verdicts, tuple(getattr(self, name) for name in _COLUMNS)
-
-    def of(self, rows: NDArray[np.int64]) -> "Verdicts":
-        """Take the verdicts of some samples."""
-        return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -245,7 +245,7 @@ def probed(
     return triangle, which
 
 
-def over_plane(context: Context, contacts: Contacts, postures: Verdicts, above: float) -> NDArray[np.bool_]:
+def over_plane(context: Context, contacts: Contacts, postures: Verdicts | VerdictBuffer, above: float) -> NDArray[np.bool_]:
     """Contacts (n,), of those with a posture, at which nothing of the tool is below a height along the setup axis, mm."""
     conditions, result, rows = context.conditions, np.zeros(len(contacts.point), bool), np.flatnonzero(postures.reached)
     lowest = context.outer_tool.lowest(contacts.point[rows], contacts.normal[rows], postures.of(rows), conditions.setup)
