@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.operations import RemainingEntry
 from plan_cutters.plan_file.words.text import CHIPS, chip, story_of
 from plan_cutters.report.page.write import write_html
 from tests.support.browser import SCREENS, chromium, place_of, seen
@@ -94,8 +95,9 @@ def test_feasible_is_said_only_of_what_is(planned, change, wanted):
     if "unjudged" in change:
         made = made.model_copy(update={"samples": whole.samples.model_copy(update=change)})
     if wanted == "Feasible in part":
-        few = [c for c in whole.cutters if c.feasible is False]
-        made = made.model_copy(update={"cutters": few, "shown": few[0].id})
+        made = made.model_copy(update={"cutters": [c.model_copy(update={"feasible": False}) for c in whole.cutters]})
+        left = RemainingEntry(cause="rear_gouge", area_mm2=1.0, share=0.1, samples=1, faces=["F1"], place_mm=None)
+        made = made.model_copy(update={"process": whole.process.model_copy(update={"finished_share": 0.9, "left": [left]})})
     assert chip(made, story_of(made)).word == wanted
 
 
