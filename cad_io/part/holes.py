@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import FaceInfo, Floats, Orientation, Record, SizeNote, Triangles
 from cad_io.graphs import connected
 from cad_io.kernel import may_refuse
+from cad_io.part.lines import met, square_to
 
 #: Lengths that differ by less are equal: of the part's size, and of a radius, whichever is more.
 _SAME, _OF_RADIUS = 1e-5, 1e-3
@@ -34,8 +35,6 @@ _ALONG, _CHORD = 32, 1
 _LINES = ((0.07, 1.1), (0.6, 0.3), (0.6, 1.9), (0.6, 3.4), (0.6, 5.0))
 #: Turn from a line to the next one of three, rad.
 _TURN = 0.4
-#: A triangle of less than this share of its longest side, squared, has no area.
-_NO_AREA = 1e-9
 #: A line that leaves a hole looks so many radii further for a bottom that is not known.
 _DEEP = 2.0
 _Bottom = Literal["flat", "cone", "round", "open"]
@@ -220,7 +219,7 @@ class _Finder:
 
     def _largest_gap(self, group: Sequence[int], line: _Line) -> float:
         """Largest angle about an axis without a point of some faces, rad."""
-        across, angles = _across(line.direction), []
+        across, angles = square_to(line.direction), []
         for number in group:
             u0, u1, v0, v1 = self.part.trim(number).box
             share = np.linspace(0.0, 1.0, 2 * _ALONG + 1)
@@ -393,7 +392,7 @@ class _Finder:
         longest = max(core, key=lambda ring: ring.high - ring.low)
         start, near = 0.5 * (longest.low + longest.high), max(self.near(radius), 2.0 * self.triangles.chord_error)
         span = min(ring.low for ring in core), max(ring.high for ring in core)
-        rows, across, closed = self._within(line, radius), _across(line.direction), set[bool]()
+        rows, across, closed = self._within(line, radius), square_to(line.direction), set[bool]()
 
         def ended(place: Floats) -> frozenset[bool] | None:
             """The ends that are closed, by one line; None as of all."""
@@ -427,47 +426,28 @@ class _Finder:
     def _within(self, line: _Line, radius: float) -> NDArray[np.int64]:
         """Rows (k,) of the triangles whose boxes, seen along an axis, meet the square about it."""
         low, high = self._flat(line.direction)
-        place = line.point @ _across(line.direction)
+        place = line.point @ square_to(line.direction)
         return np.flatnonzero(((low <= place + radius) & (high >= place - radius)).all(axis=1))
 
     def _flat(self, direction: Floats) -> tuple[Floats, Floats]:
         """Corners of the boxes (t, 2) of all triangles, seen along a direction."""
         key = np.round(direction, 12).tobytes()
         if key not in self._boxes:
-            flat = self.triangles.vertex @ _across(direction)
+            flat = self.triangles.vertex @ square_to(direction)
             self._boxes.clear()
             self._boxes[key] = flat.min(axis=1), flat.max(axis=1)
         return self._boxes[key]
 
     def _met(self, rows: NDArray[np.int64], place: Floats, direction: Floats) -> tuple[Floats, Any, Floats]:
         """Heights (k,) over a place at which a line meets some triangles, their faces (k,), and their sides (k,)."""
-        vertex = self.triangles.vertex[rows] - place
-        flat, after = vertex @ _across(direction), [1, 2, 0]
-        sides = flat[:, :, 0] * flat[:, after, 1] - flat[:, :, 1] * flat[:, after, 0]
-        # Seen from the side, or all in one point, a triangle has no side that faces the line.
-        whole = sides.sum(axis=1)
-        large = np.linalg.norm(np.roll(flat, -1, axis=1) - flat, axis=2).max(axis=1, initial=0.0)
-        on = (
-            ((sides >= 0.0).all(axis=1) | (sides <= 0.0).all(axis=1))
-            & (np.abs(whole) > _NO_AREA * large**2)
-            & (large > self.same)
-        )
-        # The part of a side belongs to the corner across.
-        weight = sides[on][:, after] / whole[on, None]
+        on, height, whole = met(self.triangles.vertex[rows], place, direction, self.same)
         face = self.triangles.face[rows[on]]
-        height = (weight * (vertex[on] @ direction)).sum(axis=1)
-        return height, face, np.sign(whole[on]) * self.orientation.sign[face - 1]
+        return height, face, np.sign(whole) * self.orientation.sign[face - 1]
 
 
 def _parallel(one: Floats, other: Floats) -> bool:
     """Whether two unit directions are one, or opposite."""
     return 1.0 - float(one @ other) ** 2 <= _PARALLEL**2
-
-
-def _across(direction: Floats) -> Floats:
-    """Two unit directions (3, 2) square to another, which they turn about to the left."""
-    one, other = np.linalg.svd(direction[None])[2][1:]
-    return np.stack([one, other if np.cross(one, other) @ direction > 0.0 else -other], axis=1)
 
 
 def holes(part: Any, orientation: Orientation, triangles: Triangles, ignored: Collection[int] = ()) -> tuple[Hole, ...]:

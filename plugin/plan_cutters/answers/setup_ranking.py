@@ -23,7 +23,7 @@ from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by
 from plan_cutters.answers.hole_setups import for_holes
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.serving import bound_of, reached_by, usual_of
-from plan_cutters.domain.clamping import CHUCK, VISE
+from plan_cutters.domain.clamping import CHUCK, GRIP, VISE
 from plan_cutters.domain.figures import area
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
@@ -331,7 +331,7 @@ class Ranking:
             clamping, deep = best.fixture.clamping, deep_in(self.candidates.tall[k])
             hub = min(0.5 * clamping.numbers[-1], LIES) if word == CHUCK and clamping is not None else 0.0
             least = float(wanted @ best.served) - _EVEN * float(self.area.sum())
-            for grip in sorted({deep, max(deep, hub)}, reverse=True):
+            for grip in sorted({deep, max(deep, hub)} - {GRIP}, reverse=True):
                 with suppress(NothingToGripError):
                     deeper = self._held_in(k, Fixture.parse(f"{word}:{grip:g}"), None, bound, None)
                     if not deeper.soft and deeper.grips == best.grips and float(wanted @ deeper.served) >= least:

@@ -22,7 +22,7 @@ from plan_cutters.setups.workpiece import PartMesh
 _DIGITS = 6
 #: Angles that differ by less are one, deg.
 _SAME = 0.01
-#: A drill wanders where what it enters steepness by more than this, deg.
+#: A drill wanders where what it enters is steeper than this, deg.
 _STEEP = 7.0
 #: Times, s, in which rotary axes come to each of some positions: solutions of each (s, k), limits (k, 2), rates (k,), in rad.
 IndexTimes = Callable[[Sequence[Floats], Floats, Floats], Floats]
@@ -78,12 +78,11 @@ def _steps(ready: Prepared, made: Sequence[Bored], index_times: IndexTimes, *, t
         thread = threads[in_order[same[key][0][0]]] if use.drill.kind == "tap" else None
         begins = axis not in (before := turned.setdefault((use.setup, use.drill.id), []))
         before += [axis] * begins
-        first = [each is made[in_order[k]].uses[0] for k, each in same[key]]
         strokes = [
             schema.StrokeEntry(
                 hole=k, mouth_mm=_rounded(each.mouth), tip_mm=_rounded(each.tip),
-                slope_deg=_slope(mesh, ready.holes[in_order[k]], each.axis) if begins_it else None,
-            ) for (k, each), begins_it in zip(same[key], first, strict=True)
+                slope_deg=_slope(mesh, ready.holes[in_order[k]], each.axis) if each is made[in_order[k]].uses[0] else None,
+            ) for k, each in same[key]
         ]  # fmt: skip
         steps.append(
             schema.DrillingStep(

@@ -96,7 +96,7 @@ def held(
             thick = 0.0 if place.bored else thin_between(part, place)
             if not thick:
                 return _hold(requested, placed, part, place)
-            bending.append(replace(place, soft=f"its jaws {BENDS} {mm(thick)} thick"))
+            bending.append(replace(place, soft=f"jaws {BENDS} {mm(thick)} thick"))
             continue
         refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched[place.grips] += 1

@@ -19,6 +19,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from cad_io.arrays import FaceInfo, Floats, Ints, Record, Triangles, cross
 from cad_io.part.bodies import Body
+from cad_io.part.lines import met
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import frame_of
@@ -167,14 +168,12 @@ class Workpiece(Record):
     lowest: float  #: Height of the part's lowest point along z, mm.
     vertex: Floats  #: (n, 3, 3) float: triangles in that frame, z from the lowest point, mm.
     normal: Floats  #: (n, 3) float: outward normals of them, as long as twice their area.
-    face: Ints  #: (n,) int: face numbers of them.
     planes: frozenset[int]  #: Planar faces.
     targets: frozenset[int]  #: Faces to machine.
     flat: float  #: Heights that differ by less are one, mm.
     bodies: tuple[frozenset[int], ...] = ()  #: The faces of each body that is material.
-    rods: Mapping[int, Floats] = field(
-        default_factory=dict
-    )  #: The cylinders: unit directions (3,) in the frame by their numbers.
+    #: Unit directions (3,) of the cylindrical faces in that frame, by their numbers: triangles do not tell them well enough.
+    rods: Mapping[int, Floats] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -192,9 +191,14 @@ class Workpiece(Record):
         flat = 1e-6 * mesh.diagonal + 1e-6 + chord
         wanted = frozenset(targets) or frozenset(np.unique(mesh.face).tolist())
         return cls(
-            mesh, frame, lowest, local, mesh.normal @ frame.T, mesh.face, frozenset(planes), wanted, flat, tuple(bodies),
+            mesh, frame, lowest, local, mesh.normal @ frame.T, frozenset(planes), wanted, flat, tuple(bodies),
             {number: frame @ np.array(direction, float) for number, direction in rods.items()},
         )  # fmt: skip
+
+    @property
+    def face(self) -> Ints:
+        """(n,) int: face numbers of the triangles."""
+        return self.mesh.face
 
     @property
     def area(self) -> float:
@@ -348,7 +352,9 @@ def thin_between(part: Workpiece, place: Place) -> float:
         near, each = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)], list[float]()
         for turn, y in rays:
             cosine, sine = math.cos(turn), math.sin(turn)
-            x = _crossings(near @ np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]), y, height)
+            _, x, _ = met(near, np.array([-sine * y, cosine * y, height]), np.array([cosine, sine, 0.0]))
+            # On an edge of two triangles it goes through once.
+            x = np.unique(np.round(x, 6))
             x = x[np.abs(x) <= half]
             if not vise:
                 # Outwards from the axis: mirrored, so that one wall is told as two are.
@@ -365,18 +371,6 @@ def thin_between(part: Workpiece, place: Place) -> float:
     away = min((max(z - grip, -z, 0.0) for z in steps.tolist() if thickness(z) >= _BACKED * thick), default=high - low)
     thin = thick < _THIN * away if vise else thick < _RING * wide and away > _CLOSED * wide
     return thick if thin else 0.0
-
-
-def _crossings(vertex: Floats, y: float, z: float) -> Floats:
-    """Where the line along x at y and z goes through triangles (n, 3, 3), ascending."""
-    a, b, c = (vertex[:, k, 1:] - [y, z] for k in range(3))
-    weights = np.stack([b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0], c[:, 0] * a[:, 1] - c[:, 1] * a[:, 0],
-                        a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]], axis=1)  # fmt: skip
-    area = weights.sum(axis=1)
-    through = (((weights >= 0.0).all(axis=1)) | ((weights <= 0.0).all(axis=1))) & (area != 0.0)
-    x = (weights[through] * vertex[through, :, 0]).sum(axis=1) / area[through]
-    # On an edge of two triangles it goes through once.
-    return np.unique(np.round(x, 6))
 
 
 class Refused(NamedTuple):

@@ -24,6 +24,7 @@ from plan_cutters.domain.figures import (
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.operations import ProcessSetup
 from plan_cutters.plan_file.words.headline import shown_cutter
 from plan_cutters.plan_file.words.holes import behind_drills
 from plan_cutters.plan_file.words.names import Line, named
@@ -340,14 +341,18 @@ def _into_solid(plan: Plan) -> Iterator[str]:
         yield f"Run step {k} behind {which}: it goes to the bottoms of holes that are drilled there."
 
 
+def _upright(setup: ProcessSetup) -> bool:
+    """Whether what holds the part stands along the spindle."""
+    return setup.clamping is None or Fixture.parse(setup.clamping).stands_along(setup.up) == setup.up
+
+
 def _foot(plan: Plan) -> Iterator[str]:
     """What a first setup gripped of the stock is still below the part where the next one does not turn this over."""
     setups, stock = plan.process.setups, plan.process.stock
     if stock is None or len(setups) < 2 or setups[1].held is None:
         return
-    (first, second), chuck = setups[:2], Fixture.parse(setups[0].clamping or "table")
-    lying = first.clamping is not None and chuck.stands_along(first.up) != first.up
-    if not lying and sum(one * other for one, other in zip(first.up, second.up, strict=True)) > -_ALONG:
+    first, second = setups[:2]
+    if _upright(first) and sum(one * other for one, other in zip(first.up, second.up, strict=True)) > -_ALONG:
         yield "Cut off what is left of the stock below the part before setup 2, which does not turn the part over."
 
 
@@ -372,15 +377,15 @@ def _across(plan: Plan) -> Iterator[str]:
     # The axis of the machine is given in the frame of the first setup.
     along = abs(sum(one * other for one, other in zip(rotary[0].direction, process.setups[0].up, strict=True)))
     turned = {step.setup for step in process.steps if step.mode == "simultaneous" or any((step.angles_deg or {}).values())}
-    chucks = [(each, Fixture.parse(each.clamping)) for each in process.setups if each.held == "chuck" and each.clamping]
-    upright = [each for each, chuck in chucks if chuck.stands_along(each.up) == each.up]
+    chucks = [each for each in process.setups if each.held == "chuck" and each.clamping]
+    upright = [each for each in chucks if _upright(each)]
     numbers = [str(each.number) for each in upright if each.number - 1 in turned]
     if numbers and along < _ALONG:
         yield (
             f"In setup{'s' if len(numbers) > 1 else ''} {listed(numbers)} the chuck stands along the spindle, on a plate that "
             f"{rotary[0].name} turns: `--setup auto` lays a bar along {rotary[0].name}."
         )
-    lying = [each for each, _ in chucks if each not in upright]
+    lying = [each for each in chucks if each not in upright]
     out = [f"{mm(each.out_mm)} on {mm(each.apart_mm)} in setup {each.number}" for each in lying if each.out_mm and each.apart_mm]
     if out:
         yield f"Support the far end with a tailstock, once faced and centred: the part stands out of the chuck {listed(out)}."
