@@ -195,14 +195,19 @@ class Ranking:
         is gripped."""
         # In another proposal it may come later: there what is finished is gripped.
         for k in [k for k in self.stocked if (k,) != tuple(chosen[:1])]:
-            self.held[k] = self.stocked.pop(k)
-            self.settled.discard(k)
+            self._without_stock(k)
         if chosen and self.stock is not None and chosen[0] not in self.stocked:
             self._settle_stock(chosen[0])
         done = np.zeros(len(self.rows), bool)
         for number, k in enumerate(chosen):
             self._settle(k, ~done if number else None)
             done |= self.served(k)
+
+    def _without_stock(self, k: int) -> None:
+        """Hold a direction as it was searched, if its stock was gripped."""
+        if k in self.stocked:
+            self.held[k] = self.stocked.pop(k)
+            self.settled.discard(k)
 
     def _settle(self, k: int, open_rows: NDArray[np.bool_] | None = None) -> None:
         """Try in a direction whatever may hold the part, unless that was done before; `open_rows` as for `_held_by`."""
@@ -455,11 +460,16 @@ class Ranking:
         best, among = (firm, steady) if self._together(firm) >= _SOFT * self._together(free) else (free, every)
         chosen, least = list(self._worth(best)), self._together(best) - _TURNED_FOR
         if among is every and firm and self.stock is not None:
-            # Nobody stands stock aslant for what he reaches as well when he turns over a part that stands.
-            self._settle_stock(firm[0])
-            pair = max(((firm[0], k) for k in every if k != firm[0]), key=self._together)
-            if self._together(pair) >= least:
-                return pair
+            # Nobody stands stock aslant for what he reaches as well when he turns over a part that stands: it stands in the
+            # second setup if that reaches as much, for stock asks for no stand; else in the first.
+            over = self.opposite(firm[0])
+            pairs = [(over, firm[0])] if over is not None and over in every else []
+            for first, *others in (*pairs, (firm[0], *(k for k in every if k != firm[0]))):
+                self._settle_stock(first)
+                pair = max(((first, k) for k in others), key=self._together, default=(first,))
+                if self._together(pair) >= least:
+                    return pair
+                self._without_stock(first)
         for k in among[: 1 + min(map(among.index, chosen))] if len(chosen) > 1 else ():
             over = self.opposite(k)
             # A pair that is chosen may still go over to better stands, one after the other.
