@@ -33,9 +33,10 @@ from plan_cutters.judging.phases import march_differs
 from plan_cutters.judging.posture_maps import posture_maps
 from plan_cutters.judging.reasons import Explained, Reasons, exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.judging.witness import witnesses
+from plan_cutters.operations.entries import with_reasons
 from plan_cutters.operations.orientations import index_times
 from plan_cutters.option_table import EFFORT
-from plan_cutters.outcome import Answers
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.frozen import filled
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan, nearest
 from plan_cutters.plan_file.part_info import SharpEdgeEntry
@@ -84,6 +85,7 @@ class JudgedPart:
     later: tuple[Axis, ...] = ()  #: Axes of setups that are judged later, and of which this part knows nothing.
     few: tuple[int, int] | None = None  #: How many samples were looked at, of how many; None: all.
     proposing: bool = False  #: Whether setups are still compared.
+    explain: "Callable[[], JudgedPart] | None" = None  #: How its reasons and witnesses are found; None: as far as they are to be.
 
     @classmethod
     def of(
@@ -133,6 +135,16 @@ class JudgedPart:
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
         return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
+
+    def explained(self) -> "JudgedPart":
+        """Find the reasons and witnesses that are still to be found."""
+        return self if self.explain is None else self.explain()
+
+    def reasoned(self, operations: Operations | None) -> Operations | None:
+        """Say of plans of operations why samples are left: the reasons of the first cutter."""
+        if operations is None:
+            return None
+        return with_reasons(operations, self.cutters[operations.cutters[0]].verdicts.reason, self.ready.finished)
 
     @cached_property
     def grounds(self) -> list[bytes]:

@@ -55,6 +55,8 @@ from plan_cutters_base.stage_cache import NO_CACHE, Cache, RunCache, StageCache
 _MANY_FACES, _SAMPLING = 12, 60.0
 #: Processor time after which a copy that plans the operations is given up, s.
 _PLANNING = 7200.0
+#: Operations, if they were requested, with the seconds and the boxes of each stage so far.
+Planned = tuple[Operations | None, Mapping[str, float], Mapping[str, int]]
 
 
 def run(
@@ -154,44 +156,50 @@ class Run:
         others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
         reasons: dict[Cutter, ExplainedIn] = {}
         stand(lambda: combined(ready, others, dict(reasons), explain=False))
-        return combined(ready, others, reasons, explain=True)
+        explain = partial(combined, ready, others, reasons, explain=True)
+        # What is left with a sharp edge is known by the reasons, and is not planned for.
+        return (
+            explain() if options.sharp_edges == "left" else replace(combined(ready, others, {}, explain=False), explain=explain)
+        )
 
     def complete(self, part: JudgedPart, describe: Describe) -> Result:
-        """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
-        clock, interim, options = self.clock, self.interim, part.ready.options
-        least = least_set(part.ready, part.everywhere())
-        interim.judged(part, describe, Answers(least_set=least))
-        interim.looked(part.between(clock, self.compiling))
-        interim.planned(self._answered(part, least))
-        result = assembled(part, clock, interim.answers, interim.between)
-        if options.posture_maps:
-            result = with_maps(result, part, clock, self.compiling)
-        return worded(replace(result, plan=describe(result.plan)), clock)
+        """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found.
 
-    def _answered(self, part: JudgedPart, least: LeastSet | None) -> Operations | None:
-        """Answer the questions, and plan the operations beside that: neither needs the other, nor keeps all threads at work."""
+        The operations are planned beside the rest: neither needs the other, nor keeps all threads at work.
+        """
         clock, interim, options = self.clock, self.interim, part.ready.options
-        both = options.jobs > 1 and options.operations is not None and bool(options.answers)
-        planned = Gauge()
+        least, planned = least_set(part.ready, part.everywhere()), Gauge()
         with SideProcess(
-            lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both
-        ) as side:
+            lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING,
+            worth=options.jobs > 1 and options.operations is not None and bool(options.answers),
+        ) as side:  # fmt: skip
+            judged = part.explained()
+            interim.judged(judged, describe, Answers(least_set=least))
+            interim.looked(judged.between(clock, self.compiling))
             try:
-                ask(part.ready, part.everywhere(), clock.stage, searched=part.searched.looked, least=least,
+                ask(judged.ready, judged.everywhere(), clock.stage, searched=judged.searched.looked, least=least,
                     answered=interim.answered)  # fmt: skip
             except KeyboardInterrupt:
                 if (planned_by_now := side.ended()) is not None:
-                    interim.planned(planned_by_now[0])
+                    interim.planned(judged.reasoned(planned_by_now[0]))
                 raise
-            if not side.works:
-                return _operations(part, least, clock)[0]
-            with clock.stage("operations") as tell:
-                operations, seconds, boxes = side.result(
-                    lambda: _operations(part, least, Clock(clock.progress)), waiting=lambda: tell(*planned.counts)
-                )
-            clock.seconds |= seconds
-            clock.boxes |= boxes
-            return operations
+            interim.planned(judged.reasoned(self._planned(part, least, side, planned)))
+        result = assembled(judged, clock, interim.answers, interim.between)
+        if options.posture_maps:
+            result = with_maps(result, judged, clock, self.compiling)
+        return worded(replace(result, plan=describe(result.plan)), clock)
+
+    def _planned(self, part: JudgedPart, least: LeastSet | None, side: SideProcess[Planned], gauge: Gauge) -> Operations | None:
+        clock = self.clock
+        if not side.works:
+            return _operations(part, least, clock)[0]
+        with clock.stage("operations") as tell:
+            operations, seconds, boxes = side.result(
+                lambda: _operations(part, least, Clock(clock.progress)), waiting=lambda: tell(*gauge.counts)
+            )
+        clock.seconds |= seconds
+        clock.boxes |= boxes
+        return operations
 
 
 def _motions(ready: Prepared) -> int:
@@ -203,17 +211,13 @@ def _first_setup(ready: Prepared) -> Prepared:
     return replace(ready.alone(0), options=replace(ready.options, other_setups=(), other_placements=(), process=None))
 
 
-def _operations(
-    part: JudgedPart, least: LeastSet | None, clock: Clock
-) -> tuple[Operations | None, Mapping[str, float], Mapping[str, int]]:
+def _operations(part: JudgedPart, least: LeastSet | None, clock: Clock) -> Planned:
     """Plan the operations, if that was requested; with the seconds and the boxes of each stage so far."""
     if part.ready.options.operations is None:
         return None, {}, {}
     from plan_cutters.operations.planning import plan_operations
 
-    operations = plan_operations(
-        part.ready, part.everywhere(), least, clock.stage, part.over_setups().reaches, part.searched.looked
-    )
+    operations = plan_operations(part.ready, part.everywhere(), least, clock.stage, part.searched.looked)
     return operations, clock.seconds, clock.boxes
 
 

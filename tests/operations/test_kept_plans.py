@@ -87,8 +87,8 @@ def judged(name):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(planning, "plan_operations", lambda *given: seen.append(given))
         plan(shape(), **{**ALL, **options}, operations="fewest")
-    ((ready, everywhere, least, _, over, _),) = seen
-    return ready, everywhere, least, over
+    ((ready, everywhere, least, _, _),) = seen
+    return ready, everywhere, least
 
 
 @contextmanager
@@ -104,7 +104,7 @@ UNSURE = {"fastest.lagrange", "fastest.Reach.gained", "fastest.Reach.of", "faste
 
 def planned(name, some=2500, **options):
     """The plans of a part, with what all functions found on the way; choices are compared at about so many samples."""
-    ready, everywhere, least, over = judged(name)
+    ready, everywhere, least = judged(name)
     ready = replace(ready, options=Options.of({**ALL, **JUDGED[name][1], **options}))
     with traced(operations) as seen, pytest.MonkeyPatch.context() as patch:
         for module, word, degrees in COARSE:
@@ -112,7 +112,7 @@ def planned(name, some=2500, **options):
         patch.setattr(choices, "_FINER", (math.radians(11.0),))
         patch.setattr(planning._first, "__defaults__", (math.radians(19.0),))
         patch.setattr(planning, "thinned", lambda task: thinned(task, some))
-        result = planning.plan_operations(ready, everywhere, least, untold, over, 0)
+        result = planning.plan_operations(ready, everywhere, least, untold, 0)
     # of orientations as far from a written one any comes first
     until = None if ready.options.process is None else -1
     if result.entry.fastest is not None:
@@ -160,7 +160,7 @@ CASES = {
 
 def task_of(name, **options):
     """The task of a part."""
-    ready, everywhere, least, _ = judged(name)
+    ready, everywhere, least = judged(name)
     return planning._task(replace(ready, options=Options.of({**ALL, **JUDGED[name][1], **options})), everywhere, least)
 
 

@@ -25,7 +25,7 @@ from plan_cutters.domain.verdicts import (
     Verdicts,
     blank,
 )
-from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture
+from plan_cutters.scene.conditions import Context, contacts_of, free_in_posture, under_fixtures
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.work import Progress, Work, in_chunks, part_of
 
@@ -170,6 +170,9 @@ def access(
     good = good[free_in_posture(contacts, good, result.axis, result.tilt_direction, context, work)[good]]
     verdicts.take(good, result)
     open_ = np.setdiff1d(np.flatnonzero(wanted & ~blocked), good, assume_unique=True)
+    under = under_fixtures(contacts, open_, context)
+    verdicts.verdict[open_[under]], verdicts.reason[open_[under]] = INACCESSIBLE, INSIDE
+    open_ = open_[~under]
     search(contacts, faces, open_, context, verdicts, tells[1], fixed=True, work=work)
     # Of samples not reached, those that fixtures keep off are told from those that would not be reached without them, either.
     rows = np.flatnonzero(((wanted & ~blocked) | within_fixtures) & verdicts.not_reached | handed)

@@ -1,6 +1,7 @@
 """Plans of operations as the plan file has them: areas, lengths and times, made once of what was found."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from plan_cutters.domain.verdicts import NO_REASON, REASONS
 from plan_cutters.operations.choices import Worth
 from plan_cutters.operations.plans import changes_of
 from plan_cutters.operations.task import Task
-from plan_cutters.outcome import Operation, OperationPlan
+from plan_cutters.outcome import Operation, OperationPlan, Operations
 from plan_cutters.plan_file import operations as schema
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.reasons import operation_colour
@@ -24,17 +25,16 @@ _UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s
 
 
 def operations_entry(
-    task: Task, plans: Sequence[OperationPlan], reason: NDArray[np.uint8], notes: Sequence[str],
-    fewest: schema.FewestEntry | None, timed: Timed | None, worth: Sequence[Worth],
+    task: Task, plans: Sequence[OperationPlan], notes: Sequence[str], fewest: schema.FewestEntry | None, timed: Timed | None,
+    worth: Sequence[Worth],
 ) -> schema.OperationsEntry:  # fmt: skip
-    """Make the entry of plans.
+    """Make the entry of plans, without reasons why samples are left.
 
-    `reason` (n,) uint8: why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON. `worth`: of
-    each cutter, the largest first.
+    `worth`: of each cutter, the largest first.
     """
     options, feed = task.ready.options, task.paths.feed
     area = np.where(task.ready.finished, np.nan_to_num(task.ready.samples.area), 0.0)
-    entries = [_plan(task, each, area, reason, timed) for each in plans]
+    entries = [_plan(task, each, area, timed) for each in plans]
     return schema.OperationsEntry(
         asked=options.operations or "",  # type: ignore[arg-type]
         rotary=task.orientations[0].names,
@@ -61,14 +61,25 @@ def operations_entry(
     )  # fmt: skip
 
 
-def _plan(
-    task: Task, plan: OperationPlan, area: Floats, reason: NDArray[np.uint8], timed: Timed | None
-) -> schema.OperationPlanEntry:
+def with_reasons(operations: Operations, reason: NDArray[np.uint8], finished: NDArray[np.bool_]) -> Operations:
+    """Add to plans why samples are left.
+
+    `reason` (n,) uint8: why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON. `finished`
+    (n,) bool: the samples that are to be finished.
+    """
+    entries = []
+    for entry, plan in zip(operations.entry.plans, operations.plans, strict=True):
+        left = reason[finished & (plan.label < 0) & (reason != NO_REASON)]
+        counts = {REASONS[code]: count for code, count in enumerate(np.bincount(left).tolist()) if count}
+        entries.append(entry.model_copy(update={"rest": entry.rest.model_copy(update={"reason_counts": counts})}))
+    return replace(operations, entry=operations.entry.model_copy(update={"plans": entries}))
+
+
+def _plan(task: Task, plan: OperationPlan, area: Floats, timed: Timed | None) -> schema.OperationPlanEntry:
     whole, alone, rest = float(area.sum()), plan.alone, task.ready.finished & (plan.label < 0)
     operations = [
         _operation(k, each, plan, area[alone & (plan.label == k)], task, area, whole) for k, each in enumerate(plan.operations)
     ]
-    codes, counts = np.unique(reason[rest & (reason != NO_REASON)], return_counts=True)
     unserved = float(area[rest].sum())
     known = bool(np.isfinite(plan.cutting))
     held = [each for each in operations if each.proved_share is not None]
@@ -88,8 +99,7 @@ def _plan(
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         operations=operations,
         rest=schema.RestEntry(
-            samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
-            reason_counts={REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)},
+            samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0, reason_counts={},
             short=len(plan.short),
         ),
     )  # fmt: skip

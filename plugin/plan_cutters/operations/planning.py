@@ -84,13 +84,13 @@ _NAMED = 6
 @reporting(lambda ready: ready.options.reported_unit)
 def plan_operations(
     ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None,
-    stage: Callable[[str], AbstractContextManager[Progress]], over: Mapping[str, Verdicts], searched: int,
+    stage: Callable[[str], AbstractContextManager[Progress]], searched: int,
 ) -> Operations:  # fmt: skip
     """Plan the operations that finish together all that the cutters reach.
 
     `everywhere`: of each setup, the first one first, the verdicts by cutter. `least`: the fewest cutters that reach all that any
     reaches: they are considered before others. `stage`: opens a stage of work by its name; what it gives is told how much of how
-    much is done. `over`: of each cutter by its id the verdicts over all setups, with the reasons. `searched`: as for `proved`.
+    much is done. `searched`: as for `proved`.
     """
     options, task = ready.options, _task(ready, everywhere, least)
     fewest, alone, more, outcomes = None, 0, None, tuple[OwnResult, ...]()
@@ -119,7 +119,7 @@ def plan_operations(
         plans = _proved(task, plans, searched, parts[3])
     notes = () if options.process is not None else (*instead, *_notes(task, least, plans, None if instead else alone))
     few_entry = None if fewest is None else fewest.entry.model_copy(update={"one_more": more})
-    entry = operations_entry(task, plans, over[task.cutters[0].id].reason, notes, few_entry, timed, worth)
+    entry = operations_entry(task, plans, notes, few_entry, timed, worth)
     columns, chosen = (task.no_columns, np.zeros(0, np.int64)) if fewest is None else (fewest.columns, fewest.cover.chosen)
     return Operations(entry, task.cutters, tuple(plans), columns, chosen, outcomes)
 

@@ -15,7 +15,7 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts, blank, depths
-from plan_cutters.kernels.codes import BEYOND, TILT_TO
+from plan_cutters.kernels.codes import BALL, BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -214,6 +214,24 @@ def search_postures(
         lambda piece: search(piece, *arrays, deep=deep, brief=brief, distance=context.proved_at),
         rows, conditions.jobs, progress, fixed=fixed, counted=work,
     )  # fmt: skip
+
+
+def under_fixtures(contacts: Contacts, rows: NDArray[np.int64], context: Context) -> NDArray[np.bool_]:
+    """Which of some contacts (m,) have so much of a convex body of a fixture over them that every posture is blocked (lemma F3).
+
+    `rows` (m,) int64. Its planes tell in one look at a contact; a search would go through all rotations.
+    """
+    conditions, point, normal = context.conditions, contacts.point[rows], contacts.normal[rows]
+    under, obstacles = np.zeros(len(rows), bool), conditions.obstacles
+    radius = BALL * obstacles.depths(conditions.tolerance)[1]
+    for fixture in conditions.surroundings.fixtures:
+        # A ball that is within the triangles by their error is within what they stand for.
+        deep = radius + fixture.obstacles.triangles.chord_error
+        for plane in fixture.obstacles.convex if fixture.body is not None else ():
+            height, rise = point @ plane[:, :3].T + plane[:, 3], normal @ plane[:, :3].T
+            for distance in context.proved_at:
+                under |= (height + distance * rise).max(axis=1) <= -deep
+    return under
 
 
 def free_in_posture(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from cad_io.arrays import Floats, Ints, Record, Triangles, rows_by_face
+from cad_io.graphs import connected
 from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.verdicts import depths
@@ -18,6 +19,7 @@ from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
 from plan_cutters.scene.triangles import divided, pieces
 from plan_cutters.scene.work import METER
+from plan_cutters.setups.workpiece import hull
 from plan_cutters_base.stage_cache import NO_CACHE, Cache
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ _BUILT = 15.0
 _CELLS = 64
 #: Numbers of what encloses something, each once in a process; 0 is that of nothing.
 _KEYS = count(1)
+#: A closed body fills its hull but for rounding: by this share of its volume.
+_FULL = 1e-9
 #: In place of a tree that is made anew; and one of no triangles, with its order.
 _NOTHING = Tree(np.zeros((0, 3, 3)), np.zeros((0, 16)), 0)
 _NO_TREE = (np.zeros(0, np.int32), _NOTHING.box, 0)
@@ -163,6 +167,25 @@ class Obstacles(Record):
         each = [] if own is None else [own.corners]
         each += [(some.min(axis=(0, 1)), some.max(axis=(0, 1))) for some in (vertex if own is None else vertex[1:]) if len(some)]
         return np.min([low for low, _ in each], axis=0), np.max([high for _, high in each], axis=0)
+
+    @cached_property
+    def convex(self) -> tuple[Floats, ...]:
+        """Of each convex body among these, where all are closed and none is hollow, its planes (k, 4): unit normal outwards, and
+        the distance of the origin; a point with no number above zero is inside."""
+        vertex, weight = self.triangles.vertex, self.weight
+        corner, which = np.unique(vertex.reshape(-1, 3), axis=0, return_inverse=True)
+        which = which.reshape(-1, 3)
+        piece = connected(len(corner), np.concatenate([which[:, :2], which[:, 1:]]))[which[:, 0]]
+        bodies = []
+        for mine in (piece == k for k in range(piece.max() + 1)):
+            own = vertex[mine] - vertex[mine].mean(axis=(0, 1))
+            volume = float(weight[mine] @ np.linalg.det(own)) / 6.0
+            if not weight[mine].all() or volume <= 0.0:
+                return ()
+            outer = hull(vertex[mine].reshape(-1, 3))
+            if outer is not None and volume >= (1.0 - _FULL) * outer.volume:
+                bodies.append(np.unique(outer.equations, axis=0))
+        return tuple(bodies)
 
     @property
     def _extent(self) -> tuple[Floats, Floats, float]:
