@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from cad_io.part.edges import InsideEdge, inside_edges
+from plan_cutters.answers.chamfers import chamfer_mill
 from plan_cutters.answers.drilling import drilled
 from plan_cutters.answers.hole_setups import further_setup
 from plan_cutters.answers.means import fitting
@@ -230,6 +231,11 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, part))  # fmt: skip
+        plans = answers.operations.plans if answers.operations is not None else ()
+        for each in plans if ready.options.process is None else ():
+            if each.name == document.process.plan and np.isfinite(each.total):
+                process = document.process.model_copy(update={"chamfers": chamfer_mill(ready, each)})
+                document = document.model_copy(update={"process": process})
         if ready.holes:
             done = np.logical_or.reduce([each.reached for each in over.reaches.values()])
             made = drilled(ready, done, sorted({step.setup for step in document.process.steps}))

@@ -119,11 +119,11 @@ def test_a_proposal_stands_on_faces_and_holds_what_it_promised():
     assert first.stands_on != second.stands_on
     assert tuple(found.plan.effective.setup) == tuple(first.axis)
     assert found.plan.effective.placement.clamped == first.stands_on
-    assert [each.name for each in found.plan.fixtures] == ["fixture:table", "fixture:table"]
+    assert [each.name for each in found.plan.fixtures] == ["fixture:table", "fixture:vise"]
     assert "setup_proposed" in found.plan.note_codes
     told = story_of(found.plan).proposal[0]
     assert told.startswith(f"Proposed setups: 1 on {first.stands_on[0]}, with ")
-    assert f" 2 on {second.stands_on[0]}, with " in told
+    assert f" 2 in a vise that grips {second.grips[0]}, {second.grips[1]}, with " in told
     assert found.plan.process.left == []
     assert said.found == pytest.approx(1.0)
     # By hand in the same two setups, each on a table of its own, the same is reached.
@@ -147,7 +147,8 @@ def test_with_operations_the_fewest_setups_are_planned_together():
     assert len(said.setups) == 2
     assert said.held
     told = story_of(found.plan).proposal[0]
-    assert all(f" {k} on {each.stands_on[0]}" in told for k, each in enumerate(said.setups, 1))
+    assert f" 1 on {said.setups[0].stands_on[0]}" in told
+    assert f" 2 in a vise that grips {said.setups[1].grips[0]}" in told
     assert "100 % of the area" in told or said.found < 1.0
     assert said.found > 0.99
     held = [{int(name[1:]) for name in each.stands_on} for each in said.setups]

@@ -226,15 +226,19 @@ def test_a_shaft_that_lies_is_held_across_its_diameter_in_soft_jaws(radius, slen
 
 @pytest.mark.parametrize(
     ("thick", "turned", "web", "soft"),
-    [(1.5, True, False, True), (1.5, False, False, False), (8.0, True, False, False), (1.5, True, True, False)],
-)
+    [(1.5, True, 0, True), (1.5, False, 0, False), (9.0, True, 0, False), (7.5, True, 0, True), (7.5, True, 2, False),
+     (1.5, True, 1, False)],
+)  # fmt: skip
 def test_jaws_do_not_press_on_walls_that_they_would_bend(thick, turned, web, soft):
-    """A U of 60 x 80 x 40 mm on the ends of its walls: those of 1.5 mm bend, but for a web between them."""
+    """A U of 60 x 80 x 40 mm on the ends of its walls: those of 1.5 mm bend, but for a web between them; those of a quarter of
+    their height do not, and thinner ones do not where walls across close the U."""
     part = cq.Workplane().box(60, 80, 40).faces(">Z").workplane().rect(60 - 2 * thick, 80).cutBlind(-36)
-    part = part.union(cq.Workplane().box(60, 30, 40)) if web else part
+    part = part.union(cq.Workplane().box(60, 30, 40)) if web == 1 else part
+    for side in (-1, 1) if web == 2 else ():
+        part = part.union(cq.Workplane().box(60, thick, 40).translate((0, side * (40 - thick / 2), 0)))
     hold = hold_of(part.val().wrapped, "vise", (0.0, 0.0, -1.0 if turned else 1.0))
     assert hold.fixture.clamping.gap == pytest.approx(60.0)
-    assert ("would bend walls 1.5 mm thick" in hold.soft) == soft
+    assert (f"would bend walls {thick:g} mm thick" in hold.soft) == soft
 
 
 @pytest.mark.parametrize(("thick", "bottom", "soft"), [(1.5, 5.0, True), (1.5, 47.0, False), (6.0, 5.0, False)])
@@ -244,6 +248,14 @@ def test_a_chuck_does_not_press_on_a_thin_ring(thick, bottom, soft):
     hold = hold_of(cup.val().wrapped, "chuck")
     assert ("would bend walls" in hold.soft) == soft
     assert len(hold.grips) == 1
+
+
+@pytest.mark.parametrize(("wide", "soft"), [(18.0, True), (40.0, False)])
+def test_no_plate_hangs_on_a_boss(wide, soft):
+    """A plate of 90 x 60 mm on a boss that is a fifth as wide."""
+    part = cq.Workplane().box(90, 60, 10).faces("<Z").workplane().circle(wide / 2).extrude(12)
+    hold = hold_of(part.val().wrapped, "chuck")
+    assert (f"from the middle of {wide:g} mm" in hold.soft) == soft
 
 
 def test_what_a_vise_would_bend_is_not_gripped_beside_its_middle():

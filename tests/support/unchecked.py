@@ -48,6 +48,7 @@ _LISTED = (
     ("no tool but those of the plan is put down", "operations.plans[].operations[].", "slide**"),
     ("no tool but those of the plan is put down", "process.steps[].", "slide**"),
     ("which other setups would do is not looked for", "process.", "hole_setup**"),
+    ("what another tool would save is not reckoned", "process.", "chamfers**"),
     ("holes are not looked for again", "holes[].",
      "faces** floor** depth_mm through bottom cone_deg countersink** counterbore** group"),
     ("which other tools would do is not looked for", "holes[].", "missing**"),

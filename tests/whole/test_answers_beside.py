@@ -55,7 +55,7 @@ def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
 def test_the_progress_of_the_copy_is_told_while_it_is_waited_for(monkeypatch):
     told = []
 
-    def slow(ready, everywhere, least, stage, over, searched):
+    def slow(ready, everywhere, least, stage, searched):
         with stage("operations") as tell:
             for done in (1, 3):
                 tell(done, 5)

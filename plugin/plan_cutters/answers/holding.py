@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.clamping import VISE
 from plan_cutters.domain.figures import area, percent
 from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.stock import Stock
@@ -15,6 +16,8 @@ from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.setups.workpiece import BENDS
 
+#: Shares of the area that differ by less are equal.
+EVEN = 0.002
 #: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
 GRIPPED_FOR = 0.9
 
@@ -61,22 +64,29 @@ def held_by(
     return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words, soft=hold.soft)
 
 
-def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
+def best_hold(
+    tried: list[Held], refused: dict[str, str], weight: Floats, open_rows: NDArray[np.bool_] | None = None, usual: str = VISE
+) -> Held:
     """Take what holds a part best, and say why.
 
     `tried`: at least one. `refused`: of each kind that cannot hold it, why not. `weight` (r,) float: the area that each sample
-    stands for.
+    stands for. `open_rows` (r,) bool: those that count, for other setups serve the rest; all by default. `usual`: the kind that
+    is taken of those that serve as much.
     """
-    whole = max(1e-300, float(weight.sum()))
-    share = {each.kind: float(weight @ each.served) / whole for each in tried}
+    wanted = weight if open_rows is None else weight * open_rows
+    share, served_of = (
+        {each.kind: float(these @ each.served) / max(1e-300, float(weight.sum())) for each in tried} for these in (wanted, weight)
+    )
     able = [each for each in tried if not each.soft] or tried
     gripping = [each for each in able if each.kind != TABLE]
-    best = max(gripping or able, key=lambda each: share[each.kind])
+    best = max(gripping or able, key=lambda each: (round(share[each.kind] / EVEN), each.kind == usual, share[each.kind]))
     if any(each.kind == TABLE for each in able) and share[best.kind] < GRIPPED_FOR * share[TABLE]:
         best = next(each for each in able if each.kind == TABLE)
     # What stands on thin walls is clamped no better from above.
     bending = next((each.soft for each in tried if BENDS in each.soft and best.kind == TABLE), "")
-    served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
+    served = [
+        f"the {each.kind} serves {percent(served_of[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)
+    ]
     served[0] += " of the samples' area"
     nothing = [f"a {each.kind} needs soft jaws or a nest ({each.soft})" for each in tried if each.soft]
     nothing += [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.answers.candidates import SAME, Candidates
-from plan_cutters.answers.holding import GRIPPED_FOR, Held, best_hold, held_by
+from plan_cutters.answers.holding import EVEN, GRIPPED_FOR, Held, best_hold, held_by
 from plan_cutters.answers.hole_setups import for_holes
 from plan_cutters.answers.least_set import cover
 from plan_cutters.answers.serving import bound_of, reached_by, usual_of
@@ -45,8 +45,6 @@ Table = NDArray[np.bool_]
 
 #: Samples on which directions are compared, at most; directions that are searched, for the first setup and for each more.
 COMPARED, _FIRST, _MORE = 400, 10, 6
-#: Shares nearer than this are equal.
-_EVEN = 0.002
 #: Directions in which one would stand the part are searched, too, at most so many; and another one is taken for this share of the
 #: area and more.
 _STOOD, _TURNED_FOR = 2, 0.02
@@ -138,10 +136,10 @@ class Ranking:
         firm = [each.firm or bool(self.lying(k)) for k, each in enumerate(self.candidates.bearing)]
         worth = np.where(firm, 1.0, _UNSTEADY)
         upper = worth * self.share(self.bound & open_rows[:, None])
-        order = np.lexsort((np.arange(len(upper)), -np.round(upper / _EVEN)))
+        order = np.lexsort((np.arange(len(upper)), -np.round(upper / EVEN)))
         best, tried = 0.0, 0
         for k in order.tolist():
-            if tried == most or upper[k] <= best + 0.5 * _EVEN:
+            if tried == most or upper[k] <= best + 0.5 * EVEN:
                 break
             tried += k not in self.held
             best = max(best, float(worth[k] * self.share((self._searched(k) & open_rows)[:, None])[0]))
@@ -223,7 +221,8 @@ class Ranking:
                 tried.append(self._held_by(k, word, bound, open_rows=open_rows))
             except NothingToGripError as error:
                 refused[word] = error.why
-        self.held[k] = best_hold(tried, refused, self.area) if len(self.words) > 1 else tried[0]
+        usual = CHUCK if self.candidates.bearing[k].round or self.lying(k) else VISE
+        self.held[k] = best_hold(tried, refused, self.area, open_rows, usual) if len(self.words) > 1 else tried[0]
 
     def _settle_stock(self, k: int) -> None:
         """Grip the stock in a direction, if plain jaws can, and what is below the part keeps tools off little of it; stock that a
@@ -260,7 +259,7 @@ class Ranking:
             worth = [(k, g) for k, g in zip(others, gain, strict=True) if g >= (_CLAMPED_FOR if self.steady(k) else _NEST_FOR)]
             if not worth:
                 break
-            more = max(worth, key=lambda each: (self.steady(each[0]), round(each[1] / _EVEN), each[0] == over))[0]
+            more = max(worth, key=lambda each: (self.steady(each[0]), round(each[1] / EVEN), each[0] == over))[0]
             self._settle(more, open_rows)
             if float(self.share((self.served(more) & open_rows)[:, None])[0]) >= _CLAMPED_FOR:
                 chosen = (*chosen, more)
@@ -335,7 +334,7 @@ class Ranking:
             # that is left.
             clamping, deep = best.fixture.clamping, deep_in(self.candidates.tall[k])
             hub = min(0.5 * clamping.numbers[-1], LIES) if word == CHUCK and clamping is not None else 0.0
-            least = float(wanted @ best.served) - _EVEN * float(self.area.sum())
+            least = float(wanted @ best.served) - EVEN * float(self.area.sum())
             for grip in sorted({deep, max(deep, hub)} - {GRIP}, reverse=True):
                 with suppress(NothingToGripError):
                     deeper = self._held_in(k, Fixture.parse(f"{word}:{grip:g}"), None, bound, None)
@@ -356,7 +355,7 @@ class Ranking:
         # A bar in it may be about a long part that is not round, as a camshaft; who asks for a chuck lays any part in it so.
         bearing, stock = self.candidates.bearing, self.stock is not None
         across = [j for j in across if bearing[j].round or (stock and (requested or tall[j] >= LONG * bearing[j].wide))]
-        least = max(0.0 if requested else tall[k], (1.0 - _EVEN) * max(tall[across], default=0.0))
+        least = max(0.0 if requested else tall[k], (1.0 - EVEN) * max(tall[across], default=0.0))
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in across if tall[j] >= least]
         return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]
 
@@ -439,7 +438,7 @@ class Ranking:
             faces = () if number == 0 else (*held.faces, *self.candidates.stands_on[k])
             raw += float(self.share((np.isin(self.ready.samples.face[self.rows], faces) & any_of & ~served)[:, None])[0])
             served |= held.served
-        return round(raw / _EVEN)
+        return round(raw / EVEN)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
@@ -513,12 +512,12 @@ class Ranking:
             chosen, uncovered = [], np.ones(len(table), bool)
             while len(chosen) < most:
                 gain = self.share(table & uncovered[:, None])
-                k = int(np.round(gain / _EVEN).argmax())
+                k = int(np.round(gain / EVEN).argmax())
                 if not gain[k] > 0.0:
                     break
                 chosen.append(k)
                 uncovered &= ~table[:, k]
-        return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
+        return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / EVEN)))
 
 
 #: What is kept of a ranking for the next question.

@@ -1,5 +1,6 @@
 """The plan of operations of a part that was judged: its cutters, and the order of its steps."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -12,7 +13,8 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.figures import count, duration, percent, reporting
 from plan_cutters.domain.operations import Columns, columns_of
 from plan_cutters.domain.own_process import OwnResult, cutter_of
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.shapes import top_radius
+from plan_cutters.domain.verdicts import INACCESSIBLE, Verdicts
 from plan_cutters.operations import choices
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.canonical import canonical
@@ -41,7 +43,7 @@ from plan_cutters.operations.task import Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import LeastSet, OperationPlan, Operations
-from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.preparation import Prepared, places
 from plan_cutters.scene.work import Progress, part_of
 
 
@@ -77,6 +79,8 @@ _PARTS = 4
 _PRICED = 200
 #: How often canonical orientations are sought by some samples, with so many more of what they leave, before it is by all.
 _AGAIN, _AT_ONCE = 4, 200
+#: A chamfer lies along a flank that is off by this sine: 0.1 deg.
+_ALONG = 2e-3
 #: Faces that are named in a note, at most.
 _NAMED = 6
 
@@ -173,7 +177,7 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], a
             f"No operation is planned with what {has}: {', '.join(unpriced)}. Give `--feed MM/MIN`, or ask for the fewest."
         )
     compared = comparable(ready, least)
-    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
+    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in (*compared, *task.cutters)))]:
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
         notes.append(f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.")
     moving = max(_moving_for_rest(ready, plan) for plan in plans)
@@ -299,6 +303,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     options = ready.options
     unpriced = without_feed(ready)
     needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
+    barred: dict[Cutter, NDArray[np.bool_]] = {}
     if options.process is not None:
         named = [cutter_of(each.cutter, ready.cutters, f"step {each.number}") for each in options.process.steps]
         named += [cutter_of(each.cutter, ready.cutters, "forbid") for each in options.process.forbidden]
@@ -307,11 +312,24 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         )
     else:
         cutters = considered(comparable(ready, least), needed, _CUTTERS)
+        ready, everywhere = _finished_first(ready, everywhere, cutters)
+        if options.operations != "fewest":
+            barred = _for_chamfers(ready, [each for each in ready.cutters if each not in (*cutters, *unpriced)])
+            cutters = tuple(each for each in ready.cutters if each in cutters or each in barred)
+            everywhere = [
+                {
+                    c: replace(v, verdict=np.where(barred[c], INACCESSIBLE, v.verdict)) if c in barred else v
+                    for c, v in each.items()
+                }
+                for each in everywhere
+            ]
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
-    probes = Probes(ready.samples, cutters, ready.setups, open_, everywhere=everywhere)
+    probes = Probes(
+        ready.samples, cutters, ready.setups, open_, {cutters.index(each): rows for each, rows in barred.items()}, everywhere
+    )
     extents = Extents(ready.samples, ready.conditions.obstacles, ready.conditions.jobs)
     machine = ready.conditions.machine
     paths = Paths(
@@ -325,6 +343,39 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing, Walls(probes, paths),
         moving, Seams.of(ready), flowing_faces(ready),
     )  # fmt: skip
+
+
+def _finished_first(
+    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], cutters: Sequence[Cutter]
+) -> tuple[Prepared, Sequence[Mapping[Cutter, Verdicts]]]:
+    """Leave what a setup grips and stands on to the setups before it, as far as the cutters reach it there: nobody closes jaws on
+    half a face."""
+    open_, others, left = ready.machinable, list(ready.others), list(everywhere)
+    for k, place in enumerate(places(ready.options)[1:], 1):
+        holds = [each.hold for each in ready.setups[k].surroundings.fixtures if each.hold is not None]
+        held = {face for each in holds for face in (*each.grips, *each.rests_on)}
+        held.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+        before = np.logical_or.reduce([open_[s] & everywhere[s][cutter].reached for s in range(k) for cutter in cutters])
+        before &= np.isin(ready.samples.face, list(held)) | others[k - 1].clamped
+        for s in range(k, len(left)) if before.any() else ():
+            others[s - 1] = replace(others[s - 1], clamped=others[s - 1].clamped | before)
+            left[s] = {
+                cutter: replace(each, verdict=np.where(before & each.reached, INACCESSIBLE, each.verdict).astype(np.uint8))
+                for cutter, each in left[s].items()
+            }
+    return replace(ready, others=tuple(others)), left
+
+
+def _for_chamfers(ready: Prepared, cutters: Sequence[Cutter]) -> dict[Cutter, NDArray[np.bool_]]:
+    """The chamfer cutter with the widest flank that lies along some chamfers of the part as this stands, with the samples (n,)
+    at which it is not to be planned, which are all others: a shop cuts nothing else with it."""
+    every = sorted((c for c in cutters if c.shape == "end" and c.taper > 0.0), key=top_radius, reverse=True)
+    for cutter in every:
+        up = np.stack([ready.samples.normal @ each.setup for each in ready.setups])
+        along = (np.abs(up - math.sin(cutter.taper)) <= _ALONG).any(axis=0) & ready.finished
+        if along.any():
+            return {cutter: ~along}
+    return {}
 
 
 def _first(task: Task, spacing: float = STEP) -> Columns:

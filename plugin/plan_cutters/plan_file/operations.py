@@ -475,6 +475,16 @@ class HoleSetupEntry(Frozen):
     argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
 
 
+class ChamferEntry(Frozen):
+    """A chamfer mill that would save much of the time that the steps take for chamfers."""
+
+    angle_deg: float = Field(description="of its tip")
+    faces: list[str]
+    seconds: float = Field(description="that the steps take for them, with links")
+    saves: float = Field(description="seconds, after the change of the tool")
+    argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
+
+
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
@@ -490,6 +500,9 @@ class ProcessEntry(Frozen):
     )
     hole_setup: HoleSetupEntry | None = Field(
         default=None, exclude_if=lambda each: each is None, description="the one for most holes; not written where there is none"
+    )
+    chamfers: ChamferEntry | None = Field(
+        default=None, exclude_if=lambda each: each is None, description="not written where no chamfer mill saves much"
     )
     setups: list[ProcessSetup] = Field(default=[], description="how the part stands, in the order of the setups")
     stock: StockEntry | None = Field(default=None, description="null: the part is there but for its last cut")

@@ -37,6 +37,8 @@ _ARC, _LOWEST = 20, 0.1
 _DEEP, LIES, _THIRD = 2.0 / 3.0, 20.0, 1.0 / 3.0
 #: A bar that lies stands so many times as far out of a chuck as it is wide there, at most, if a tailstock supports it.
 _OUT_OF_A_CHUCK = 30.0
+#: What a chuck holds reaches so many times as far from its middle as what is gripped is wide, at most.
+_REACHES = 2.5
 _X, _Y, _Z = np.eye(3)
 #: Jaws are higher than they grip by more than numbers are rounded, mm.
 _HAIR = 1e-6
@@ -151,6 +153,8 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
             float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
             _too_tall(tall, chuck.diameter) if free > most * chuck.diameter else "",
         )  # fmt: skip
+        if not place.soft and place.farthest > _REACHES * chuck.diameter:
+            place = replace(place, soft=f"it reaches {mm(place.farthest)} from the middle of {mm(chuck.diameter)}")
         if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
             yield place
 

@@ -328,9 +328,9 @@ class Place:
 #: Rays across jaws, and heights at which they go; what is behind a wall holds it as a solid does where that is so many times as
 #: thick, at this share of the rays.
 _RAYS, _LEVELS, _BACKED, _HELD = 9, 24, 3.0, 0.5
-#: Walls are thin below this share of how far what holds them is away; rings below this share of their diameter, where that is
-#: farther away than a share of it.
-_THIN, _RING, _CLOSED = 0.1, 0.04, 0.25
+#: Walls are thin below this share of how far what holds them is away, the first where walls across hold both their ends; rings
+#: below this share of their diameter, where that is farther away than a share of it.
+_FRAMED, _THIN, _RING, _CLOSED = 0.1, 0.25, 0.04, 0.25
 #: In the words of why a part needs a nest.
 BENDS = "would bend walls"
 
@@ -363,13 +363,21 @@ def thin_between(part: Workpiece, place: Place) -> float:
                 each.append(math.inf if len(x) == 2 else float(min(x[1] - x[0], x[-1] - x[-2])))
         return sorted(each, reverse=True)[math.ceil(_HELD * len(each)) - 1] if each else 0.0
 
+    def framed(height: float) -> bool:
+        """Whether material goes from jaw to jaw at both ends of the part."""
+        near = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)]
+        ends = near[..., 1].min() + 0.5 * thick, near[..., 1].max() - 0.5 * thick
+        met_at = (met(near, np.array([0.0, y, height]), np.array([1.0, 0.0, 0.0]))[1] for y in ends)
+        return all(len(np.unique(np.round(x[np.abs(x) <= half], 6))) == 2 for x in met_at)
+
     thick = thickness(0.5 * grip)
     if not 0.0 < thick < math.inf:
         return 0.0
     low, high = -place.above, part.tall - place.above
     steps = low + (high - low) * (np.arange(_LEVELS) + 0.5) / _LEVELS
     away = min((max(z - grip, -z, 0.0) for z in steps.tolist() if thickness(z) >= _BACKED * thick), default=high - low)
-    thin = thick < _THIN * away if vise else thick < _RING * wide and away > _CLOSED * wide
+    least = _FRAMED if vise and framed(0.5 * grip) else _THIN
+    thin = thick < least * away if vise else thick < _RING * wide and away > _CLOSED * wide
     return thick if thin else 0.0
 
 

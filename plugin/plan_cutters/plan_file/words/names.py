@@ -30,7 +30,9 @@ class Line(NamedTuple):
 _PLACES = 3
 #: What the drawer's names end in.
 _BUILT_IN_MARK = ", built-in"
-_END, _BALL, _BULL = "flat end", "ball end", "bull nose"
+_END, _BALL, _BULL, _CHAMFER = "flat end", "ball end", "bull nose", "chamfer mill"
+#: Flat ends with a taper from this on, deg, are chamfer mills.
+_POINTED = 20.0
 
 
 def kind(cutter: "Cutter | CutterEntry") -> str:
@@ -80,6 +82,7 @@ def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
     corner = f" rc{size(cutter.corner_radius, 4)}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
     taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
     cone = f" T{taper:.4g}" if taper else ""
+    what = _CHAMFER if what == _END and taper >= _POINTED else what
     return f"{what} D{across}{corner}{cone} x {size(cutter.length)}"
 
 

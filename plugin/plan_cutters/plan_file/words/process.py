@@ -170,7 +170,8 @@ def _clearance(plan: Plan, steps: Mapping[int, schema.ProcessStep]) -> str:
         advice = f": the shank is as wide as the flutes and slides along {listed(slide.faces, _FACES)}; a relieved shank (neck) "
         advice += f"clears it, with {mm(slide.relieved_mm)} there"
     else:
-        advice = f"; {mm(schema.MARGIN)} everywhere: `--holder-clearance {schema.MARGIN:g}`" if wider else ""
+        more = f"; plan with {mm(schema.MARGIN)}, and leave what that cannot reach: `--holder-clearance {schema.MARGIN:g}`"
+        advice = more if wider else ""
     return f"Least clearance of neck, shank and holder: {much}{advice}."
 
 
@@ -185,6 +186,7 @@ def with_process_words(plan: Plan) -> Plan:
     following = list(_next_entries(plan, plan.process, needed))
     # What mills need most comes first; a setup for holes is among those that are shown.
     following[1:1] = _for_holes(plan)
+    following[:0] = _for_chamfers(plan)
     words = {"steps": steps, "setups": setups, "left": needed, "doubts": doubts(plan), "next": following}
     return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
@@ -351,6 +353,15 @@ def _for_holes(plan: Plan) -> Iterator[schema.NextEntry]:
         turn = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
         words = f"{more_setup(more.axis, turn, 1 + len(now))} for {count(more.holes, 'hole')} that drills make there"
         yield schema.NextEntry(words=words, argv=more.argv, left_share=None)
+
+
+def _for_chamfers(plan: Plan) -> Iterator[schema.NextEntry]:
+    """The chamfer mill that takes the place of end mills that go along chamfers up and down."""
+    if (mill := plan.process.chamfers) is not None:
+        those = listed(mill.faces, _FACES)
+        less = f"{duration(mill.saves)} less of the {duration(mill.seconds)} there"
+        words = f"a chamfer mill of {mill.angle_deg:g}° for {those}: {less}"
+        yield schema.NextEntry(words=words, argv=mill.argv, left_share=None)
 
 
 def _answered_entries(plan: Plan, process: schema.ProcessEntry, left: float) -> Iterator[schema.NextEntry]:

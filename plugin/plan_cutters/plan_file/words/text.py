@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import NamedTuple
 
 from plan_cutters.domain.figures import count, listed, reporting, sentence
 from plan_cutters.plan_file.model import Plan, TextEntry, Tone, VerdictText
+from plan_cutters.plan_file.operations import MARGIN
 from plan_cutters.plan_file.words import headline as first
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers, together
@@ -131,22 +133,28 @@ def text_of(plan: Plan) -> TextEntry:
 def process_lines(plan: Plan, story: Story, write: Callable[[str], str] = as_fields, most: int = MOST) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next.
 
-    What is left comes before the last steps of a long table, if there is no space for both. `write`: how options are written:
+    What is left comes before the last steps of a long table, if there is no space for both; before that give way a second next
+    step, and a small clearance. `write`: how options are written:
     `typed` for a terminal; other readers have fields of these names.
     """
     more = "-v, or the review page" if write is typed else "see the review page"
     lines = list[str]()
-    for steps in (None, *_FEWER):
+    for steps, tight in product((None, *_FEWER), (False, True)):
         shorter = story if steps is None else replace(story, process=process_story(plan, story.names, steps))
-        lines, whole = _fitting(list(_paragraphs(plan, shorter, write, more)), most, f"More: {more}.")
+        lines, whole = _fitting(list(_paragraphs(plan, shorter, write, more, tight=tight)), most, f"More: {more}.")
         if whole:
             break
     return lines
 
 
-def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str) -> Iterator[tuple[int, list[str]]]:
-    """Lines of each sentence, with its rank: those of rank 0 are in every text."""
-    process = story.process
+def _paragraphs(
+    plan: Plan, story: Story, write: Callable[[str], str], more: str, *, tight: bool
+) -> Iterator[tuple[int, list[str]]]:
+    """Lines of each sentence, with its rank: those of rank 0 are in every text, but for some that are not if space is tight."""
+    process, small = (
+        story.process,
+        any(step.clearance_mm is not None and step.clearance_mm < MARGIN for step in plan.process.steps),
+    )
 
     def each(texts: Iterable[str], most: int, rank: int = 2) -> list[tuple[int, list[str]]]:
         return [(rank, wrapped([write(text)], most)) for text in texts if text]
@@ -168,11 +176,11 @@ def _paragraphs(plan: Plan, story: Story, write: Callable[[str], str], more: str
     yield from each(left[:1], _LEFT, 0)
     yield from each(left[1:], _LEFT)
     yield from each(process.next[:1], 3, 0)
-    yield from each(process.next[1:], 3, 2 if plan.process.hole_setup is None else 0)
+    yield from each(process.next[1:], 3, 2 if tight or plan.process.hole_setup is None else 0)
     yield from each(stays[process.much :], _LEFT, 2 if left else 1)
     unseen = first.not_seen(plan, story.names) if first.unseen(plan) else []
     yield from each([*first.undecided(plan, story.names), *unseen], 2, 1)
-    yield from each([process.clearance], 1, 1)
+    yield from each([process.clearance], 1, 0 if small and not tight else 1)
     yield from each(_alone(story), _ALONE)
     yield from each([story.headline.why], 2)
     yield from each(story.between[:1], 2)

@@ -1,0 +1,85 @@
+"""A chamfer mill where end mills go along chamfers up and down: it cuts each in one pass."""
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.answers.steps import option
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.shapes import flute_length
+from plan_cutters.errors import HolderFitError
+from plan_cutters.outcome import OperationPlan
+from plan_cutters.plan_file.operations import ChamferEntry
+from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters.scene.preparation import Prepared
+
+#: Usual chamfer mills: half of the angle of the tip, deg, and the mills, the larger one first.
+_MILLS = {
+    45: ("D1L30T45F6S12", "D1L20T45F2.5S6"), 30: ("D1L30T30F10S12", "D1L20T30F4.5S6"), 60: ("D1L30T60F3.4S12", "D1L20T60F1.5S6"),
+}  # fmt: skip
+#: Faces are along a flank that is off by this sine: 0.1 deg.
+_ALONG = 2e-3
+#: What is worth another tool, s and as a share of the whole time; the mill reaches this share of the chamfers at least.
+_WORTH, _SHARE, _NEARLY = 60.0, 0.1, 0.9
+#: Samples that it is tried at, at most.
+_TRIED = 200
+
+
+def chamfer_mill(ready: Prepared, plan: OperationPlan) -> ChamferEntry | None:
+    """The usual chamfer mill that saves most of the time that a plan takes for chamfers; None where none saves much.
+
+    Chamfers are planes and cones on which all normals lean alike from the spindle, narrower than the flank of the mill.
+    """
+    samples, options, setup = ready.samples, ready.options, np.array([each.setup for each in plan.operations], int)
+    straight = np.array([not each.cutter.taper and each.axis is not None for each in plan.operations])
+    rows = np.flatnonzero(plan.label >= 0)
+    rows = rows[straight[plan.label[rows]]] if len(straight) else rows
+    time, where = plan.seconds + plan.link, setup[plan.label[rows]]
+    best: ChamferEntry | None = None
+    for degrees, words in _MILLS.items():
+        if (mill := _fitting(words, ready.cutters[0].holder)) is None:
+            continue
+        context = {s: Context.of(mill, ready.setups[s]) for s in np.unique(where).tolist()}
+        faces, saved, taken = list[str](), -options.change_time, 0.0
+        for face in ready.scene.part.faces:
+            for s in context if face.shape in ("plane", "cone") else ():
+                up, own = ready.setups[s].setup, samples.face[rows] == face.number
+                mine = rows[own & (where == s)]
+                height = samples.normal[rows[own]] @ up
+                if not len(mine) or np.abs(height - math.sin(mill.taper)).max() > _ALONG:
+                    continue
+                width = float(np.ptp(samples.point[rows[own]] @ up)) / math.cos(mill.taper)
+                feed = options.feed or min((options.feeds or {}).values(), default=math.nan)
+                if not 0.0 < width <= _flank(mill):
+                    continue
+                tried = mine[:: max(1, len(mine) // _TRIED)]
+                if served_by(tried, up[None], samples, context[s])[0].mean() < _NEARLY:
+                    continue
+                now = float(time[mine].sum())
+                once = float(samples.area[mine].sum()) / width * 60.0 / feed + options.link_time
+                if now > once:
+                    faces.append(f"F{face.number}")
+                    saved, taken = saved + now - once, taken + now
+        if saved >= max(_WORTH, _SHARE * plan.total) and (best is None or saved > best.saves):
+            argv = option(ready, mill, cutters=[*ready.cutters, mill])
+            best = ChamferEntry(angle_deg=2 * degrees, faces=list(dict.fromkeys(faces)), seconds=taken, saves=saved,
+                                argv=argv.split() if argv else [])  # fmt: skip
+    return best
+
+
+def _fitting(words: Sequence[str], holder: Holder | None) -> Cutter | None:
+    """The first of some mills that fits a holder; None where none does."""
+    for word in words:
+        with suppress(HolderFitError):
+            return replace(Cutter.parse(word), holder=holder)
+    return None
+
+
+def _flank(mill: Cutter) -> float:
+    """How wide a chamfer is that the flank of a mill cuts in one pass, mm."""
+    return flute_length(mill) / math.cos(mill.taper)
