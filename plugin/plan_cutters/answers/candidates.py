@@ -11,7 +11,7 @@ from cad_io.arrays import Floats, Record, Triangles, rows_by_face
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.holes import made_of
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.setups.workpiece import Bearing
+from plan_cutters.setups.workpiece import Bearing, rods_of
 
 #: Families of parallel planes whose normals are tried, and directions spread over the sphere.
 _FAMILIES, _SPREAD = 40, 60
@@ -32,6 +32,8 @@ class Candidates(Record):
     lowest: Floats  #: (m,) float: height along each of the part's lowest point, mm.
     tall: Floats  #: (m,) float: how high the part stands along each, mm.
     bearing: tuple[Bearing, ...]  #: How the part stands on these planes.
+    #: Those along which the part is round about cylinders of its own: seen askew a disk may look as round.
+    turned: frozenset[int] = frozenset()
 
     @classmethod
     def of(cls, ready: Prepared) -> "Candidates":
@@ -50,7 +52,10 @@ class Candidates(Record):
             across = frame_of(axis[k])[:2].T
             below = np.concatenate([np.zeros((0, 3)), *(mesh.vertex[rows[n]].reshape(-1, 3) for n in faces)])
             bearing.append(Bearing.of(mesh.outer @ across, below @ across, centre @ across, float(tall[k])))
-        return cls(axis, stands_on, heights.lowest, tall, tuple(bearing))
+        rods = np.array([*rods_of(ready.scene.part.faces).values()]).reshape(-1, 3)
+        along = np.flatnonzero((np.abs(axis @ rods.T) > SAME).any(axis=1)).tolist()
+        turned = frozenset(k for k in along if bearing[k].round)
+        return cls(axis, stands_on, heights.lowest, tall, tuple(bearing), turned)
 
     def preferred(self, every: Sequence[int]) -> list[int]:
         """Some of them in the order in which one would stand the part: firmly, on a large plane, low, along its own axes."""

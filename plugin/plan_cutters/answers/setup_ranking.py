@@ -354,8 +354,10 @@ class Ranking:
         across = np.flatnonzero(np.abs(axis @ axis[k]) < _ACROSS).tolist()
         # A bar in it may be about a long part that is not round, as a camshaft; who asks for a chuck lays any part in it so.
         bearing, stock = self.candidates.bearing, self.stock is not None
-        across = [j for j in across if bearing[j].round or (stock and (requested or tall[j] >= LONG * bearing[j].wide))]
-        least = max(0.0 if requested else tall[k], (1.0 - EVEN) * max(tall[across], default=0.0))
+        turned = self.candidates.turned
+        long = [j for j in across if bearing[j].round or (stock and (requested or tall[j] >= LONG * bearing[j].wide))]
+        across = [j for j in across if j in turned] if turned else long
+        least = max(0.0 if requested or turned else tall[k], (1.0 - EVEN) * max(tall[across], default=0.0))
         lying = [(axis[j], along[0] * axis[j] - along[1] * np.cross(axis[k], axis[j])) for j in across if tall[j] >= least]
         return [(replace(fixture, up=direction_of(up)), direction_of(x)) for up, x in lying]
 
