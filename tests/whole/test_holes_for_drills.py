@@ -8,7 +8,7 @@ import cadquery as cq
 import numpy as np
 import pytest
 
-from plan_cutters import plan
+from plan_cutters import Placement, plan
 from plan_cutters.answers.drilling import drilled
 from plan_cutters.domain.verdicts import DRILLED, WORDS
 from plan_cutters.errors import UnjudgeableError
@@ -233,9 +233,18 @@ def test_a_holder_beside_a_wall_stops_a_drill():
     assert made_with(drill(5.0, flutes=30.0, length=35.0), shape=shape, machine="tilt:5")[5.0] is None
 
 
-def test_a_table_under_a_hole_through_stops_the_point():
-    assert made_with(drill(3.3), machine="tilt:5")[3.3] is not None
-    assert made_with(drill(3.3), machine="tilt:5", fixtures="table")[3.3] is None
+def test_over_a_table_the_point_goes_through_only_where_no_other_setup_is_free_of_one():
+    """Then it goes down to the end of the hole alone, and the part is to be put on parallels."""
+    free = made_with(drill(3.3), machine="tilt:5")[3.3]
+    over = made_with(drill(3.3), machine="tilt:5", fixtures="table")[3.3]
+    assert over.depth == 16.0
+    assert free.depth > 16.0
+    both = [Placement(z=(0, 0, 1), fixtures=("table",)), Placement(z=(0, 0, -1))]
+    turned = made_with(drill(3.3), machine="tilt:5", setup=both[0], other_setups=both[1:])[3.3]
+    assert (turned.setup, turned.depth) == (1, free.depth)
+    words = {**WORDS_OF_PLAN, "libraries": [library_of(drill(3.3))]}
+    doubts = [plan(plate(), **words, **more).plan.process.doubts for more in ({}, {"fixtures": "table"})]
+    assert [any("on parallels in setup 1" in line for line in each) for each in doubts] == [False, True]
 
 
 def test_a_machine_that_cannot_hold_the_axis_drills_nothing():

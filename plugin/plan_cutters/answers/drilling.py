@@ -11,7 +11,7 @@ from cad_io.arrays import Floats
 from cad_io.part.holes import Hole, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drill import CONES, Bored, Drill, Drilled, Missing, Why
-from plan_cutters.domain.fixture import STOCK
+from plan_cutters.domain.fixture import STOCK, TABLE
 from plan_cutters.domain.thread import Thread, thread_in, tolerance_in
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, Context, free_in_posture
@@ -126,9 +126,9 @@ class _Maker:
     def _cylinder(self, hole: Hole) -> list[Drilled]:
         """The tools of its narrowest cylinder; none where they cannot make it."""
         tasks = [each for each in self._chains(hole) if all(task.body is not None for task in each)]
-        for chain in tasks:
+        for chain, below in ((chain, below) for chain in tasks for below in ((STOCK,), (STOCK, TABLE))):
             for way in self._ways(hole):
-                made = [self._use(task, way) or self._onto_stock(task, hole, way) for task in chain]
+                made = [self._use(task, way) or self._into(below, task, hole, way) for task in chain]
                 if all(made):
                     first = self._centre(hole, way)
                     return [*([] if first is None else [first]), *(use for use in made if use is not None)]
@@ -199,13 +199,14 @@ class _Maker:
             if hole.through:
                 yield _Way(setup, -hole.axis, hole.place - hole.depth * hole.axis)
 
-    def _onto_stock(self, task: _Task, hole: Hole, way: _Way) -> Drilled | None:
-        """A tool through a hole whose point goes into the stock below the part, which is cut away later."""
+    def _into(self, kinds: Sequence[str], task: _Task, hole: Hole, way: _Way) -> Drilled | None:
+        """A tool through a hole whose point goes into what is below the part: stock, which is cut away later, or a table, on
+        which the part is put on parallels."""
         conditions = self.ready.setups[way.setup]
         surroundings, up = conditions.surroundings, np.asarray(conditions.setup, float)
         point, end = task.drill.point_length, way.mouth - hole.depth * way.axis
         lowest = float(((surroundings.alone or surroundings).certain.lowest(up) @ up).min())
-        foots = [each.obstacles.triangles.vertex @ up for each in surroundings.fixtures if each.fixture.kind == STOCK]
+        foots = [each.obstacles.triangles.vertex @ up for each in surroundings.fixtures if each.fixture.kind in kinds]
         below = max((lowest - float(each.min()) for each in foots), default=0.0)
         if not hole.through or way.axis @ up < _ALONG or not below > point or end @ up > lowest + conditions.tolerance:
             return None

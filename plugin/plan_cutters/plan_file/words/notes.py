@@ -21,7 +21,7 @@ from plan_cutters.domain.figures import (
     ranges,
     size,
 )
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.operations import ProcessSetup
@@ -246,6 +246,8 @@ def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
+#: Depths are the same within this, mm.
+_AS_DEEP = 1e-6
 #: Cosine from which on a rotary axis turns about the spindle.
 _ALONG = 0.999
 #: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
@@ -265,7 +267,7 @@ def doubts(plan: Plan) -> list[str]:
     lines = [text for codes in _DOUBTFUL for code, text in noted if code in codes]
     lines += [
         text
-        for doubt in (_unit, _travel, _into_solid, _aslant, _foot, _raw, _held, _across, _moving, _unheld, _side)
+        for doubt in (_unit, _travel, _into_solid, _aslant, _foot, _parallels, _raw, _held, _across, _moving, _unheld, _side)
         for text in doubt(plan)
     ]
     requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
@@ -354,6 +356,15 @@ def _foot(plan: Plan) -> Iterator[str]:
     first, second = setups[:2]
     if _upright(first) and sum(one * other for one, other in zip(first.up, second.up, strict=True)) > -_ALONG:
         yield "Cut off what is left of the stock below the part before setup 2, which does not turn the part over."
+
+
+def _parallels(plan: Plan) -> Iterator[str]:
+    """Drills whose points go through the part into the table."""
+    for setup in plan.process.setups:
+        mine = [step for step in plan.process.drilling if step.setup == setup.number - 1 and setup.held == TABLE]
+        through = [(step, plan.holes[stroke.hole]) for step in mine for stroke in step.holes]
+        if any(hole.through and abs(step.depth_mm - hole.depth_mm) <= _AS_DEEP for step, hole in through):
+            yield f"Put the part on parallels in setup {setup.number}: the points of drills go through it into the table."
 
 
 def _aslant(plan: Plan) -> Iterator[str]:
