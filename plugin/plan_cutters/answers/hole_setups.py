@@ -7,6 +7,7 @@ import numpy as np
 
 from plan_cutters.answers.candidates import SAME, distinct
 from plan_cutters.answers.drilling import drilled
+from plan_cutters.answers.serving import reached_by
 from plan_cutters.domain.drill import Bored
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import HoleSetupEntry
@@ -16,15 +17,14 @@ from plan_cutters.scene.preparation import Axis, Prepared
 
 
 def made_in(ready: Prepared, conditions: Iterable[Conditions], holes: Iterable[int]) -> set[int]:
-    """Those of some holes, by their numbers, that tools of the libraries make under some conditions, each a setup.
-
-    Mills are taken to reach the bottoms that are theirs.
-    """
-    left, every = sorted(holes), np.ones(len(ready.samples), bool)
-    made = set[int]()
+    """Those of some holes, by their numbers, that tools of the libraries, and mills at bottoms that are theirs, make under some
+    conditions, each a setup."""
+    left, made = sorted(holes), set[int]()
     for each in conditions:
         few = replace(ready, conditions=each, others=(), holes=tuple(ready.holes[k] for k in left))
-        made |= {k for k, bored in zip(left, drilled(few, every), strict=True) if bored.by is not None}
+        floors = [face for hole in few.holes for face in hole.floor if face not in hole.faces]
+        done = reached_by(ready, np.flatnonzero(np.isin(ready.samples.face, floors) & ready.finished), each, usual=False)
+        made |= {k for k, bored in zip(left, drilled(few, done), strict=True) if bored.by is not None}
         left = [k for k in left if k not in made]
     return made
 
