@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -35,36 +36,33 @@ def chamfer_mill(ready: Prepared, plan: OperationPlan) -> ChamferEntry | None:
 
     Chamfers are planes and cones on which all normals lean alike from the spindle, narrower than the flank of the mill.
     """
-    samples, options, setup = ready.samples, ready.options, np.array([each.setup for each in plan.operations], int)
-    straight = np.array([not each.cutter.taper and each.axis is not None for each in plan.operations])
-    rows = np.flatnonzero(plan.label >= 0)
-    rows = rows[straight[plan.label[rows]]] if len(straight) else rows
-    time, where = plan.seconds + plan.link, setup[plan.label[rows]]
+    samples, options = ready.samples, ready.options
+    # The setup of each sample that goes with a fixed step of an end mill, else -1.
+    of_step = [each.setup if each.axis is not None and not each.cutter.taper else -1 for each in plan.operations]
+    where, time, area = np.array([*of_step, -1])[plan.label], plan.seconds + plan.link, np.nan_to_num(samples.area)
+    slanted = [(face.number, rows) for face in ready.scene.part.faces if face.shape in ("plane", "cone")
+               and (rows := samples.by_face().get(face.number)) is not None]  # fmt: skip
+    feed = options.feed or min((options.feeds or {}).values(), default=math.nan)
     best: ChamferEntry | None = None
     for degrees, words in _MILLS.items():
         if (mill := _fitting(words, ready.cutters[0].holder)) is None:
             continue
-        context = {s: Context.of(mill, ready.setups[s]) for s in np.unique(where).tolist()}
         faces, saved, taken = list[str](), -options.change_time, 0.0
-        for face in ready.scene.part.faces:
-            for s in context if face.shape in ("plane", "cone") else ():
-                up, own = ready.setups[s].setup, samples.face[rows] == face.number
-                mine = rows[own & (where == s)]
-                height = samples.normal[rows[own]] @ up
-                if not len(mine) or np.abs(height - math.sin(mill.taper)).max() > _ALONG:
-                    continue
-                width = float(np.ptp(samples.point[rows[own]] @ up)) / math.cos(mill.taper)
-                feed = options.feed or min((options.feeds or {}).values(), default=math.nan)
-                if not 0.0 < width <= _flank(mill):
-                    continue
-                tried = mine[:: max(1, len(mine) // _TRIED)]
-                if served_by(tried, up[None], samples, context[s])[0].mean() < _NEARLY:
-                    continue
-                now = float(time[mine].sum())
-                once = float(samples.area[mine].sum()) / width * 60.0 / feed + options.link_time
-                if now > once:
-                    faces.append(f"F{face.number}")
-                    saved, taken = saved + now - once, taken + now
+        for (number, rows), (s, conditions) in product(slanted, enumerate(ready.setups)):
+            up, mine = conditions.setup, rows[where[rows] == s]
+            if not len(mine) or not np.abs(samples.normal[rows] @ up - math.sin(mill.taper)).max() <= _ALONG:
+                continue
+            width = float(np.ptp(samples.point[rows] @ up)) / math.cos(mill.taper)
+            tried = mine[:: max(1, len(mine) // _TRIED)]
+            if not 0.0 < width <= flute_length(mill) / math.cos(mill.taper) or (
+                served_by(tried, up[None], samples, Context.of(mill, conditions))[0].mean() < _NEARLY
+            ):
+                continue
+            now = float(time[mine].sum())
+            once = float(area[mine].sum()) / width * 60.0 / feed + options.link_time
+            if now > once:
+                faces.append(f"F{number}")
+                saved, taken = saved + now - once, taken + now
         if saved >= max(_WORTH, _SHARE * plan.total) and (best is None or saved > best.saves):
             argv = option(ready, mill, cutters=[*ready.cutters, mill])
             best = ChamferEntry(angle_deg=2 * degrees, faces=list(dict.fromkeys(faces)), seconds=taken, saves=saved,
@@ -78,8 +76,3 @@ def _fitting(words: Sequence[str], holder: Holder | None) -> Cutter | None:
         with suppress(HolderFitError):
             return replace(Cutter.parse(word), holder=holder)
     return None
-
-
-def _flank(mill: Cutter) -> float:
-    """How wide a chamfer is that the flank of a mill cuts in one pass, mm."""
-    return flute_length(mill) / math.cos(mill.taper)

@@ -43,7 +43,7 @@ from plan_cutters.operations.task import Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import LeastSet, OperationPlan, Operations
-from plan_cutters.scene.preparation import Prepared, places
+from plan_cutters.scene.preparation import Prepared, held_faces
 from plan_cutters.scene.work import Progress, part_of
 
 
@@ -351,12 +351,9 @@ def _finished_first(
     """Leave what a setup grips and stands on to the setups before it, as far as the cutters reach it there: nobody closes jaws on
     half a face."""
     open_, others, left = ready.machinable, list(ready.others), list(everywhere)
-    for k, place in enumerate(places(ready.options)[1:], 1):
-        holds = [each.hold for each in ready.setups[k].surroundings.fixtures if each.hold is not None]
-        held = {face for each in holds for face in (*each.grips, *each.rests_on)}
-        held.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+    for k in range(1, len(left)):
         before = np.logical_or.reduce([open_[s] & everywhere[s][cutter].reached for s in range(k) for cutter in cutters])
-        before &= np.isin(ready.samples.face, list(held)) | others[k - 1].clamped
+        before &= np.isin(ready.samples.face, list(held_faces(ready, k))) | ready.others[k - 1].clamped
         for s in range(k, len(left)) if before.any() else ():
             others[s - 1] = replace(others[s - 1], clamped=others[s - 1].clamped | before)
             left[s] = {

@@ -334,15 +334,22 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     return replace(ready, held=held[0], others=tuple(others))
 
 
+def held_faces(ready: Prepared, setup: int) -> set[int]:
+    """Faces on which the part stands in a proposed setup, counted from 0, and those that a vise or chuck holds which was placed
+    for it."""
+    place = places(ready.options)[setup]
+    holds = [each.hold.faces for each in ready.setups[setup].surroundings.fixtures if each.hold is not None]
+    return {int(name[1:]) for name in (() if place is None else place.stands_on)}.union(*holds)
+
+
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
     """Samples (n,) that what was proposed may hide: of faces that stand on a proposed table, or that a vise or chuck holds which
     was placed for a setup; of all faces where nothing but such vises and chucks stands anywhere."""
     faces, clamped = set[int](), True
-    for place, conditions in zip(places(ready.options), ready.setups, strict=True):
-        faces.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+    for number, (place, conditions) in enumerate(zip(places(ready.options), ready.setups, strict=True)):
+        faces |= held_faces(ready, number)
         proposed = place is not None and place.proposed
         for each in conditions.surroundings.fixtures:
-            faces.update(() if each.hold is None else each.hold.faces)
             clamped &= each.hold is not None or (proposed and each.fixture.clamping is not None)
     return np.isin(ready.samples.face, sorted(faces)) | (clamped and bool(faces))
 
