@@ -7,7 +7,8 @@ only another cutter helps there. No verdict is changed.
 A sharp inside edge is a reason of its own: beside one, a round cutter leaves a fillet whatever its posture. A sample of a face A
 is lost to its edge with a face B where all of this holds:
 
-- it is not reached, and not for local gouge, which is the curvature of A itself, or fixtures;
+- it is not reached, for rear gouge, collision or axis limit (local gouge is the curvature of A itself; with more room for shank
+  and holder this cutter itself would do);
 - the ball of the cutter's least radius that touches A there reaches into B as that runs on from the edge, its curvature across
   the edge included: between planes that is nearer to the edge than r / tan(angle / 2);
 - farther from the edge the cutter does its work: it reaches a sample near the place where the ball touches both faces. In a
@@ -53,8 +54,8 @@ from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.work import Progress
 
 _PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
-#: Reasons behind which a sharp inside edge may be: to lean into it a tool needs its axes, and shank and holder their room.
-_AT_EDGES = (REAR_GOUGE, COLLISION, AXIS_LIMIT, *_PARTS)
+#: Reasons behind which a sharp inside edge may be: nobody buys a machine to lean a tool into one.
+_AT_EDGES = (REAR_GOUGE, COLLISION, AXIS_LIMIT)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
