@@ -7,6 +7,7 @@ import time
 import pytest
 
 from plan_cutters import pipeline, plan
+from plan_cutters.command.progress import work_of
 from plan_cutters.outcome import Answers
 from plan_cutters_base import forks
 from tests.support.places import SAMPLES
@@ -78,3 +79,11 @@ def test_what_either_raises_is_raised(stage, monkeypatch):
     monkeypatch.setattr(stage, fails)
     with pytest.raises(ZeroDivisionError, match="one of them"):
         plan(SAMPLES / "blade.step", **{**WORDS, "answers": ("stick-out",), "jobs": 2})
+
+
+def test_only_cutters_are_told_as_cutters():
+    """All other stages have words of their own: "judging ... (2 of 3)" counts cutters."""
+    told = set()
+    result = plan(SAMPLES / "blade.step", **{**WORDS, "jobs": 1, "progress": lambda stage, done, total: told.add(stage)})
+    assert {stage for stage in told if work_of(stage) == work_of("R6L80")} == {cutter.id for cutter in result.cutters}
+    assert "patterns" in told

@@ -29,7 +29,7 @@ _WORDS = {
     "fixtures": "reading the fixtures",
     **dict.fromkeys(("sample", "classify"), "taking samples"),
     **dict.fromkeys(("tessellate", "tree"), "meshing what is in the way"),
-    **dict.fromkeys(("compile", "bodies"), "preparing the search"),
+    **dict.fromkeys(("compile", "bodies", "patterns"), "preparing the search"),
     "setups": "judging in the other setups",
     "proposal": "comparing setups",
     "reasons": "finding the reasons",
