@@ -1,6 +1,7 @@
 """A chamfer mill where end mills go along chamfers up and down: it cuts each in one pass."""
 
 import math
+import shlex
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -16,15 +17,13 @@ from plan_cutters.errors import HolderFitError
 from plan_cutters.outcome import OperationPlan
 from plan_cutters.plan_file.operations import ChamferEntry
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters.scene.fixed_axis import along_flank, served_by
 from plan_cutters.scene.preparation import Prepared
 
 #: Usual chamfer mills: half of the angle of the tip, deg, and the mills, the larger one first.
 _MILLS = {
     45: ("D1L30T45F6S12", "D1L20T45F2.5S6"), 30: ("D1L30T30F10S12", "D1L20T30F4.5S6"), 60: ("D1L30T60F3.4S12", "D1L20T60F1.5S6"),
 }  # fmt: skip
-#: Faces are along a flank that is off by this sine: 0.1 deg.
-_ALONG = 2e-3
 #: What is worth another tool, s and as a share of the whole time; the mill reaches this share of the chamfers at least.
 _WORTH, _SHARE, _NEARLY = 60.0, 0.1, 0.9
 #: Samples that it is tried at, at most.
@@ -50,7 +49,7 @@ def chamfer_mill(ready: Prepared, plan: OperationPlan) -> ChamferEntry | None:
         faces, saved, taken = list[str](), -options.change_time, 0.0
         for (number, rows), (s, conditions) in product(slanted, enumerate(ready.setups)):
             up, mine = conditions.setup, rows[where[rows] == s]
-            if not len(mine) or not np.abs(samples.normal[rows] @ up - math.sin(mill.taper)).max() <= _ALONG:
+            if not len(mine) or not along_flank(samples.normal[rows], up, mill).all():
                 continue
             width = float(np.ptp(samples.point[rows] @ up)) / math.cos(mill.taper)
             tried = mine[:: max(1, len(mine) // _TRIED)]
@@ -66,7 +65,7 @@ def chamfer_mill(ready: Prepared, plan: OperationPlan) -> ChamferEntry | None:
         if saved >= max(_WORTH, _SHARE * plan.total) and (best is None or saved > best.saves):
             argv = option(ready, mill, cutters=[*ready.cutters, mill])
             best = ChamferEntry(angle_deg=2 * degrees, faces=list(dict.fromkeys(faces)), seconds=taken, saves=saved,
-                                argv=argv.split() if argv else [])  # fmt: skip
+                                argv=shlex.split(argv) if argv else [])  # fmt: skip
     return best
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -62,6 +63,9 @@ def drilled(ready: Prepared, done: NDArray[np.bool_], used: Sequence[int] = ()) 
 class _Maker:
     def __init__(self, ready: Prepared, drills: Sequence[Drill], done: NDArray[np.bool_], used: Sequence[int]) -> None:
         self.ready, self.drills, self.done = ready, drills, done
+        # What points of drills may go into; a table last.
+        over = any(each.fixture.kind == TABLE for setup in ready.setups for each in setup.surroundings.fixtures)
+        self.below = ((STOCK,), (STOCK, TABLE)) if over else ((STOCK,),)
         self.order = sorted(range(len(ready.setups)), key=lambda setup: (setup not in used, setup))
 
     def _nearest(self, diameter: float) -> list[Drill]:
@@ -126,7 +130,7 @@ class _Maker:
     def _cylinder(self, hole: Hole) -> list[Drilled]:
         """The tools of its narrowest cylinder; none where they cannot make it."""
         tasks = [each for each in self._chains(hole) if all(task.body is not None for task in each)]
-        for chain, below in ((chain, below) for chain in tasks for below in ((STOCK,), (STOCK, TABLE))):
+        for chain, below in product(tasks, self.below):
             for way in self._ways(hole):
                 made = [self._use(task, way) or self._into(below, task, hole, way) for task in chain]
                 if all(made):

@@ -1,6 +1,5 @@
 """The plan of operations of a part that was judged: its cutters, and the order of its steps."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -43,6 +42,7 @@ from plan_cutters.operations.task import Task, at_some, thinned
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.outcome import LeastSet, OperationPlan, Operations
+from plan_cutters.scene.fixed_axis import along_flank
 from plan_cutters.scene.preparation import Prepared, held_faces
 from plan_cutters.scene.work import Progress, part_of
 
@@ -79,8 +79,6 @@ _PARTS = 4
 _PRICED = 200
 #: How often canonical orientations are sought by some samples, with so many more of what they leave, before it is by all.
 _AGAIN, _AT_ONCE = 4, 200
-#: A chamfer lies along a flank that is off by this sine: 0.1 deg.
-_ALONG = 2e-3
 #: Faces that are named in a note, at most.
 _NAMED = 6
 
@@ -316,13 +314,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         if options.operations != "fewest":
             barred = _for_chamfers(ready, [each for each in ready.cutters if each not in (*cutters, *unpriced)])
             cutters = tuple(each for each in ready.cutters if each in cutters or each in barred)
-            everywhere = [
-                {
-                    c: replace(v, verdict=np.where(barred[c], INACCESSIBLE, v.verdict)) if c in barred else v
-                    for c, v in each.items()
-                }
-                for each in everywhere
-            ]
+            everywhere = [{c: _without(v, barred[c]) if c in barred else v for c, v in each.items()} for each in everywhere]
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
@@ -356,21 +348,21 @@ def _finished_first(
         before &= np.isin(ready.samples.face, list(held_faces(ready, k))) | ready.others[k - 1].clamped
         for s in range(k, len(left)) if before.any() else ():
             others[s - 1] = replace(others[s - 1], clamped=others[s - 1].clamped | before)
-            left[s] = {
-                cutter: replace(each, verdict=np.where(before & each.reached, INACCESSIBLE, each.verdict).astype(np.uint8))
-                for cutter, each in left[s].items()
-            }
+            left[s] = {cutter: _without(each, before) for cutter, each in left[s].items()}
     return replace(ready, others=tuple(others)), left
+
+
+def _without(verdicts: Verdicts, rows: NDArray[np.bool_]) -> Verdicts:
+    """Verdicts that reach none of some samples (n,)."""
+    return replace(verdicts, verdict=np.where(rows & verdicts.reached, INACCESSIBLE, verdicts.verdict).astype(np.uint8))
 
 
 def _for_chamfers(ready: Prepared, cutters: Sequence[Cutter]) -> dict[Cutter, NDArray[np.bool_]]:
     """The chamfer cutter with the widest flank that lies along some chamfers of the part as this stands, with the samples (n,)
     at which it is not to be planned, which are all others: a shop cuts nothing else with it."""
-    every = sorted((c for c in cutters if c.shape == "end" and c.taper > 0.0), key=top_radius, reverse=True)
-    for cutter in every:
-        up = np.stack([ready.samples.normal @ each.setup for each in ready.setups])
-        along = (np.abs(up - math.sin(cutter.taper)) <= _ALONG).any(axis=0) & ready.finished
-        if along.any():
+    for cutter in sorted((c for c in cutters if c.shape == "end" and c.taper > 0.0), key=top_radius, reverse=True):
+        along = np.logical_or.reduce([along_flank(ready.samples.normal, each.setup, cutter) for each in ready.setups])
+        if (along := along & ready.finished).any():
             return {cutter: ~along}
     return {}
 

@@ -221,17 +221,23 @@ def under_fixtures(contacts: Contacts, rows: NDArray[np.int64], context: Context
 
     `rows` (m,) int64. Its planes tell in one look at a contact; a search would go through all rotations.
     """
-    conditions, point, normal = context.conditions, contacts.point[rows], contacts.normal[rows]
-    under, obstacles = np.zeros(len(rows), bool), conditions.obstacles
-    radius = BALL * obstacles.depths(conditions.tolerance)[1]
-    for fixture in conditions.surroundings.fixtures:
-        # A ball that is within the triangles by their error is within what they stand for.
-        deep = radius + fixture.obstacles.triangles.chord_error
-        for plane in fixture.obstacles.convex if fixture.body is not None else ():
-            height, rise = point @ plane[:, :3].T + plane[:, 3], normal @ plane[:, :3].T
+    conditions, under = context.conditions, np.zeros(len(contacts.point), bool)
+    radius = BALL * conditions.obstacles.depths(conditions.tolerance)[1]
+    # A ball that is within the triangles by their error is within what they stand for.
+    every = [
+        (plane, radius + fixture.obstacles.triangles.chord_error)
+        for fixture in conditions.surroundings.fixtures if fixture.body is not None for plane in fixture.obstacles.convex
+    ]  # fmt: skip
+
+    def look(some: NDArray[np.int64]) -> None:
+        for plane, deep in every:
+            height, rise = contacts.point[some] @ plane[:, :3].T + plane[:, 3], contacts.normal[some] @ plane[:, :3].T
             for distance in context.proved_at:
-                under |= (height + distance * rise).max(axis=1) <= -deep
-    return under
+                under[some] |= (height + distance * rise).max(axis=1) <= -deep
+
+    # A fine sphere has thousands of planes: not all rows at once.
+    in_chunks(look, rows if every else rows[:0], conditions.jobs)
+    return under[rows]
 
 
 def free_in_posture(

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.control_words import ControlWords, control_words
+from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
@@ -23,6 +24,8 @@ from plan_cutters.scene.work import Progress, in_chunks
 _SAME, _END = 1e-6, 1e-9
 #: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
 FLAT = 1e-4
+#: A chamfer lies along a flank that is off by this sine: 0.1 deg.
+_ALONG = 2e-3
 #: Rows of one axis that are tested together, and tests that a thread makes in one go.
 _BLOCK, _AT_ONCE = 1024, 2048
 
@@ -36,6 +39,11 @@ def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, cont
 
     way, _, _ = _tested(rows, np.asarray(axis)[None], samples, context, only_leaning=True, held=np.zeros(1, np.int64))
     return np.asarray(way[0] == LEANING)
+
+
+def along_flank(normal: Floats, axis: Floats, cutter: Cutter) -> NDArray[np.bool_]:
+    """At which unit normals (n, 3) a surface lies along the flank of a tapered cutter that is held with an axis (3,)."""
+    return np.asarray(np.abs(normal @ axis - np.sin(cutter.taper)) <= _ALONG)
 
 
 def served_by(

@@ -177,7 +177,7 @@ class Obstacles(Record):
         which = which.reshape(-1, 3)
         piece = connected(len(corner), np.concatenate([which[:, :2], which[:, 1:]]))[which[:, 0]]
         bodies = []
-        for mine in (piece == k for k in range(piece.max() + 1)):
+        for mine in rows_by_face(piece).values():
             own = vertex[mine] - vertex[mine].mean(axis=(0, 1))
             volume = float(weight[mine] @ np.linalg.det(own)) / 6.0
             if not weight[mine].all() or volume <= 0.0:

@@ -345,17 +345,24 @@ def thin_between(part: Workpiece, place: Place) -> float:
     across = np.linspace(-0.5, 0.5, _RAYS + 2)[1:-1] * 2.0 * clamping.half_width
     rays = [(0.0, float(y)) for y in across] if vise else [(turn, 0.0) for turn in clamping.turns]
 
+    def at(height: float) -> Floats:
+        return vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)]
+
+    def crossed(near: Floats, turn: float, y: float, height: float) -> Floats:
+        """Where a line between the jaws goes through triangles, ascending."""
+        cosine, sine = math.cos(turn), math.sin(turn)
+        _, x, _ = met(near, np.array([-sine * y, cosine * y, height]), np.array([cosine, sine, 0.0]))
+        # On an edge of two triangles it goes through once.
+        x = np.unique(np.round(x, 6))
+        return np.asarray(x[np.abs(x) <= half])
+
     def thickness(height: float) -> float:
         """Find what the thinner wall has at a share of the rays at least; infinite where material goes from jaw to jaw there,
         0 where there is none.
         """
-        near, each = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)], list[float]()
+        near, each = at(height), list[float]()
         for turn, y in rays:
-            cosine, sine = math.cos(turn), math.sin(turn)
-            _, x, _ = met(near, np.array([-sine * y, cosine * y, height]), np.array([cosine, sine, 0.0]))
-            # On an edge of two triangles it goes through once.
-            x = np.unique(np.round(x, 6))
-            x = x[np.abs(x) <= half]
+            x = crossed(near, turn, y, height)
             if not vise:
                 # Outwards from the axis: mirrored, so that one wall is told as two are.
                 x = np.concatenate([-x[x > 0.0][::-1], x[x > 0.0]])
@@ -365,10 +372,9 @@ def thin_between(part: Workpiece, place: Place) -> float:
 
     def framed(height: float) -> bool:
         """Whether material goes from jaw to jaw at both ends of the part."""
-        near = vertex[(vertex[..., 2].min(axis=1) <= height) & (vertex[..., 2].max(axis=1) > height)]
-        ends = near[..., 1].min() + 0.5 * thick, near[..., 1].max() - 0.5 * thick
-        met_at = (met(near, np.array([0.0, y, height]), np.array([1.0, 0.0, 0.0]))[1] for y in ends)
-        return all(len(np.unique(np.round(x[np.abs(x) <= half], 6))) == 2 for x in met_at)
+        near = at(height)
+        ends = float(near[..., 1].min()) + 0.5 * thick, float(near[..., 1].max()) - 0.5 * thick
+        return all(len(crossed(near, 0.0, y, height)) == 2 for y in ends)
 
     thick = thickness(0.5 * grip)
     if not 0.0 < thick < math.inf:

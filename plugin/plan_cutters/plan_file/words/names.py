@@ -45,8 +45,16 @@ def kind(cutter: "Cutter | CutterEntry") -> str:
     if cutter.shape != "end":
         return "form cutter" if cutter.shape == "form" else cutter.shape
     if not cutter.corner_radius:
-        return _END
+        return _CHAMFER if _taper(cutter) >= _POINTED else _END
     return _BALL if cutter.corner_radius >= cutter.radius else _BULL
+
+
+def _taper(cutter: "Cutter | CutterEntry") -> float:
+    """Half of the angle of a cutter's cone, deg."""
+    # Not before anything is planned: help is shown without numpy.
+    from plan_cutters.domain.cutter import Cutter
+
+    return math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
 
 
 def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
@@ -61,7 +69,6 @@ def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
     'bull nose D0.5in rc0.0625in x 3in'
     """
     # Not before anything is planned: help is shown without numpy.
-    from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.dimensions import is_spec, notation
     from plan_cutters.domain.figures import in_inches
 
@@ -80,9 +87,8 @@ def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
         return name if match else f"{name} D{across}"
     what = kind(cutter)
     corner = f" rc{size(cutter.corner_radius, 4)}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
-    taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
+    taper = _taper(cutter)
     cone = f" T{taper:.4g}" if taper else ""
-    what = _CHAMFER if what == _END and taper >= _POINTED else what
     return f"{what} D{across}{corner}{cone} x {size(cutter.length)}"
 
 
